@@ -24,7 +24,7 @@ pub struct Status {
     pub running: usize,
     /// Number of unfinished tasks without a lease.
     pub waiting: usize,
-    /// Estimated remaining time (s): the expected time of unfinished tasks divided by the number of workers, at least 1.
+    /// Estimated remaining time (s): the expected time of unfinished tasks divided by the number of workers.
     ///
     /// The estimate is scaled by the ratio of actual to expected time of the finished tasks.
     pub seconds_left: f64,

@@ -1,7 +1,7 @@
 //! Cache of finished runs, outside the source tree and shared by all commands; it stores records, not verdicts.
 //!
-//! The key of a run is a hash of its scene, solver, defect, resolution, SIMD backend and the sources that the solver was
-//! built from. A changed case or solver therefore repeats only the affected runs. A file that is damaged or holds
+//! The key of a run is a hash of its scene, solver, defect, resolution, SIMD backend and the sources that the solver
+//! was built from. A changed case or solver therefore repeats only the affected runs. A file that is damaged or holds
 //! another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints are
 //! requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
@@ -83,8 +83,8 @@ impl RunCache {
         let path = self.path(name);
         let record = kept_record::from_bytes(name, &fs::read(&path).ok()?)?;
         self.taken.fetch_add(1, Ordering::Relaxed);
-        // The file time marks the last use, because the oldest files are removed first. If it cannot be set, the time of
-        // writing counts.
+        // The file time marks the last use, because the oldest files are removed first. If it cannot be set, the time
+        // of writing counts.
         let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
         Some(record)
     }

@@ -1,8 +1,9 @@
-//! Points of a second: `cargo bench -p grainbench-mpm`.
+//! Benchmark of point updates per second: `cargo bench -p grainbench-mpm`.
 //!
-//! `points` counts material points times steps: an elastic block of 60,000 points that vibrates, in hat functions with
-//! FLIP and in the best setting, and 36 discs with friction that are squeezed, in the best setting. `grains` does so
-//! for 12, 120 and 1200 discs of the same resolution, each of which touches four others. The set-up is not counted.
+//! `points` counts material points times steps in three cases. A vibrating elastic block of 60,000 points is run with
+//! hat functions and FLIP and in the best setting; 36 squeezed discs with friction are run in the best setting.
+//! `grains` does so for 12, 120 and 1200 discs of the same resolution, each in contact with four others. The set-up is
+//! not counted.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
@@ -19,7 +20,7 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).expect("the scene is right")
 }
 
-/// A square of 122.5 × 122.5 cells, free all around, that breathes.
+/// A free vibrating square of 122.5 × 122.5 cells.
 fn block() -> Scene {
     scene(
         "duration = 0.15\nreference_length = 1.0\noutput.every = 1.0\n\
@@ -29,8 +30,7 @@ fn block() -> Scene {
     )
 }
 
-/// Discs in a square lattice that overlap a little, periodic along both axes: each touches four others, however many
-/// there are.
+/// Slightly overlapping discs in a square lattice, periodic along both axes: each disc is in contact with four others.
 fn grains([columns, rows]: [u32; 2]) -> Scene {
     let end = |count: u32| f64::from(2 * count) - 1.0;
     scene(&format!(
@@ -45,7 +45,7 @@ fn grains([columns, rows]: [u32; 2]) -> Scene {
     ))
 }
 
-/// Six by six discs in touch between four walls that close in.
+/// Six by six discs in contact between four walls that move inwards.
 fn discs() -> Scene {
     let wall = |name: &str, point: &str, normal: &str, velocity: &str| {
         format!(
@@ -80,7 +80,7 @@ fn points(criterion: &mut Criterion) {
     time(criterion, "points", &cases);
 }
 
-/// Time of a point in a step as grains become more: the same for a dozen and for a thousand, as far as caches allow.
+/// Time of a point and step for a growing number of grains: it is constant except for cache effects.
 fn number_of_grains(criterion: &mut Criterion) {
     let at = Resolution::grid(4.0, 2);
     let cases = [("12", [3, 4]), ("120", [10, 12]), ("1200", [30, 40])]

@@ -1,25 +1,28 @@
-//! Where energy comes from and goes, added up from step to step for runs that ask for it.
+//! Energy budget: sources and sinks of energy, summed over all steps of runs that request it.
 //!
 //! - work: impulses of driven grains and walls, times their velocities;
-//! - plastic: ∫ q dε_p V over points; friction: mean force of the spring times what its end slid, or the impulse along
-//!   the surface times the slip at nodes before the step;
-//! - contact: what contacts take from the motion, and neither store in springs nor lose to friction. Springs take from
-//!   two surfaces their force times the way that these go against each other, contact by contact for the velocities
-//!   before the step; for those after it by their forces on the nodes, which is the same: a surface follows its nodes
-//!   with the weights by which a force on it reaches them. Conditions at nodes take their impulses times the velocity
-//!   of the nodes. Surfaces follow the mean of the velocities that points bring to the nodes before and after the step.
-//!   (The velocity that a force gives to a node beside a surface, which may have hardly any mass, is felt by nothing.)
-//! - transfer: the kinetic energy that nodes gain in a step and points do not when they take it over; less the work
-//!   that impulses do on that part of the nodes' velocity which points do not bring back, and which neither stresses
-//!   nor surfaces follow (points that keep their own velocity and bring it back lose nothing in sum: the two are
-//!   equal); and half of what stresses take from the velocities that they follow, less what the same stresses take from
-//!   the nodes once points have moved on, across cells.
+//! - plastic: ∫ q dε_p V over points;
+//! - friction: mean force of the tangential spring times the sliding displacement of its end, or the tangential impulse
+//!   at nodes times the slip velocity before the step;
+//! - contact: energy that contacts take from the motion and neither store in springs nor dissipate by friction. Springs
+//!   take their force times the relative displacement of the two surfaces. With velocities before the step it is summed
+//!   over contacts, with velocities after the step over spring forces on nodes. Both sums are equal, because surfaces
+//!   follow nodes with the same weights that distribute surface forces to nodes. Conditions at nodes take their
+//!   impulses times the velocity of the nodes. Surfaces follow the mean of the velocities that points transfer to the
+//!   nodes before and after the step. (A force may give a node of tiny mass beside a surface a large velocity, which no
+//!   point or surface follows.)
+//! - transfer: the kinetic energy that nodes gain in a step and points do not take over, less two terms. The first is
+//!   the work that impulses do on the part of node velocities that points do not transfer back and neither stresses
+//!   nor surfaces follow. (Points that keep their own velocity and transfer it back lose nothing in sum, because the
+//!   energy not taken over equals this work.) The second is half of a difference: energy that stresses take from the
+//!   velocities that they follow, less the energy that the same stresses take from the nodes after points have moved
+//!   across cells.
 //!
-//! No entry is what the others leave. That they add up to the work of what drives grains is a test of it all: that
-//! impulses are equal and opposite, that forces on nodes take from the motion what stresses take in points, and that
-//! stress, plastic work and elastic energy go together. (Where stresses come first, what crossing cells takes is left
-//! out.) Energy is counted in whole steps: kinetic energy belongs to the velocities of points, half a step before their
-//! positions, and springs are those of the last forces.
+//! No entry is computed as a remainder. The entries therefore check the method when they add up to the work of driven
+//! grains and walls. Impulses must be equal and opposite, internal forces must take from nodes what stresses take from
+//! points, and stress, plastic work and elastic energy must be consistent. (With the stress update first, the loss at
+//! cell crossings is not included.) Energy is counted in whole steps: kinetic energy belongs to the velocities of
+//! points, half a step before their positions, and spring energies to the last forces.
 
 use crate::boundary::Boundary;
 use crate::damping::Damping;
@@ -39,29 +42,29 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Sums since the start (J, N s).
+/// Sums since the start (J; N s for the impulse).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sums {
     /// Kinetic energy of points at the start.
     kinetic_at_start: f64,
     /// Work of gravity on nodes.
     gravity: f64,
-    /// What springs take from the motion of surfaces.
+    /// Energy that springs take from the motion of surfaces.
     taken: f64,
-    /// Work of conditions at nodes and of what drives grains, on the velocities that surfaces follow.
+    /// Work of nodal contact conditions and of driven grains, on the velocities that surfaces follow.
     contacts: f64,
     /// Kinetic energy that nodes gain in their steps.
     stepped: f64,
-    /// Work of what drives grains, on points that share their nodes with others.
+    /// Work of driven grains on points that share their nodes with other bodies.
     carried: f64,
-    /// Work on that part of the nodes' velocity which points do not bring back.
+    /// Work on the part of node velocities that points do not transfer back.
     stray: f64,
-    /// What stresses took in the last step (J), of which nodes are told in the next.
+    /// Energy that stresses took in the last step (J); the nodes lose it in the next step.
     stressed: f64,
-    /// What they take less than that from nodes when points have moved on.
+    /// Half the difference between that energy and the energy taken from nodes after points have moved.
     crossed: f64,
     damping: f64,
-    /// Of it, what damping takes from motion that nodes do not show.
+    /// Part of the damping work that acts on motion which nodes do not represent.
     unseen: f64,
     plastic: f64,
     viscous: f64,
@@ -70,30 +73,30 @@ pub(crate) struct Sums {
     impulse: Vector3<f64>,
 }
 
-/// Sums, and what a step leaves for them.
+/// Sums, and intermediate values of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Accounts<S: Space> {
     pub(crate) sums: Sums,
-    /// Of the last step.
+    /// Energies of contacts in the last step.
     pub(crate) tally: Tally,
-    /// Internal forces on the nodes (N); then impulses of contacts and of what drives grains (N s).
+    /// Internal forces on the nodes (N); later impulses of contacts and of driven grains (N s).
     impulses: Vec<S::Vector>,
-    /// Forces with those of springs (N); then impulses with those of internal forces (N s).
+    /// Forces including springs (N); later impulses including internal forces (N s).
     forces: Vec<S::Vector>,
     /// Forces of springs on the nodes (N).
     springs: Vec<S::Vector>,
-    /// Work of what drives grains on nodes in this step (J).
+    /// Work of driven grains on nodes in this step (J).
     held: f64,
-    /// Kinetic energy of points before the step, where motion is damped (J).
+    /// Kinetic energy of points before the step (J); only used with damping.
     brought: f64,
 }
 
-/// Velocity of a node before the step.
+/// Returns the velocity of a node before the step.
 fn before<S: Space>(node: &Node<S>, keep: f64) -> S::Vector {
     (node.velocity - node.change) * (1.0 / keep)
 }
 
-/// Why the budget of a scene cannot be told, if it cannot.
+/// Returns the reason why the energy budget of a scene is not supported, or `None`.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let held = scene.bodies.iter().any(|body| body.sides.iter().flatten().any(|&side| side != Hold::Free));
     let what = if held {
@@ -106,13 +109,13 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     Some(format!("a probe asks for its energy budget, and what {what} gives is not added up"))
 }
 
-/// Work of driven grains in a step (s) so far (J).
+/// Returns the work (J) of driven grains in a step (s) so far.
 fn work_of<S: Space>(driven: &Driven<S>, time_step: f64) -> f64 {
     let work = driven.groups.iter().map(|group| -S::dot(group.force, group.velocity));
     work.sum::<f64>() * time_step
 }
 
-/// Nodes that are added up at a time, whatever the number of threads.
+/// Number of nodes that are summed as one block, independent of the number of threads.
 const BLOCK: usize = 4096;
 
 /// Sums over nodes in a step.
@@ -120,11 +123,11 @@ const BLOCK: usize = 4096;
 struct OfNodes {
     /// Mass (kg).
     mass: f64,
-    /// What internal forces give to the velocities before the step (J).
+    /// Work of internal forces on the velocities before the step (J).
     given: f64,
     /// Kinetic energy before the step (J).
     seen: f64,
-    /// Kinetic energy that is gained (J).
+    /// Gain of kinetic energy (J).
     stepped: f64,
     /// Work of gravity (J).
     pulled: f64,
@@ -133,8 +136,10 @@ struct OfNodes {
 }
 
 impl OfNodes {
-    /// Of a block of nodes. Of `forces` (N) and internal forces become impulses (N s): all that changed the momentum, but
-    /// gravity (m/s²) and drag; and that without internal forces.
+    /// Sums over a block of nodes.
+    ///
+    /// On return, `forces` holds the impulses (N s) of all forces except gravity (m/s²) and drag. `impulses` holds the
+    /// same without internal forces. On entry they hold all forces and internal forces (N).
     fn add<S: Space>(
         nodes: &[Node<S>],
         forces: &mut [S::Vector],
@@ -166,7 +171,7 @@ impl OfNodes {
         sums
     }
 
-    /// The sums of both.
+    /// Adds two sums.
     fn and(self, other: Self) -> Self {
         Self {
             mass: self.mass + other.mass,
@@ -180,7 +185,7 @@ impl OfNodes {
 }
 
 impl<S: Space> Accounts<S> {
-    /// Begins to add up, with the points as they are.
+    /// Opens the budget with the current state of the points.
     pub(crate) fn open(basis: Basis, state: &State<S>, lattice: &Lattice) -> Self {
         Self {
             sums: Sums { kinetic_at_start: state.kinetic_energy(basis, lattice), ..Sums::default() },
@@ -193,12 +198,12 @@ impl<S: Space> Accounts<S> {
         }
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.impulses) + size_of_val(&*self.forces) + size_of_val(&*self.springs)
     }
 
-    /// Before springs push: the forces on the nodes are internal.
+    /// Records internal forces on the nodes. It must be called before spring forces are added.
     pub(crate) fn note_internal_forces(&mut self, team: &Team, grid: &Grid<S>) {
         let nodes = &grid.nodes[..grid.used];
         self.impulses.resize(nodes.len(), S::ORIGIN);
@@ -207,7 +212,7 @@ impl<S: Space> Accounts<S> {
         });
     }
 
-    /// Before velocities change.
+    /// Records all forces. It must be called before velocities change.
     pub(crate) fn note_forces(&mut self, team: &Team, grid: &Grid<S>) {
         let Self { forces, springs, impulses, .. } = self;
         let nodes = &grid.nodes[..grid.used];
@@ -222,17 +227,17 @@ impl<S: Space> Accounts<S> {
         });
     }
 
-    /// Kinetic energy of the points before velocities change (J), where their motion is damped.
+    /// Records the kinetic energy (J) of points before velocities change; only needed with damping.
     pub(crate) const fn note_brought(&mut self, kinetic: f64) {
         self.brought = kinetic;
     }
 
-    /// Before points of driven bodies are carried along.
+    /// Records the work of driven grains before their points are moved along.
     pub(crate) fn note_driven(&mut self, driven: &Driven<S>, time_step: f64) {
         self.held = work_of(driven, time_step);
     }
 
-    /// After velocities have changed.
+    /// Adds the sums over nodes after velocities have changed.
     pub(crate) fn add_nodes(
         &mut self,
         team: &Team,
@@ -273,7 +278,7 @@ impl<S: Space> Accounts<S> {
         sums.taken += tally.taken;
     }
 
-    /// After points have brought their new velocities to the nodes, where they do.
+    /// Adds the sums over contacts after points have transferred their new velocities to the nodes.
     pub(crate) fn add_contacts(&mut self, team: &Team, scheme: &Scheme, damping: f64, grid: &Grid<S>) {
         let Grid { nodes, projected, .. } = grid;
         let time_step = scheme.time_step;
@@ -298,14 +303,14 @@ impl<S: Space> Accounts<S> {
         sums.taken += taken;
     }
 
-    /// After stresses have changed.
+    /// Adds the energies of stresses after they have changed.
     pub(crate) fn add_flow(&mut self, flow: Flow) {
         self.sums.stressed = flow.taken;
         self.sums.plastic += flow.plastic;
         self.sums.viscous += flow.viscous;
     }
 
-    /// The budget, with the elastic energy of the material (J), under gravity (m/s²).
+    /// Returns the budget from the elastic energy of the material (J) and gravity (m/s²).
     pub(crate) fn budget(
         &self,
         setting: &Setting,

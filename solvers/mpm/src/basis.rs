@@ -1,10 +1,10 @@
-//! Basis functions of the grid, one axis at a time: products of these are the functions in two and three dimensions.
+//! Basis functions of the grid along one axis; functions in two and three dimensions are products of them.
 //!
-//! Lengths are in cells, so that node i stands at i.
+//! Lengths are in cells, so that the position of node i is i.
 
 use grainbench_lanes::Number;
 
-/// Compiles a call for the basis that was chosen.
+/// Compiles a call for the selected basis.
 macro_rules! with_basis {
     ($basis:expr, $B:ident => $call:expr) => {
         match $basis {
@@ -26,41 +26,41 @@ macro_rules! with_basis {
 
 pub(crate) use with_basis;
 
-/// Values of the functions that reach a point, or four, along one axis.
+/// Values of the basis functions at a point, or at four points, along one axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis<N> {
     /// Value at the point; for GIMP, mean over the point's extent.
     pub(crate) value: [N; 3],
     /// Derivative (per cell), or its mean.
     pub(crate) slope: [N; 3],
-    /// What a velocity field is multiplied by to get its affine part (per cell): w (i − x)/D with D = Σ w (i − x)²
-    /// (Jiang, Schroeder & Teran 2017). Linear in the field, exact for affine ones.
+    /// Weights that give the affine part of a velocity field (per cell): w (i − x)/D with D = Σ w (i − x)²
+    /// (Jiang, Schroeder & Teran 2017). Linear in the field, exact for affine fields.
     pub(crate) affine: [N; 3],
     /// D = Σ w (i − x)² (cells²).
     pub(crate) spread: N,
 }
 
-/// The whole number below; without the call that rounding takes on old processors.
+/// Rounds down to a whole number, without the library call that `floor` needs on old processors.
 #[inline(always)]
 fn floor(at: f64) -> i32 {
     let towards_zero = at as i32;
     towards_zero - i32::from(at < f64::from(towards_zero))
 }
 
-/// A family of functions.
+/// A family of basis functions.
 pub(crate) trait Basis: Copy + Send + 'static {
-    /// Nodes along an axis that reach a point.
+    /// Number of nodes along an axis that influence a point.
     const WIDTH: usize;
-    /// Whether the extent of a point matters.
+    /// True if the extent of a point matters.
     const EXTENDED: bool = false;
-    /// A point is reached from its first node on as long as it is this far beyond it, and up to one more.
+    /// Smallest distance of a point beyond its first node (cells); the largest distance is one more.
     const START: f64;
-    /// The first node that reaches `at`.
+    /// Returns the first node that influences the position `at`.
     #[inline(always)]
     fn first(at: f64) -> i32 {
         floor(at - Self::START)
     }
-    /// The functions at `at` beyond the first node, for a point that reaches `half` to both sides.
+    /// Computes the functions for a point at a distance `at` beyond its first node, with half extent `half`.
     fn axis<N: Number>(at: N, half: N) -> Axis<N>;
 }
 
@@ -92,7 +92,7 @@ impl Basis for Quadratic {
     fn axis<N: Number>(at: N, _half: N) -> Axis<N> {
         let [before, middle, after] = [at - 1.5, at - 1.0, at - 0.5];
         let value = [before * before * 0.5, at.like(0.75) - middle * middle, after * after * 0.5];
-        // D = 1/4 wherever the point is.
+        // D = 1/4 at every position.
         let affine = [value[0] * at * -4.0, value[1] * middle * -4.0, value[2] * (at - 2.0) * -4.0];
         Axis { value, slope: [before, middle * -2.0, after], affine, spread: at.like(0.25) }
     }

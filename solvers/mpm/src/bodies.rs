@@ -1,4 +1,4 @@
-//! From a scene to bodies: seeded, covered with tracers, pressed where the scene says so.
+//! Creation of bodies from a scene: seeding of material points and surface tracers.
 
 use crate::grid::Lattice;
 use crate::material::Material;
@@ -20,36 +20,36 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) owner: Owner,
-    /// Its points and where their nodes are.
+    /// Points of the body and the window of their nodes.
     pub(crate) part: Part,
-    /// Its tracers.
+    /// Tracers on the surface.
     pub(crate) tracers: Range<usize>,
-    /// The runs its tracers are cut into.
+    /// Tracer chunks of the surface.
     pub(crate) chunks: Range<usize>,
-    /// Place of its material in the scene.
+    /// Index of its material in the scene.
     pub(crate) material: u16,
     pub(crate) law: Material,
     pub(crate) density: f64,
     pub(crate) deformable: Deformable,
-    /// Box around its points and tracers (m).
+    /// Bounding box of its points and tracers (m).
     pub(crate) bounds: [Vector3<f64>; 2],
-    /// Rotation since the start (rad), as last looked at.
+    /// Rotation since the start at the last observation (rad).
     pub(crate) angle: f64,
-    /// Sides that are held, and where they are (m).
+    /// Fixed or symmetry boundaries of a box, and its corners (m).
     pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
-    /// The group of driven grains that it is in.
+    /// Index of its group of driven grains.
     pub(crate) driven: Option<u16>,
 }
 
 impl Body {
-    /// What a manufactured solution needs to know of it.
+    /// Returns the properties that a manufactured solution needs.
     pub(crate) fn medium(&self) -> Medium {
         let Self { density, deformable, .. } = self;
         Medium { density: *density, lame: deformable.lame(), shear_modulus: deformable.shear_modulus }
     }
 }
 
-/// What a body looks like before it is seeded.
+/// Description of a body before it is seeded.
 struct Blank {
     owner: Owner,
     material: u16,
@@ -60,8 +60,10 @@ struct Blank {
     held: Option<(Sides, [Vector3<f64>; 2])>,
 }
 
-/// Seeds all bodies of a scene with `per_cell` points per cell and axis, whose laws follow in steps of `time_step` (s). Materials
-/// without moduli are left out: the scene was checked before.
+/// Seeds all bodies of a scene with `per_cell` points per cell and axis.
+///
+/// The constitutive laws are integrated with steps of `time_step` (s). Materials without elastic moduli are skipped,
+/// because the scene has been checked before.
 pub(crate) fn seed<S: Space>(
     scene: &Scene,
     setting: &Setting,

@@ -1,4 +1,4 @@
-//! What bounds the bodies and moves as it is told: walls, held sides, driven bodies.
+//! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
 
 use crate::bodies::Body;
 use crate::driven::Driven;
@@ -10,7 +10,7 @@ use crate::walls::RigidPlane;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 
-/// Walls, held sides of bodies, driven bodies.
+/// Walls, fixed or symmetry boundaries of bodies, and driven bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Boundary<S: Space> {
     pub(crate) walls: Vec<RigidPlane<S>>,
@@ -27,7 +27,7 @@ impl<S: Space> Boundary<S> {
         }
     }
 
-    /// Puts walls where they are at `time` (s); while bodies settle, where they start, and still.
+    /// Moves walls to their positions at `time` (s). During relaxation they rest at their initial positions.
     pub(crate) fn move_walls(&mut self, time: f64, time_step: f64, settling: bool) {
         for wall in &mut self.walls {
             wall.force = S::ORIGIN;
@@ -40,7 +40,7 @@ impl<S: Space> Boundary<S> {
         }
     }
 
-    /// Projected momenta become velocities that held sides and driven bodies allow.
+    /// Converts projected momenta to velocities that satisfy the boundary conditions.
     pub(crate) fn hold_projected(&self, state: &State<S>, grid: &mut Grid<S>) {
         self.held.fold_projected::<S>(&state.bodies, &mut grid.projected);
         grid.divide_projected(state);

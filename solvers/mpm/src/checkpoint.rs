@@ -1,7 +1,7 @@
-//! What a simulation must remember between two steps, to go on to the same bits.
+//! State of a simulation between two steps, from which a restart continues with identical bits.
 //!
-//! Points in the order that they are in, since sums at nodes depend on it in their last bit; where tracers are and how
-//! far their springs are stretched. Nodes, windows, pairs and planes are found anew in each step.
+//! The order of points is stored, because the last bit of sums at nodes depends on it. Tracer positions and tangential
+//! spring displacements are stored too. Nodes, windows, pairs and planes are recomputed in each step.
 
 use crate::accounts::{Accounts, Sums};
 use crate::contact::friction::Friction;
@@ -19,25 +19,25 @@ use serde::{Deserialize, Serialize};
 #[serde(bound = "")]
 struct Kept<S: Space> {
     points: Points<S>,
-    /// Where tracers are (m), and their areas (m²).
+    /// Positions of tracers (m), and their areas (m²).
     tracers: Vec<(S::Vector, S::Vector)>,
     friction: Friction<S>,
-    /// Rotation of every body as last looked at (rad).
+    /// Rotation of every body at the last observation (rad).
     angles: Vec<f64>,
     looked: u64,
-    /// How many runs the points of every body made when they were last put in order.
+    /// Number of particle batches of every body when its points were last sorted.
     runs_in_order: Vec<usize>,
     step: u64,
     cost: Counts,
-    /// The energy budget, where it is asked for, and what contacts told of the last step.
+    /// Energy budget if requested, and energies of contacts in the last step.
     accounts: Option<(Sums, Tally)>,
-    /// The energy of a closed run, where it is watched.
+    /// Monitored energy of a closed run.
     watched: Option<Watched>,
     recorder: Recorder,
 }
 
 impl<S: Space> Simulation<S> {
-    /// The state after the last step, with the record so far.
+    /// Returns the state after the last step, with the record so far.
     pub(crate) fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let (state, tracers) = (&self.state, &self.contacts.tracers);
         let kept = Kept::<S> {
@@ -56,7 +56,7 @@ impl<S: Space> Simulation<S> {
         Checkpoint::keep(identity, self.step, &kept)
     }
 
-    /// Goes to a state that was kept; the record so far.
+    /// Restores a stored state and returns the record so far.
     pub(crate) fn recall(
         &mut self,
         identity: &RunIdentity,

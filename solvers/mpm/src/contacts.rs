@@ -1,4 +1,4 @@
-//! Contact, and the stages of a cycle at which bodies meet: springs as forces, conditions at nodes on velocities.
+//! Contact stages of a cycle: spring forces between surfaces, and conditions on node velocities.
 
 use crate::accounts::Accounts;
 use crate::basis::with_basis;
@@ -23,18 +23,18 @@ use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 use std::slice;
 
-/// Shares of the pairs that each of several threads has in the mean: some find much more than others.
+/// Subranges of pairs per thread: their cost varies strongly, so several are needed for load balance.
 const SHARES: usize = 8;
 
-/// What is asked of springs in a step beside their forces.
+/// Requested outputs of springs in a step.
 pub(crate) struct Asked<'a, S: Space> {
-    /// The energy budget, where it is kept.
+    /// Energy budget, if requested.
     pub(crate) accounts: Option<&'a mut Accounts<S>>,
-    /// Whether what touches is looked at.
+    /// True if contact points are recorded.
     pub(crate) touches: bool,
 }
 
-/// Surfaces, and what they do where they meet.
+/// Surfaces and their contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Contacts<S: Space> {
     pub(crate) tracers: Tracers<S>,
@@ -52,7 +52,7 @@ impl<S: Space> Contacts<S> {
         Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: Shared::new() }
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         self.tracers.len() * Tracers::<S>::BYTES
             + self.springs.friction.bytes()
@@ -60,19 +60,20 @@ impl<S: Space> Contacts<S> {
             + self.pairs.bytes()
     }
 
-    /// Whether there is anything to touch.
+    /// Returns true if any contact is possible.
     fn can_touch(state: &State<S>, boundary: &Boundary<S>) -> bool {
         state.bodies.len() > 1 || !boundary.walls.is_empty()
     }
 
-    /// Whether contact is a condition at nodes, and anything can touch.
+    /// Returns true if contact acts at nodes and any contact is possible.
     fn is_nodal(contact: Contact, state: &State<S>, boundary: &Boundary<S>) -> bool {
         let several = state.bodies.len() > 1 && contact != Contact::NoSlip;
         contact != Contact::Penalty && (several || !boundary.walls.is_empty())
     }
 
-    /// Surfaces that nothing can touch, or that contact does not ask for, cost nothing: they are needed for pressing
-    /// only.
+    /// Removes tracers if no contact is possible or the contact method does not need them.
+    ///
+    /// Before that, they are only needed for the initial pressure.
     pub(crate) fn drop_idle_surfaces(&mut self, contact: Contact, state: &mut State<S>, boundary: &Boundary<S>) {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;
@@ -83,7 +84,7 @@ impl<S: Space> Contacts<S> {
         }
     }
 
-    /// Finds the nodes at which bodies meet, for conditions at nodes.
+    /// Finds the shared nodes for nodal contact.
     pub(crate) fn find_shared(
         &mut self,
         scheme: &Scheme,
@@ -113,7 +114,7 @@ impl<S: Space> Contacts<S> {
             shared.find(lattice, bodies, fields, &pairs.found, walls, nodes);
         }
         cost.pair_tests += pairs.tests;
-        // Velocities of the step and, where the stress comes from projected ones, those too.
+        // Contact applies to the velocities of the step, and also to the projected velocities if the stress uses these.
         let times = if setting.stress_update == StressUpdate::Last { 1 } else { 2 };
         cost.contact_evaluations += times * (shared.members.len() + shared.meetings.len()) as u64;
         if setting.contact == Contact::NoSlip {
@@ -126,7 +127,7 @@ impl<S: Space> Contacts<S> {
         }
     }
 
-    /// Forces of springs between surfaces on the nodes.
+    /// Adds forces of springs between surfaces to the nodes.
     pub(crate) fn push(
         &mut self,
         scheme: &Scheme,
@@ -186,7 +187,7 @@ impl<S: Space> Contacts<S> {
         cost.contact_evaluations += springs.touched;
     }
 
-    /// Velocities of the step that contact at nodes allows.
+    /// Applies nodal contact to the velocities of the step.
     pub(crate) fn meet_stepped(
         &mut self,
         scheme: &Scheme,
@@ -211,7 +212,7 @@ impl<S: Space> Contacts<S> {
         }
     }
 
-    /// Projected velocities that contact at nodes allows. Of these the budget is not told.
+    /// Applies nodal contact to the projected velocities. The energy budget does not include them.
     pub(crate) fn meet_projected(
         &mut self,
         scheme: &Scheme,
@@ -230,7 +231,7 @@ impl<S: Space> Contacts<S> {
         nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut Projected(projected));
     }
 
-    /// Carries the tracers of all bodies with them; each thread those of some bodies.
+    /// Moves the tracers of all bodies; each thread handles a range of bodies.
     pub(crate) fn move_tracers(&mut self, scheme: &Scheme, state: &State<S>, grid: &Grid<S>, velocities: Velocities) {
         let Scheme { setting, time_step: elapsed, processor } = *scheme;
         let Grid { lattice, nodes, projected, most, .. } = grid;

@@ -1,7 +1,7 @@
-//! Grains that are moved as walls are: every node that their points reach has their velocity.
+//! Grains with prescribed motion, like walls: every node that their points influence has their velocity.
 //!
-//! Where each body has a field of its own, those are the nodes of the body; where all share one, what else is at such a
-//! node is carried along.
+//! If each body has its own field, these are the nodes of the body. If all bodies share one field, other bodies at
+//! these nodes are carried along.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -14,18 +14,18 @@ use grainbench_scene::space::Space;
 /// A group of driven bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Group<S: Space> {
-    /// Velocity now (m/s): at rest while bodies settle.
+    /// Current velocity (m/s); zero during relaxation.
     pub(crate) velocity: S::Vector,
     wanted: DrivenGrains,
-    /// Force of the others on it in the last step (N).
+    /// Force of other bodies on the group in the last step (N).
     pub(crate) force: S::Vector,
 }
 
-/// All groups, and which nodes they hold.
+/// All groups, and the nodes that they hold.
 #[derive(Clone, Debug)]
 pub(crate) struct Driven<S: Space> {
     pub(crate) groups: Vec<Group<S>>,
-    /// Slots that a group holds, with the group; found anew in each step.
+    /// Held node slots with their group; recomputed in each step.
     held: Vec<(usize, u16)>,
 }
 
@@ -36,7 +36,7 @@ impl<S: Space> Driven<S> {
         Self { groups: groups.collect(), held: Vec::new() }
     }
 
-    /// Begins a step at a time (s), in which groups move unless bodies settle.
+    /// Starts a step at a time (s). Groups move except during relaxation.
     pub(crate) fn begin(&mut self, settling: bool, time: f64, time_step: f64) {
         for group in &mut self.groups {
             let wanted = || S::restrict(group.wanted.velocity_over(time, time_step));
@@ -45,7 +45,7 @@ impl<S: Space> Driven<S> {
         }
     }
 
-    /// Finds the nodes that are held; with one field for all, those that points of driven bodies reach.
+    /// Finds the held nodes. With one field for all bodies, these are the nodes that points of driven bodies influence.
     pub(crate) fn find_held(
         &mut self,
         lattice: &Lattice,
@@ -74,7 +74,7 @@ impl<S: Space> Driven<S> {
         }
     }
 
-    /// Sets the velocities of held nodes; groups feel what that takes, as a force over the step.
+    /// Sets the velocities of held nodes and adds the reactions to the groups as forces over the step.
     pub(crate) fn hold(&mut self, nodes: &mut [Node<S>], time_step: f64) {
         for &(slot, group) in &self.held {
             let (node, group) = (&mut nodes[slot], &mut self.groups[usize::from(group)]);
@@ -85,7 +85,7 @@ impl<S: Space> Driven<S> {
         }
     }
 
-    /// The same of projected velocities.
+    /// Sets the projected velocities of held nodes.
     pub(crate) fn hold_projected(&self, projected: &mut [S::Vector], nodes: &[Node<S>]) {
         for &(slot, group) in &self.held {
             if nodes[slot].mass > 0.0 {
@@ -94,8 +94,8 @@ impl<S: Space> Driven<S> {
         }
     }
 
-    /// Points of driven bodies move as they do. Where others share their nodes, they had taken on a part of what those
-    /// gave.
+    /// Sets the velocity of all points of driven bodies. With shared nodes they had taken on a part of the motion of
+    /// other bodies.
     pub(crate) fn carry(&mut self, bodies: &[Body], points: &mut Points<S>, time_step: f64) {
         for body in bodies {
             let Some(group) = body.driven else { continue };

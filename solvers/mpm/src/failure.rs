@@ -1,21 +1,21 @@
-//! What to say when a run breaks.
+//! Description of a failed run.
 
 use grainbench_scene::record::Owner;
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
 
-/// A material point that broke.
+/// A material point with an invalid state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Failure {
-    /// Whose it is.
+    /// Grain or body of the point.
     pub(crate) owner: Owner,
-    /// Where it is (m).
+    /// Position (m).
     pub(crate) position: Vector3<f64>,
     pub(crate) cause: Cause,
 }
 
 impl Failure {
-    /// The same with when it was and what may help, of a run with a time step and a critical one (s).
+    /// Adds the time, the step and advice, for a run with a time step and a critical time step (s).
     pub(crate) fn told(self, step: u64, time_step: f64, critical: f64) -> Box<Broken> {
         let advice = match self.cause {
             Cause::GainedEnergy { .. } => {

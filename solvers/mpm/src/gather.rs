@@ -1,15 +1,15 @@
-//! From nodes to points (G2P): velocities and the way that they go.
+//! Transfer from nodes to points (G2P): velocities and displacements.
 //!
-//! Over the nodes i that reach a point p, with N_i their basis functions, v_i and Δv_i their velocities after the step
-//! and the change of these in it (m/s):
+//! The sums are over the nodes i that influence a point p. N_i are their basis functions, v_i their velocities after
+//! the step and Δv_i the changes of velocity in the step (m/s):
 //!
-//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i, where points keep their velocity (Brackbill & Ruppel 1986), or Σ N_i(x_p) v_i;
-//!   keep is what damping leaves ([`Damping`]);
-//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m); where points move with the velocities of the stress, later from those
-//!   ([`crate::gradients`]);
-//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), where points carry an affine part (1/s)
+//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i if points keep their velocity (Brackbill & Ruppel 1986), otherwise
+//!   Σ N_i(x_p) v_i; keep is the damping factor ([`Damping`]);
+//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m); if points move with the velocities of the stress update, this is
+//!   done later with those velocities ([`crate::gradients`]);
+//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), if points carry an affine part (1/s)
 //!   (Jiang et al. 2015);
-//! - and once more to the nodes, for MUSL, p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with these (Sulsky, Zhou &
+//! - for MUSL, back to the nodes: p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with the new values (Sulsky, Zhou &
 //!   Schreyer 1995).
 
 use crate::basis::{Basis, with_basis};
@@ -30,8 +30,10 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Points take velocities and the way that they go from the nodes; and, for MUSL, bring momentum with their new velocities to
-/// the nodes once more: in the same loop to nodes that no share before reaches, then to the others.
+/// Gathers velocities and displacements of points from the nodes.
+///
+/// For MUSL it also scatters the momentum of the new velocities to the nodes. The same loop handles nodes that no
+/// earlier partition influences; a second loop handles the remaining nodes.
 pub(crate) fn gather<S: Space>(
     scheme: &Scheme,
     Damping { keep, .. }: Damping,
@@ -78,8 +80,8 @@ pub(crate) fn gather<S: Space>(
     }
 }
 
-/// Points bring momentum to those nodes of a share that points of shares before reach too; and those of shares after it to all
-/// that they reach.
+/// Scatters momentum to the remaining nodes: from a partition's own points to nodes that earlier partitions also
+/// influence, and from points of later partitions to all nodes that they influence.
 fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>) {
     let Scheme { setting, processor, .. } = *scheme;
     let State { points, shares, team, .. } = state;
@@ -104,15 +106,17 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
     });
 }
 
-/// Velocity of a body's points from its nodes; with `MOVE`, their next position; and, with `PROJECT`, the momentum of the points
-/// with their new velocity back to the nodes (MUSL).
+/// Kernel of the gather: velocities of a body's points from its nodes.
+///
+/// With `MOVE` it also computes their next positions. With `PROJECT` it scatters momentum with the new velocities
+/// (MUSL).
 struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
     lattice: &'a Lattice,
     part: &'a Part,
     runs: &'a [Run],
     transfer: T,
     time_step: f64,
-    /// What damping leaves of a velocity in a step.
+    /// Damping factor of velocities in a step.
     keep: f64,
     points: &'a mut Lent<'b, S>,
     nodes: &'a [Node<S>],
@@ -206,7 +210,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
     }
 }
 
-/// Momentum of a body's points to its nodes.
+/// Kernel that scatters the momentum of a body's points to its nodes.
 struct Project<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
@@ -235,7 +239,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
     }
 }
 
-/// Adds momentum of four points with the velocities that they show to the nodes.
+/// Adds the momentum of four points, with the velocities `shown` at the nodes, to the nodes.
 #[inline(always)]
 fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
     shown: &Shown<Wide<L>>,
@@ -260,7 +264,7 @@ fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
     }
 }
 
-/// Adds momentum from four points, component by component, to the nodes of a row.
+/// Adds momentum of four points, by component, to the nodes of a row.
 #[inline(always)]
 fn give<S: Space, B: Basis, L: FourLanes>([x, y, z]: [[Wide<L>; 3]; 3], projected: &mut [S::Vector]) {
     let sums = if S::DIMENSION == 2 {

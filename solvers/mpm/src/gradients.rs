@@ -1,4 +1,4 @@
-//! Velocity gradients at points, and where these velocities take the points.
+//! Velocity gradients at points, and the positions to which these velocities move the points.
 
 use crate::basis::Basis;
 use crate::patch::{Copies, Patch};
@@ -8,15 +8,16 @@ use grainbench_lanes::{FourKernel, FourLanes, Wide};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// Velocity gradients (1/s) at the points of some runs of a body; with `MOVE` also x_p + Δt Σ N_i(x_p) v_i, where the points are
-/// next (m).
+/// Computes velocity gradients (1/s) at the points of some batches of a body.
+///
+/// With `MOVE` it also computes the next positions x_p + Δt Σ N_i(x_p) v_i (m).
 pub(crate) struct Gradients<'a, S: Space, B, N, V, const MOVE: bool> {
     ground: Ground<'a, S>,
     nodes: &'a [N],
     /// Velocity of a node (m/s).
     velocity: V,
     gradients: &'a mut [S::Matrix],
-    /// Next positions (m), counted as the positions of the ground are.
+    /// Next positions (m), with the same index offset as the positions of `ground`.
     next: &'a mut [S::Vector],
     /// Time step Δt (s).
     time_step: f64,
@@ -44,7 +45,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
         let Self { ground, nodes, velocity, gradients, next, time_step, .. } = self;
         let zero = Wide::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
-        // Never read unless copied to.
+        // Placeholder that is overwritten before it is read.
         let Some(&any) = nodes.first() else { return };
         let mut copies: Copies<N> = [any; _];
         for run in ground.runs {

@@ -1,8 +1,8 @@
-//! The grid: one lattice for all, of which every velocity field stores a window of its own.
+//! The grid: a common lattice, of which every velocity field stores its own window.
 //!
-//! A field is a body, or all bodies together where they move as one. Its window is the box of nodes that its points
-//! reach, so memory and time grow with the bodies and not with the space between them, and a node at which three
-//! bodies meet is three nodes, one in each window.
+//! A field belongs to a body, or to all bodies if they share one velocity field. Its window is the box of nodes that
+//! its points influence. Memory and time therefore grow with the bodies and not with the space between them. A node
+//! shared by three bodies is stored three times, once in each window.
 
 use crate::basis::{Axis, Basis};
 use grainbench_lanes::Number;
@@ -10,7 +10,7 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A node of a field; its numbers lie in this order, so that those of a point are added to it side by side.
+/// A node of a field. The order of its fields is fixed, so that the contributions of a point are added contiguously.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Node<S: Space> {
@@ -18,7 +18,7 @@ pub(crate) struct Node<S: Space> {
     pub(crate) mass: f64,
     /// Momentum (kg m/s) while points are scattered; velocity (m/s) after.
     pub(crate) velocity: S::Vector,
-    /// Force (N) while points are scattered; change of the velocity in the step (m/s) after.
+    /// Force (N) while points are scattered; change of velocity in the step (m/s) afterwards.
     pub(crate) change: S::Vector,
 }
 
@@ -26,16 +26,16 @@ impl<S: Space> Node<S> {
     pub(crate) const EMPTY: Self = Self { mass: 0.0, velocity: S::ORIGIN, change: S::ORIGIN };
 }
 
-/// Which nodes of the lattice a field stores, and where.
+/// Box of lattice nodes that a field stores.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Window {
     /// First node along each axis.
     pub(crate) low: [i32; 3],
     /// Nodes along each axis.
     pub(crate) size: [i32; 3],
-    /// Place of the first node among those of all fields.
+    /// Slot of the first node in the common node array.
     pub(crate) start: usize,
-    /// Axes along which the window holds the whole period, so that nodes come again.
+    /// Axes along which the window covers the whole period, so that node indices wrap around.
     pub(crate) whole: [bool; 3],
 }
 
@@ -44,26 +44,26 @@ impl Window {
         self.size[0] as usize * self.size[1] as usize * self.size[2] as usize
     }
 
-    /// Where its nodes are stored.
+    /// Returns the slots of its nodes.
     pub(crate) const fn slots(&self) -> Range<usize> {
         self.start..self.start + self.len()
     }
 
-    /// Place along an axis of a node, within the window.
+    /// Returns the index of a node along an axis within the window.
     #[inline(always)]
     pub(crate) fn along(&self, axis: usize, node: i32) -> usize {
         let place = node - self.low[axis];
         (if self.whole[axis] { place.rem_euclid(self.size[axis]) } else { place }) as usize
     }
 
-    /// Place of a node among those of all fields. The node must be in the window.
+    /// Returns the slot of a node in the common node array. The node must be in the window.
     #[inline(always)]
     pub(crate) fn slot(&self, node: [i32; 3]) -> usize {
         let [x, y, z] = [0, 1, 2].map(|axis| self.along(axis, node[axis]));
         self.start + (z * self.size[1] as usize + y) * self.size[0] as usize + x
     }
 
-    /// Whether all nodes of a stencil of `width` nodes from `base` are in the window.
+    /// Returns true if all nodes of a stencil of `width` nodes from `base` are in the window.
     #[inline(always)]
     pub(crate) fn holds(&self, dimensions: usize, base: [i32; 3], width: i32) -> bool {
         (0..dimensions).all(|axis| {
@@ -72,7 +72,7 @@ impl Window {
         })
     }
 
-    /// The node at a place within the window.
+    /// Returns the node with a given index within the window.
     pub(crate) fn node(&self, place: usize) -> [i32; 3] {
         let place = place as i32;
         let [nx, ny, _] = self.size;
@@ -85,43 +85,43 @@ impl Window {
 pub(crate) struct Lattice {
     /// Length of a cell along each axis (m).
     pub(crate) cell: [f64; 3],
-    /// Cells along each axis in a metre (1/m).
+    /// Inverse cell length along each axis (1/m).
     pub(crate) inverse: [f64; 3],
-    /// Place of node zero (m).
+    /// Position of node zero (m).
     pub(crate) origin: [f64; 3],
-    /// Cells in a period, along periodic axes.
+    /// Number of cells in a period, along periodic axes.
     pub(crate) period: [Option<i32>; 3],
 }
 
 impl Lattice {
-    /// A position in cells along an axis.
+    /// Returns a position along an axis in cells.
     #[inline(always)]
     pub(crate) fn cells<S: Space>(&self, position: S::Vector, axis: usize) -> f64 {
         (S::component(position, axis) - self.origin[axis]) * self.inverse[axis]
     }
 
-    /// The first node that reaches a position.
+    /// Returns the first node that influences a position.
     #[inline(always)]
     pub(crate) fn first<S: Space, B: Basis>(&self, position: S::Vector) -> [i32; 3] {
         [0, 1, 2].map(|axis| if axis < S::DIMENSION { B::first(self.cells::<S>(position, axis)) } else { 0 })
     }
 
-    /// Where a node is (m).
+    /// Returns the position of a node (m).
     pub(crate) fn place<S: Space>(&self, node: [i32; 3]) -> S::Vector {
         let at = |axis: usize| self.origin[axis] + f64::from(node[axis]) * self.cell[axis];
         S::restrict(Vector3::new(at(0), at(1), at(2)))
     }
 
-    /// Shortest cell length (m).
+    /// Returns the shortest cell length (m).
     pub(crate) fn shortest(&self, dimensions: usize) -> f64 {
         self.cell[..dimensions].iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// The window that reaches all of a box of positions (m), not yet placed.
+    /// Returns the window for a box of positions (m), without its start slot.
     pub(crate) fn window<S: Space>(&self, low: S::Vector, high: S::Vector) -> Window {
         let mut window = Window { size: [1; 3], ..Window::default() };
         for axis in 0..S::DIMENSION {
-            // The smoothed density of cells reaches one node further down than any basis.
+            // The smoothed density of cells needs one node more below than any basis.
             let first = (self.cells::<S>(low, axis) - 0.5).floor() as i32 - 1;
             let last = (self.cells::<S>(high, axis) - 0.5).floor() as i32 + 2;
             window.low[axis] = first;
@@ -133,7 +133,7 @@ impl Lattice {
         window
     }
 
-    /// The node without its periods.
+    /// Returns the node within the first period.
     pub(crate) fn wrapped(&self, mut node: [i32; 3]) -> [i32; 3] {
         for (node, period) in node.iter_mut().zip(self.period) {
             if let Some(period) = period {
@@ -144,32 +144,32 @@ impl Lattice {
     }
 }
 
-/// The nodes that reach a point, or four that reach the same.
+/// Nodes that influence a point, or four points with the same nodes, and their basis functions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stencil<N> {
     base: [i32; 3],
     pub(crate) axes: [Axis<N>; 3],
     inverse: [f64; 3],
-    /// From the first node to the point (cells).
+    /// Distance from the first node to the point (cells).
     at: [N; 3],
     cell: [f64; 3],
 }
 
-/// The functions of a row of nodes along x, but along x.
+/// Basis functions of a row of nodes along x, without the factors along x.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Across<N> {
     /// Product of the functions along y and z.
     pub(crate) value: N,
-    /// The same with the slope along y, and along z (1/m).
+    /// Same product with the slope along y, and along z (1/m).
     pub(crate) slope: [N; 2],
-    /// The same with what makes the affine part along y, and along z (1/m).
+    /// Same product with the affine weight along y, and along z (1/m).
     pub(crate) affine: [N; 2],
 }
 
-/// A node as a point sees it.
+/// A node of a stencil.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reached<S: Space> {
-    /// Place of the node.
+    /// Slot of the node.
     pub(crate) slot: usize,
     /// Basis function at the point.
     pub(crate) weight: f64,
@@ -178,14 +178,14 @@ pub(crate) struct Reached<S: Space> {
 }
 
 impl<S: Space> Reached<S> {
-    /// Which of the stencil's nodes along an axis it is.
+    /// Returns the index of the node within the stencil along an axis.
     pub(crate) const fn offset(&self, axis: usize) -> i32 {
         self.axes[axis] as i32
     }
 }
 
 impl<N: Number> Stencil<N> {
-    /// The nodes from `base` on around positions (m) of points that reach `half` (cells) to both sides along each axis.
+    /// Computes the stencil of points at positions (m) with first node `base` and half extents `half` (cells).
     #[inline(always)]
     pub(crate) fn around<S: Space, B: Basis>(
         lattice: &Lattice,
@@ -205,21 +205,21 @@ impl<N: Number> Stencil<N> {
         stencil
     }
 
-    /// The functions along x: values, and slopes per length (1/m).
+    /// Returns the functions along x: values, and slopes (1/m).
     #[inline(always)]
     pub(crate) fn along_x(&self) -> [[N; 3]; 2] {
         let [a, b, c] = self.axes[0].slope;
         [self.axes[0].value, [a * self.inverse[0], b * self.inverse[0], c * self.inverse[0]]]
     }
 
-    /// What makes the affine part along x, node by node (1/m).
+    /// Returns the affine weights along x, for each node (1/m).
     #[inline(always)]
     pub(crate) fn affine_along_x(&self) -> [N; 3] {
         let [a, b, c] = self.axes[0].affine;
         [a * self.inverse[0], b * self.inverse[0], c * self.inverse[0]]
     }
 
-    /// The functions across a row of nodes along x.
+    /// Returns the product of the functions along y and z for a row of nodes along x.
     #[inline(always)]
     pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across<N> {
         let (j, k) = (row % B::WIDTH, row / B::WIDTH);
@@ -235,13 +235,13 @@ impl<N: Number> Stencil<N> {
         Across { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
     }
 
-    /// From the point to the first node along an axis (m).
+    /// Returns the distance from the point to the first node along an axis (m).
     #[inline(always)]
     pub(crate) fn arm_of_first(&self, axis: usize) -> N {
         self.at[axis] * -self.cell[axis]
     }
 
-    /// Σ w r² along an axis, r from the point to the node (m²).
+    /// Returns Σ w r² along an axis, with r from the point to the node (m²).
     #[inline(always)]
     pub(crate) fn spread(&self, axis: usize) -> N {
         self.axes[axis].spread * (self.cell[axis] * self.cell[axis])
@@ -249,7 +249,7 @@ impl<N: Number> Stencil<N> {
 }
 
 impl Stencil<f64> {
-    /// The nodes around a position (m) of a point that reaches `half` (cells) to both sides along each axis.
+    /// Computes the stencil of a point at a position (m) with half extents `half` (cells).
     #[inline(always)]
     pub(crate) fn new<S: Space, B: Basis>(lattice: &Lattice, position: S::Vector, half: [f64; 3]) -> Self {
         Self::around::<S, B>(lattice, lattice.first::<S, B>(position), S::embed(position).into(), half)
@@ -290,7 +290,7 @@ impl Stencil<f64> {
         }
     }
 
-    /// Product over the axes of the functions' values, but along each axis in turn of `other`, per length (1/m).
+    /// Returns the product of function values over the axes, with `other` instead along each axis in turn (1/m).
     #[inline(always)]
     fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
         let [i, j, k] = node.axes;
@@ -304,7 +304,7 @@ impl Stencil<f64> {
         ))
     }
 
-    /// Gradient of the node's function at the point (1/m).
+    /// Returns the gradient of the node's basis function at the point (1/m).
     #[inline(always)]
     pub(crate) fn gradient<S: Space>(&self, node: &Reached<S>) -> S::Vector {
         self.along(node, |axis| &axis.slope)
@@ -317,8 +317,8 @@ mod tests {
     use crate::basis::{Gimp, Linear, Quadratic};
     use grainbench_scene::space::Solid;
 
-    /// Cells of 1, 2 and 3 m: a field that is linear in the place has its gradient everywhere, from the functions node by node
-    /// and from those by rows.
+    /// With cells of 1, 2 and 3 m, a field that is linear in position has the same gradient everywhere, both from node
+    /// by node and from row by row evaluation.
     fn keeps_a_gradient<B: Basis>() {
         let inverse = [1.0, 1.0 / 2.0, 1.0 / 3.0];
         let lattice = Lattice { cell: [1.0, 2.0, 3.0], inverse, origin: [0.3, -0.2, 0.1], period: [None; 3] };

@@ -1,5 +1,5 @@
-//! Checks of a run every so many steps: the time step against the critical one of the material as it is deformed now, and the
-//! energy of a closed run against that at its start. And once, at the first step: overlaps that bodies start with.
+//! Periodic checks of a run. The time step is compared with the critical time step of the deformed material, and the
+//! energy of a closed run with its initial energy. Initial overlaps of bodies are checked once, in the first step.
 
 use crate::bodies::Body;
 use crate::contact::Other;
@@ -13,57 +13,64 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Steps from one check to the next. A check takes about as long as two steps.
+/// Steps between two checks. A check takes about as long as two steps.
 const INTERVAL: u64 = 256;
 
-/// Energy that a closed run may gain, over the largest kinetic and elastic energy that it has had. What is known of the settings
-/// that are checked: half a per cent where two discs meet, up to an eighth where three do (contact at nodes that surfaces have
-/// met), and half a step between velocities and positions. An instability passes any bound within tens of steps.
+/// Allowed energy gain of a closed run, relative to its largest kinetic plus elastic energy so far.
+///
+/// Known gains of the checked settings are half a per cent for two colliding discs. They are up to an eighth for three
+/// discs (nodal contact of penetrating surfaces), plus an offset of half a step between velocities and positions. An
+/// instability exceeds any bound within tens of steps.
 const ALLOWED_GAIN: f64 = 0.25;
 
-/// Strain of the surface layer by the springs of an overlap at the start up to which a run begins: a quarter, at which the stress
-/// of neo-Hookean material is a third above the linear one and the shock that leaves the surface moves it by a quarter of the
-/// speed of sound.
+/// Largest strain of the surface layer, caused by springs of an initial overlap, with which a run starts.
+///
+/// At a strain of a quarter the stress of neo-Hookean material exceeds the linear stress by a third. The shock that
+/// leaves the surface then moves it at a quarter of the speed of sound.
 const LARGEST_STRAIN: f64 = 0.25;
 
-/// Energy of a closed run (J; J/m of discs).
+/// Energy of a closed run (J; J/m for discs).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Watched {
-    /// Kinetic, elastic and gravitational energy at the start; with that of springs once they are known.
+    /// Initial kinetic, elastic and gravitational energy; without the springs, whose energy is `springs`.
     start: f64,
-    /// Energy in springs at the start, once it is known: after the first step.
+    /// Initial energy of springs; known after the first step.
     springs: Option<f64>,
     /// Largest kinetic and elastic energy so far.
     largest: f64,
 }
 
-/// Returns true if nothing but gravity does work on the bodies of a scene: no wall and no grain is driven, no force manufactured.
+/// Returns true if only gravity does work on the bodies: no wall or grain is driven, and there is no manufactured
+/// force.
 fn is_closed(scene: &Scene) -> bool {
     let rests = scene.walls.iter().all(|wall| !wall.motion.is_moving());
     rests && scene.driven.is_empty() && scene.start.manufactured.is_none()
 }
 
-/// Returns true if contact makes no energy by its design. The methods of the papers do: nodes are stopped before surfaces meet,
-/// and released with more than they had (up to 1.8 times the energy of a collision).
+/// Returns true if the contact method creates no energy by design.
+///
+/// The methods of the original papers do create energy: nodes are stopped before surfaces are in contact, and released
+/// with more energy than before (up to 1.8 times the energy of a collision).
 fn keeps_energy(contact: Contact) -> bool {
     !matches!(contact, Contact::Kinematic | Contact::Traction)
 }
 
-/// Time that the fastest wave takes through a cell (s) at a point with a modulus ρ₀c² (Pa), and over the volume at the start.
+/// Returns the time (s) that the fastest wave takes to cross a cell at a point, from ρ₀c² (Pa) and the ratio of volume
+/// to initial volume.
 fn crossing_time(body: &Body, modulus: f64, volume_ratio: f64, cell: f64) -> f64 {
     let speed = (modulus / body.density).sqrt();
-    // As `Scene::crossing_time`, with the density now.
+    // Same formula as `Scene::crossing_time`, with the current density.
     let damping = body.deformable.longitudinal_viscosity() * volume_ratio / (body.density * speed * cell);
     cell / speed * ((1.0 + damping * damping).sqrt() - damping)
 }
 
 impl<S: Space> Simulation<S> {
-    /// A failure at the step now, beside a critical time step (s).
+    /// Returns the error of a failure at the current step, with a critical time step (s).
     fn told(&self, failure: Failure, critical: f64) -> Box<Broken> {
         failure.told(self.step, self.scheme.time_step, critical)
     }
 
-    /// Begins to watch the energy, if nothing else gives any.
+    /// Starts to monitor the energy if the run is closed and its contact method creates no energy.
     pub(crate) fn watch_energy(&mut self) {
         if is_closed(&self.scene) && keeps_energy(self.scheme.setting.contact) {
             let [inner, height] = self.energies();
@@ -71,15 +78,15 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Returns true if the next step has to find what touches.
+    /// Returns true if the next step must record contact points.
     pub(crate) fn wants_touches(&self) -> bool {
         self.is_fresh || self.watched.is_some_and(|watched| watched.springs.is_none())
     }
 
-    /// Checks a step that was taken.
+    /// Checks the last step.
     ///
     /// # Errors
-    /// When bodies started in each other, the step is above the critical one, or energy came from nowhere.
+    /// When bodies overlap too much at the start, the step exceeds the critical time step, or the energy has grown.
     pub(crate) fn check(&mut self) -> Result<(), Box<Broken>> {
         let is_first = std::mem::take(&mut self.is_fresh);
         if is_first {
@@ -98,8 +105,9 @@ impl<S: Space> Simulation<S> {
         if self.settling { Ok(()) } else { self.check_energy() }
     }
 
-    /// Refuses overlaps whose springs strain the surface layer too much: by p/M with the pressure p = κ δ of the springs and the
-    /// softer modulus M.
+    /// Rejects initial overlaps whose springs strain the surface layer too much.
+    ///
+    /// The strain is p/M, with p = κ δ the pressure of the springs and M the modulus of the softer body.
     fn check_overlaps(&self) -> Result<(), Box<Broken>> {
         let Self { scheme, state, contacts, grid, .. } = self;
         if scheme.setting.contact != Contact::Penalty {
@@ -130,7 +138,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Compares the time step with the critical one now; of runs that were within it at the start.
+    /// Compares the time step with the current critical time step, in runs that satisfied it at the start.
     fn check_step(&self) -> Result<(), Box<Broken>> {
         let Self { scheme, state, grid, critical, .. } = self;
         if scheme.time_step > *critical {
@@ -157,7 +165,7 @@ impl<S: Space> Simulation<S> {
         Err(self.told(state.failure(place, point, cause), now))
     }
 
-    /// Compares the energy with that at the start.
+    /// Compares the energy with its initial value.
     fn check_energy(&mut self) -> Result<(), Box<Broken>> {
         let Some(Watched { start, springs, largest }) = self.watched else { return Ok(()) };
         let [inner, height] = self.energies();
@@ -165,7 +173,7 @@ impl<S: Space> Simulation<S> {
         self.watched = Some(Watched { start, springs, largest });
         let gained = inner + height - start - brought;
         let allowed = ALLOWED_GAIN * f64::max(largest - gained.max(0.0), brought);
-        // A state that is no number is told where it arises.
+        // NaN is reported where it arises.
         if gained <= allowed.max(self.rounding()) || gained.is_nan() {
             return Ok(());
         }
@@ -179,7 +187,7 @@ impl<S: Space> Simulation<S> {
         Err(self.told(self.state.failure(place, point, cause), self.critical))
     }
 
-    /// Kinetic and elastic energy, and that of height (J).
+    /// Returns kinetic plus elastic energy, and gravitational potential energy (J).
     fn energies(&self) -> [f64; 2] {
         let Self { scheme, state, grid, .. } = self;
         let elastic: f64 = state.bodies.iter().map(|body| self.elastic_energy(body)).sum();
@@ -187,7 +195,7 @@ impl<S: Space> Simulation<S> {
         [kinetic + elastic, self.height_energy()]
     }
 
-    /// Energy of height (J) in the field of gravity.
+    /// Returns the gravitational potential energy (J).
     fn height_energy(&self) -> f64 {
         let (points, gravity) = (&self.state.points, self.scene.gravity);
         if gravity == Vector3::zeros() {
@@ -196,7 +204,7 @@ impl<S: Space> Simulation<S> {
         (0..points.len()).map(|at| -points.mass[at] * gravity.dot(&S::embed(points.position[at]))).sum()
     }
 
-    /// Energy (J) that is no more than rounding: of the energies of height and at the start, in every step.
+    /// Returns the rounding error of the energy (J), from potential and initial energy and the number of steps.
     fn rounding(&self) -> f64 {
         let start = self.watched.map_or(0.0, |watched| watched.start.abs());
         (start + self.height_energy().abs()) * f64::EPSILON * self.step as f64

@@ -1,5 +1,5 @@
-//! Sides of boxes that are held: the body goes on as its mirror image beyond the side, so that the side stays where it
-//! is to the order of the basis. A side stands on the nodes nearest to it.
+//! Fixed or symmetry boundaries of boxes: the body continues as its mirror image beyond the side, so that the side
+//! keeps its position to the order of the basis. A side coincides with the nearest nodes.
 
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Window};
@@ -7,20 +7,20 @@ use grainbench_scene::body::Hold;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// One held side.
+/// A fixed or symmetry boundary.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: usize,
     axis: usize,
     /// Node on the side along the axis.
     node: i32,
-    /// +1 when the body lies above it.
+    /// +1 if the body is above the side along the axis, otherwise −1.
     inward: i32,
-    /// Whether tangential motion is held too.
+    /// True if tangential motion is fixed too.
     fixed: bool,
 }
 
-/// All held sides.
+/// All fixed or symmetry boundaries.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Held {
     sides: Vec<Side>,
@@ -44,10 +44,11 @@ impl Held {
         Self { sides }
     }
 
-    /// Adds to the nodes inside what the mirror image brings, before velocities are known.
+    /// Adds the contribution of the mirror image to the inner nodes, before velocities are computed.
     ///
-    /// The mirror image of gravity (m/s²) points the other way: on the mass m that comes from beyond a side acts a force of m
-    /// times the image of gravity. Where nodes are accelerated by gravity, with all their mass, the difference is added here.
+    /// The mirror image of gravity (m/s²) has the opposite direction along the normal. Mass m that is folded back from
+    /// beyond a side must feel m times mirrored gravity. Nodes are later accelerated by gravity with all of their mass,
+    /// so the difference is added here.
     pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>], gravity: S::Vector) {
         for side in &self.sides {
             let pull = side.mirrored::<S>(gravity) - gravity;
@@ -62,7 +63,7 @@ impl Held {
         }
     }
 
-    /// The same for projected momenta.
+    /// Adds the contribution of the mirror image to projected momenta.
     pub(crate) fn fold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
         for side in &self.sides {
             side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
@@ -72,7 +73,7 @@ impl Held {
         }
     }
 
-    /// Velocities on held sides and beyond them.
+    /// Sets the velocities on the sides and beyond them.
     pub(crate) fn hold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
         for side in &self.sides {
             let window = &bodies[side.body].part.window;
@@ -87,7 +88,7 @@ impl Held {
         }
     }
 
-    /// The same for projected velocities.
+    /// Sets the projected velocities on the sides and beyond them.
     pub(crate) fn hold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
         for side in &self.sides {
             let window = &bodies[side.body].part.window;
@@ -97,13 +98,13 @@ impl Held {
     }
 }
 
-/// A node beyond the side carries mass when its image does, so that points which reach it see its velocity.
+/// Returns the mass of a node beyond the side: if it has mass, the mass of its image, so that points see its velocity.
 fn to_mass(inside: f64, beyond: f64) -> f64 {
     if beyond > 0.0 { inside } else { 0.0 }
 }
 
 impl Side {
-    /// A vector in the mirror; without its tangential parts reversed where only the normal is held.
+    /// Returns the mirror image of a vector. On a fixed side the tangential components are reversed too.
     fn mirrored<S: Space>(&self, vector: S::Vector) -> S::Vector {
         if self.fixed {
             return -vector;
@@ -113,7 +114,7 @@ impl Side {
         S::restrict(mirrored)
     }
 
-    /// What is left of a velocity on the side.
+    /// Returns the part of a velocity on the side that is not constrained.
     fn kept<S: Space>(&self, vector: S::Vector) -> S::Vector {
         if self.fixed {
             return S::ORIGIN;
@@ -128,11 +129,11 @@ impl Side {
         self.each_between(window, on, on + 1, visit);
     }
 
-    /// Visits the nodes beyond the side with the nodes they mirror, where both are in the window.
+    /// Visits the nodes beyond the side with their mirror images, if both are in the window.
     fn each_beyond(&self, window: &Window, mut visit: impl FnMut(usize, usize)) {
         let (on, size) = (self.node - window.low[self.axis], window.size[self.axis]);
         let (from, to) = if self.inward > 0 { (0, on) } else { (on + 1, size) };
-        // What is as far within the side must be in the window too.
+        // The mirror image must be in the window too.
         let (from, to) = (from.max(2 * on + 1 - size), to.min(2 * on + 1));
         self.each_between(window, from, to, |beyond| {
             let mut image = window.node(beyond - window.start);
@@ -141,7 +142,7 @@ impl Side {
         });
     }
 
-    /// Visits the nodes of a window that lie from one place along the axis of the side to before another, in their order.
+    /// Visits the nodes of a window in order, for indices `from..to` along the axis of the side.
     fn each_between(&self, window: &Window, from: i32, to: i32, mut visit: impl FnMut(usize)) {
         let [mut low, mut high] = [[0; 3], window.size];
         (low[self.axis], high[self.axis]) = (from.max(0), to.min(window.size[self.axis]));
@@ -163,11 +164,11 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// A box of 2 kg/m² on cells of 1 m whose side stands on nodes, moving at (3, 5) m/s before it is held. With points at
-    /// quarters of cells the quadratic function of a node weighs what is N(¼) = 11/16, N(¾) = 9/32 and N(1¼) = 1/32 away,
-    /// so that an inner node has the 2 kg of its cell. The node beside the side lacks ½ · 1/32 of it, which the node
-    /// beyond has: folded back it has all, with the momentum of the mirror image: (1 − 1/32) of 2 · 3 kg m/s along x, and
-    /// along y all of 2 · 5 where the side slides, (1 − 1/32) where it is fixed.
+    /// A box of 2 kg/m² on cells of 1 m moves at (3, 5) m/s before its side on nodes is constrained. Points are at
+    /// quarters of cells, where the quadratic function of a node is N(¼) = 11/16, N(¾) = 9/32 and N(1¼) = 1/32. An
+    /// inner node has the 2 kg of its cell. The node next to the side lacks ½ · 1/32 of it, which the node beyond the
+    /// side has. After folding, it has all of the mass and the momentum of the mirror image: (1 − 1/32) of 2 · 3 kg m/s
+    /// along x. Along y it has 2 · 5 on a sliding side and (1 − 1/32) of it on a fixed side.
     #[test]
     fn a_held_side_gives_nodes_the_mass_of_the_mirror_image() {
         let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
@@ -197,8 +198,8 @@ mod tests {
         }
     }
 
-    /// Momenta that points bring to the nodes once more are folded before they are divided by the mass, which has been: they make
-    /// the velocities that momenta and masses folded together make.
+    /// Projected momenta are folded before the division by mass, which has been folded already. The velocities equal
+    /// those from folded momenta and masses.
     #[test]
     fn a_held_side_folds_momenta_before_they_are_divided() {
         let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
@@ -228,8 +229,9 @@ mod tests {
         }
     }
 
-    /// The mirror image of gravity points the other way: on the node beside a side, of the 2 kg of its cell 1/32 of half a cell
-    /// from beyond, acts the weight of the others less that of these. Along a side that slides all of it acts.
+    /// The mirror image of gravity has the opposite direction. The node next to a side has 2 kg, of which 1/32 of half
+    /// a cell is folded back from beyond. The force is the weight of the rest less the weight of this part. Along a
+    /// sliding side the full weight acts.
     #[test]
     fn a_held_side_mirrors_gravity() {
         let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };

@@ -1,9 +1,9 @@
-//! What the loops over tracers, nodes and points tell the energy budget, where a run asks for it.
+//! Outputs of the loops over tracers, nodes and points for the energy budget, if a run requests it.
 
 use crate::off::Off;
 use serde::{Deserialize, Serialize};
 
-/// What contacts tell of a step.
+/// Energies of contacts in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Tally {
     /// Energy in springs (J).
@@ -12,14 +12,14 @@ pub(crate) struct Tally {
     pub(crate) friction: f64,
     /// Work of walls (J).
     pub(crate) walls: f64,
-    /// What springs take from the motion of surfaces, by half of their velocities before the step and all of the walls'
-    /// (J).
+    /// Energy that springs take from the motion of surfaces (J). It includes the half from velocities before the step,
+    /// and the whole part of walls.
     pub(crate) taken: f64,
 }
 
-/// Where contacts tell what they do to energy: the budget of a run that asks for it, or its absence.
+/// Receiver of contact energies: the budget of a run that requests it, or its absence.
 pub(crate) trait Ledger {
-    /// What they tell of the step, if anybody asks.
+    /// Returns the energies of contacts in the step, if requested.
     fn tally(&mut self) -> Option<&mut Tally>;
 }
 
@@ -37,13 +37,13 @@ impl Ledger for &mut Tally {
     }
 }
 
-/// What stresses tell of a step.
+/// Energies of stresses in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flow {
-    /// Σ V σ:Δε of the stresses after the step (J).
+    /// Σ V σ:Δε with the stresses after the step (J).
     pub(crate) taken: f64,
     /// Work of plastic flow (J).
     pub(crate) plastic: f64,
-    /// Work against viscosity: of the mean of the viscous stresses before and after the step (J).
+    /// Work against viscosity, from the mean of the viscous stresses before and after the step (J).
     pub(crate) viscous: f64,
 }

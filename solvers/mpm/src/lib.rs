@@ -1,22 +1,21 @@
 //! The material point method: deformable grains in frictional contact, in two dimensions (plane strain) and three.
 //!
-//! Explicit, with lumped mass, f64. A body is a cloud of material points that carry mass, velocity, deformation and
-//! stress, and a surface of massless tracers. In each step
+//! The method is explicit, with lumped mass, in f64. A body is a cloud of material points that carry mass, velocity,
+//! deformation and stress, with a surface of massless tracers. Each step has four stages:
 //!
-//! 1. points bring mass, momentum and internal force to the nodes of their body's window of the grid;
-//! 2. contact acts, as springs where surfaces have met or as a condition on the velocities of nodes;
-//! 3. nodes take the step, and points take velocity and way from them;
-//! 4. velocity gradients give deformation and stress (MUSL: from velocities that the points bring to the nodes anew).
+//! 1. points scatter mass, momentum and internal force to the nodes of their body's window of the grid;
+//! 2. contact acts, as springs between penetrating surfaces or as a condition on node velocities;
+//! 3. nodes are integrated, and points gather velocity and displacement from them;
+//! 4. velocity gradients give deformation and stress (MUSL: from velocities that points scatter to the nodes again).
 //!
-//! Each part of a simulation has its own type, and each stage of the cycle (`simulation`) takes the parts that it
-//! needs: bodies and points (`state`), the grid (`grid`, `nodes`), what moves as it is told (`boundary`), surfaces and
-//! contact (`contacts`), the energy budget (`accounts`). The sums over points and nodes stand in `scatter` and
-//! `gather`.
+//! Each part of a simulation has its own type, and each stage of the cycle (`simulation`) uses the parts that it needs:
+//! bodies and points (`state`), the grid (`grid`, `nodes`), prescribed motion (`boundary`), surfaces and contact
+//! (`contacts`) and the energy budget (`accounts`). The sums over points and nodes are in `scatter` and `gather`.
 //!
-//! Type parameters stand for space, basis, transfer and material, each only in the loops over points that need it, and
-//! an enum chooses between the stages; so kernels add and do not multiply. What a scene does not call for is absent by
-//! the same means: friction of springs, plastic strain and the energy budget are [`off::Off`] in loops that do without,
-//! and no list is kept for them, nor for the affine part of velocities that no transfer carries.
+//! Type parameters select space, basis, transfer and material, each only in the loops over points that need it. An enum
+//! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Absent
+//! effects are removed by the same means. Friction of springs, plastic strain and the energy budget are [`off::Off`] in
+//! loops without them and need no memory; the affine part of velocities is stored only if the transfer uses it.
 
 mod accounts;
 mod basis;

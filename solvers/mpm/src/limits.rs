@@ -1,4 +1,4 @@
-//! What the method cannot express, each with its reason.
+//! Scenes that the method does not support, each with its reason.
 
 use grainbench_scene::body::Block;
 use grainbench_scene::file::GrainShape;
@@ -6,7 +6,7 @@ use grainbench_scene::motion::Moment;
 use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Scene, WallShape};
 
-/// Why the scene cannot be run, if it cannot.
+/// Returns the reason why the method does not support a scene, or `None`.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("it has {what}, which was written for `dem` alone"));
@@ -66,14 +66,14 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     None
 }
 
-/// A body that is longer than the period along some axis, with that axis.
+/// Returns a body that is longer than the period along an axis, with that axis.
 fn longer_than_period(scene: &Scene) -> Option<(&str, &'static str)> {
     let domain = scene.domain?;
     let names = ["x", "y", "z"];
     let longer = |body: &Block, axis: usize| {
         let (low, high) = body.shape.corners();
         let period = domain.high[axis] - domain.low[axis];
-        // The slack is for sums that are rounded.
+        // The tolerance covers rounding of sums.
         domain.periodic[axis] && high[axis] - low[axis] > period * (1.0 + 1e-9)
     };
     let first = |body: &Block| (0..scene.dimension.count()).find(|&axis| longer(body, axis));

@@ -1,4 +1,4 @@
-//! The grid with what its nodes hold.
+//! The grid with the values of its nodes.
 
 use crate::bodies::Body;
 use crate::damping::Damping;
@@ -10,15 +10,15 @@ use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// Nodes beyond which a grid is taken for a mistake.
+/// Maximum number of nodes; a larger grid is treated as an error.
 const MOST_NODES: f64 = 5e7;
 
-/// Which velocities of the nodes a stage means.
+/// Node velocities of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Velocities {
-    /// Those of the step.
+    /// Velocities after the step.
     Stepped,
-    /// Those that the points brought to the nodes once more.
+    /// Velocities scattered from points to the nodes again.
     Projected,
 }
 
@@ -27,15 +27,15 @@ pub(crate) enum Velocities {
 pub(crate) struct Grid<S: Space> {
     pub(crate) lattice: Lattice,
     pub(crate) nodes: Vec<Node<S>>,
-    /// Momenta (kg m/s), then velocities (m/s), that points bring to the nodes once more.
+    /// Momenta (kg m/s), later velocities (m/s), that points scatter to the nodes again.
     pub(crate) projected: Vec<S::Vector>,
-    /// What each node counts for at most at a surface.
+    /// Weight limit of each node at a surface.
     pub(crate) most: Vec<f64>,
-    /// Nodes in use.
+    /// Number of nodes in use.
     pub(crate) used: usize,
 }
 
-/// What a share has of the grid: nodes that follow each other.
+/// Consecutive nodes of a thread partition.
 pub(crate) struct Own<'a, S: Space> {
     pub(crate) nodes: &'a mut [Node<S>],
     pub(crate) projected: &'a mut [S::Vector],
@@ -43,7 +43,7 @@ pub(crate) struct Own<'a, S: Space> {
 }
 
 impl<S: Space> Grid<S> {
-    /// What each share has of it.
+    /// Splits the nodes by thread partitions.
     pub(crate) fn parts(&mut self, shares: &[Share<S>]) -> impl Iterator<Item = Own<'_, S>> {
         let Self { nodes, projected, most, .. } = self;
         let (mut nodes, mut projected, mut most) = (&mut nodes[..], &mut projected[..], &mut most[..]);
@@ -61,15 +61,15 @@ impl<S: Space> Grid<S> {
         Self { lattice, nodes: Vec::new(), projected: Vec::new(), most: Vec::new(), used: 0 }
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) const fn bytes(&self) -> usize {
         self.used * (size_of::<Node<S>>() + size_of::<S::Vector>() + size_of::<f64>())
     }
 
-    /// Gives every field its window.
+    /// Assigns a window to every field.
     ///
     /// # Errors
-    /// With a body that reaches farther than a grid can, and why.
+    /// A body that extends farther than a grid can, with the cause.
     pub(crate) fn place_windows(&mut self, bodies: &mut [Body], one_field: bool) -> Result<(), (usize, Cause)> {
         let (mut start, mut count) = (0, 0.0);
         let mut all: Option<[Vector3<f64>; 2]> = None;
@@ -103,8 +103,8 @@ impl<S: Space> Grid<S> {
         Ok(())
     }
 
-    /// Momenta and forces of the nodes become velocities after the step, v ← keep v + gain (f/m + g), beside those
-    /// before it; how many nodes have mass. See [`Damping`] for keep and gain.
+    /// Computes node velocities after the step, v ← keep v + gain (f/m + g), from momenta and forces, and keeps the
+    /// velocities before it. Returns the number of nodes with mass. See [`Damping`] for keep and gain.
     pub(crate) fn step(&mut self, state: &State<S>, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
         let step = |_, own: Own<'_, S>| {
             let mut stepped = 0;
@@ -124,21 +124,21 @@ impl<S: Space> Grid<S> {
         state.team.fold(self.parts(&state.shares), step, 0, |sum, stepped| sum + stepped)
     }
 
-    /// What changed in the step but for damping, once velocities are final.
+    /// Computes velocity changes in the step, without damping, after velocities are final.
     pub(crate) fn find_changes(&mut self, state: &State<S>, Damping { keep, .. }: Damping) {
         state.team.each(self.parts(&state.shares), |_, own| {
             own.nodes.iter_mut().for_each(|node| node.change = node.velocity - node.change * keep);
         });
     }
 
-    /// For stresses that come first: momenta of the nodes as the points bring them.
+    /// Copies the momenta scattered from points, for the stress update first.
     pub(crate) fn project(&mut self) {
         for (projected, node) in self.projected[..self.used].iter_mut().zip(&self.nodes) {
             *projected = node.velocity;
         }
     }
 
-    /// Projected momenta become velocities.
+    /// Divides projected momenta by mass.
     pub(crate) fn divide_projected(&mut self, state: &State<S>) {
         state.team.each(self.parts(&state.shares), |_, own| {
             for (projected, node) in own.projected.iter_mut().zip(own.nodes) {

@@ -1,4 +1,4 @@
-//! What is seen of a simulation at a step.
+//! Observation of a simulation at a step.
 
 use crate::bodies::Body;
 use crate::contact::{Other, Touch};
@@ -13,26 +13,26 @@ use grainbench_scene::scene::{BodyName, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
-/// A body as a whole.
+/// Motion and moments of a whole body.
 struct Whole {
     mass: f64,
     position: Vector3<f64>,
     velocity: Vector3<f64>,
     /// Angular momentum about the centre of mass (kg m²/s).
     angular_momentum: Vector3<f64>,
-    /// Spin ω of the rigid motion with that angular momentum, I ω = L (rad/s).
+    /// Angular velocity ω of the rigid motion with that angular momentum, I ω = L (rad/s).
     spin: Vector3<f64>,
-    /// Moment of inertia about the centre of mass, mean over the axes that it can turn about (kg m²).
+    /// Moment of inertia about the centre of mass, averaged over the possible axes of rotation (kg m²).
     inertia: f64,
     /// Kinetic energy of all points (J).
     kinetic: f64,
     angle: f64,
-    /// Mean over the mass.
+    /// Mass-weighted mean.
     plastic_strain: f64,
 }
 
 impl<S: Space> Simulation<S> {
-    /// The simulation now; with `points`, every material point.
+    /// Returns the current observation; with `points`, it includes every material point.
     pub(crate) fn look(&mut self, with_points: bool) -> Look {
         let wholes: Vec<Whole> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
@@ -105,7 +105,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Sums of the forces (N) and torques (N m) of contacts on each body.
+    /// Returns the resultant contact force (N) and torque (N m) on each body.
     fn forces(&self, wholes: &[Whole]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let mut sums = vec![(Vector3::zeros(), Vector3::zeros()); wholes.len()];
         for touch in &self.contacts.touches {
@@ -124,14 +124,14 @@ impl<S: Space> Simulation<S> {
         sums
     }
 
-    /// The energy budget, with the elastic energy of the material (J), where it is asked for.
+    /// Returns the energy budget, if requested, from the elastic energy of the material (J).
     fn budget(&self, elastic: f64) -> Option<Budget> {
         let Self { scene, scheme, state, grid, accounts, .. } = self;
         let accounts = accounts.as_ref()?;
         Some(accounts.budget(&scheme.setting, scene.gravity, state, &grid.lattice, elastic))
     }
 
-    /// Along periodic axes, the place within the domain.
+    /// Wraps a position into the domain along periodic axes.
     fn inside(&self, mut position: Vector3<f64>) -> Vector3<f64> {
         if let Some(domain) = self.scene.domain {
             for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
@@ -167,8 +167,8 @@ impl<S: Space> Simulation<S> {
             (inertia.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * angular), inertia.trace() / 3.0)
         };
         let angle = if S::DIMENSION == 2 {
-            // Of the turns that the deformation may have made, the one nearest to that of the last look and the spin
-            // since.
+            // The rotation angle is known up to full turns. The turn is chosen that is nearest to the previous angle
+            // plus spin times the elapsed time.
             let expected =
                 self.state.bodies[body].angle + spin.z * self.scheme.time_step * (self.step - self.looked) as f64;
             nearest_turn(rotation_of(mean), expected)
@@ -183,7 +183,7 @@ impl<S: Space> Simulation<S> {
         Whole { mass, position, velocity, angular_momentum, spin, inertia, kinetic, angle, plastic_strain }
     }
 
-    /// Velocity of a point at the time of the look, half a step on.
+    /// Returns the velocity of a point at the time of the observation, half a step later than its stored velocity.
     fn velocity(&self, at: usize) -> Vector3<f64> {
         let now = self.state.points.velocity[at];
         S::embed(now + (now - self.state.before[at]) * 0.5)
@@ -221,7 +221,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Means over the points that were nearest to each place at the start.
+    /// Returns means over the points that were nearest to each spot at the start.
     fn spots(&self) -> Vec<PointState> {
         let mut spots = Vec::with_capacity(self.scene.spots.len());
         for spot in &self.scene.spots {
@@ -240,14 +240,14 @@ impl<S: Space> Simulation<S> {
                 .filter(|&at| away(at) <= reach)
                 .map(|at| (self.state.points.id[at], self.point(body, at)))
                 .collect();
-            // In an order that does not depend on where the points are now.
+            // Sorted by id, so that the result does not depend on the current order of points.
             found.sort_by_key(|(id, _)| *id);
             spots.extend(mean(&found));
         }
         spots
     }
 
-    /// Energy in the springs of contacts (J).
+    /// Returns the energy in the springs of contacts (J).
     fn spring_energy(&self) -> f64 {
         self.contacts.touches.iter().map(|touch| touch.energy).sum()
     }
@@ -263,7 +263,7 @@ impl<S: Space> Simulation<S> {
             .collect()
     }
 
-    /// What touches, one contact for each pair: forces of all tracers, at their centre of force.
+    /// Returns one contact for each pair: the sum of all tracer forces, at their centre of force.
     fn contacts(&self) -> Vec<ContactState> {
         let mut touches: Vec<(u32, Other, Touch<S>)> = Vec::new();
         for touch in &self.contacts.touches {
@@ -313,12 +313,12 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Rotation about z that is nearest to a plane deformation gradient (rad, from −π to π): R of F = R U.
+/// Returns the rotation about z of a plane deformation gradient (rad, from −π to π): R of F = R U.
 fn rotation_of(deformation: Matrix3<f64>) -> f64 {
     libm::atan2(deformation.m21 - deformation.m12, deformation.m11 + deformation.m22)
 }
 
-/// The angle that differs by whole turns from `angle` and is nearest to `expected` (rad).
+/// Returns the angle nearest to `expected` that differs from `angle` by full turns (rad).
 fn nearest_turn(angle: f64, expected: f64) -> f64 {
     angle + ((expected - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }

@@ -1,6 +1,6 @@
-//! What a scene does not call for.
+//! Marker type of absent effects.
 
-/// The stage of an effect that is absent: friction where μ = 0 for all laws, plastic strain where nothing yields, the
-/// energy budget where no probe asks for it. It takes no memory and computes nothing.
+/// Stage of an absent effect: friction if μ = 0 for all laws, plastic strain if nothing yields, or the energy budget if
+/// no probe requests it. It takes no memory and computes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Off;

@@ -1,4 +1,4 @@
-//! Options of the method, and the settings that have names.
+//! Options of the method, and named settings.
 
 use std::fmt;
 
@@ -9,58 +9,58 @@ pub enum Basis {
     Linear,
     /// Quadratic B-splines.
     Quadratic,
-    /// Hat functions averaged over the extent of points, which grows with the stretch along each axis (GIMP).
+    /// Hat functions averaged over the extent of points (GIMP); the extent grows with the stretch along each axis.
     Gimp,
 }
 
-/// How velocities travel between points and nodes.
+/// Transfer of velocities between points and nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transfer {
-    /// Points take on the change of the nodes' velocity, blended with `pic` of the velocity itself.
+    /// Points add the change of the nodes' velocity to their own, blended with a fraction `pic` of the velocity itself.
     Flip {
-        /// Fraction of the velocity itself in each step, 0 for none.
+        /// Fraction of the velocity itself in each step; 0 for none.
         pic: f64,
     },
     /// Points carry the affine part of the nodes' velocity.
     Apic,
-    /// Points take on the change of the nodes' velocity and of its spin.
+    /// Points add the change of the nodes' velocity and of its spin to their own.
     Spin,
 }
 
 impl Transfer {
-    /// Whether points carry the affine part of the velocity, or its spin.
+    /// Returns true if points carry the affine part of the velocity, or its spin.
     pub(crate) const fn carries_affine(self) -> bool {
         !matches!(self, Self::Flip { .. })
     }
 }
 
-/// When the stress follows the velocities.
+/// Time of the stress update within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressUpdate {
-    /// First: from the velocities that the points bring to the nodes.
+    /// First, from velocities that points scatter to the nodes.
     First,
-    /// Last: from the nodes' velocities at the end of the step.
+    /// Last, from node velocities at the end of the step.
     Last,
-    /// Last, from velocities that the points bring to the nodes once more (MUSL: Sulsky, Zhou & Schreyer 1995).
+    /// Last, from velocities that points scatter to the nodes again (MUSL: Sulsky, Zhou & Schreyer 1995).
     ModifiedLast,
 }
 
-/// How bodies touch each other and walls.
+/// Contact between bodies, and between bodies and walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// One velocity field for all bodies, which walls carry along.
+    /// One velocity field for all bodies, which also follows walls.
     NoSlip,
-    /// Nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): released on departure, each body along
-    /// its own normal, from a density smoothed as in their eq. 24.
+    /// At nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): bodies separate freely. Each body has
+    /// its own normal, from a density smoothed as in eq. 24 of the paper.
     Kinematic,
-    /// Nodes at which the normal traction is compressive (Bardenhagen et al. 2001), each body along its own normal; the
-    /// impulse is scaled to keep cells from collapsing (eq. 22, whose `max` must read `min`).
+    /// At nodes with compressive normal traction (Bardenhagen et al. 2001), with each body's own normal. The impulse is
+    /// scaled so that cells do not collapse (eq. 22, whose `max` must read `min`).
     Traction,
-    /// Nodes at which surfaces have met, found from tracers on them: bodies pair by pair along a common normal, while
-    /// they approach or press.
+    /// At nodes near penetrating surface tracers: bodies are treated in pairs along a common normal, while they
+    /// approach or are under pressure.
     Gap,
-    /// Springs between tracers on the surfaces, with a Coulomb-limited spring along them, that act where surfaces meet
-    /// and not at nodes.
+    /// Springs between surface tracers and surfaces, with a tangential spring limited by Coulomb friction. They act at
+    /// contact points and not at nodes.
     Penalty,
 }
 
@@ -71,16 +71,16 @@ pub struct Setting {
     pub basis: Basis,
     /// Transfer of velocities.
     pub transfer: Transfer,
-    /// When the stress follows.
+    /// Time of the stress update.
     pub stress_update: StressUpdate,
-    /// Whether points move with the velocities that stresses follow, and not with those of the nodes after the step: of
-    /// [`StressUpdate::ModifiedLast`].
+    /// True if points move with the velocities of the stress update, and not with node velocities after the step; only
+    /// for [`StressUpdate::ModifiedLast`].
     ///
-    /// The two differ by Δt (1 − S) a, a the acceleration and S the smoothing of points by nodes and of nodes by points. In
-    /// material that swings with the velocity v, positions are then off by Δt (1 − S) v from what the stress knows of, and the
-    /// forces −Σ V σ ∇N(x) of a tension σ feel it as a force along v: with smooth ∇N waves of wave number k grow by
-    /// Δt σ k² (1 − S)/2ρ a second. A bar under a tension of .08 E falls to pieces at rest. Hat functions, whose ∇N is constant
-    /// in a cell, feel nothing of it there.
+    /// The two velocities differ by Δt (1 − S) a, with a the acceleration and S the smoothing by the transfer from
+    /// points to nodes and back. In material that vibrates with the velocity v, positions then differ by Δt (1 − S) v
+    /// from those that the stress uses. The forces −Σ V σ ∇N(x) of a tension σ respond to this as to a force along v.
+    /// With smooth ∇N, waves of wave number k grow at the rate Δt σ k² (1 − S)/2ρ. A bar under a tension of .08 E
+    /// breaks apart at rest. Hat functions are not affected, because their ∇N is constant within a cell.
     pub moves_with_stress: bool,
     /// Contact.
     pub contact: Contact,
@@ -88,15 +88,16 @@ pub struct Setting {
     pub penalty: f64,
     /// Tracers on a surface per cell length.
     pub tracers: f64,
-    /// Where nodes stand: shift of the grid in cells along each axis.
+    /// Shift of the grid along each axis (cells).
     pub phase: [f64; 3],
 }
 
 impl Setting {
-    /// One setting for all scenes: the best known. With hat functions, which cost half, rolling and impacts are as
-    /// good, but points with a spin become unstable on them after some thousand steps. Softer springs show contacts of
-    /// a quarter of a cell more than a tenth too soft; stiffer ones, or fewer tracers, slow discs and spheres that roll
-    /// at two to four cells a radius.
+    /// Best known setting, used for all scenes.
+    ///
+    /// Hat functions cost half and are as good for rolling and impacts. However, points with a spin become unstable on
+    /// them after some thousand steps. With softer springs, contacts of a quarter of a cell are more than a tenth too
+    /// soft. Stiffer springs, or fewer tracers, slow down discs and spheres that roll at two to four cells per radius.
     pub const BEST: Self = Self {
         basis: Basis::Quadratic,
         transfer: Transfer::Spin,
@@ -108,14 +109,15 @@ impl Setting {
         phase: [0.0; 3],
     };
 
-    /// What the papers used, with another contact. More tracers would mark more nodes as met.
+    /// Returns the setting of the original papers with the given contact. More tracers would mark more nodes as in
+    /// contact.
     #[must_use]
     pub const fn classic(contact: Contact) -> Self {
         let transfer = Transfer::Flip { pic: 0.0 };
         Self { basis: Basis::Linear, transfer, moves_with_stress: false, contact, tracers: 4.0, ..Self::BEST }
     }
 
-    /// The setting in words.
+    /// Returns a description of the setting.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
         let mut words = vec![self.basis.to_string(), self.transfer.to_string(), self.stress_update.to_string()];

@@ -1,18 +1,18 @@
-//! The nodes that reach a run of points, row by row: where their field keeps them, or copied where a period cuts
-//! through them.
+//! Stencil blocks: the nodes that influence a particle batch, row by row. They are used in place, or copied if a
+//! periodic boundary cuts through them.
 
 use crate::basis::Basis;
 use crate::grid::Window;
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// Nodes that reach a point, at most.
+/// Maximum number of nodes that influence a point.
 const MOST: usize = 27;
 
-/// Nodes that a period cuts apart, side by side.
+/// Contiguous copies of nodes that a periodic boundary separates.
 pub(crate) type Copies<T> = [T; MOST];
 
-/// Where the nodes that reach a point are: the first one, and how far it is to the next row and the next layer.
+/// Position of a stencil block in the node array: its first node, and the strides to the next row and layer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patch {
     first: usize,
@@ -21,15 +21,15 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// Where copies are.
+    /// Block of copies.
     const COPIES: Self = Self { first: 0, row: 3, layer: 9 };
 
-    /// How many rows along x reach a point.
+    /// Returns the number of rows along x.
     pub(crate) const fn rows<S: Space, B: Basis>() -> usize {
         if S::DIMENSION == 3 { B::WIDTH * B::WIDTH } else { B::WIDTH }
     }
 
-    /// The places of a row of nodes.
+    /// Returns the range of a row of nodes.
     #[inline(always)]
     pub(crate) fn row<S: Space, B: Basis>(&self, row: usize) -> Range<usize> {
         let (j, k) = if S::DIMENSION == 3 { (row % B::WIDTH, row / B::WIDTH) } else { (row, 0) };
@@ -39,7 +39,7 @@ impl Patch {
 }
 
 impl Window {
-    /// The nodes that reach a point, of which `base` is the first, to be read.
+    /// Returns the nodes of the block with first node `base`, for reading.
     #[inline(always)]
     pub(crate) fn seen<'a, S: Space, B: Basis, T: Copy>(
         &self,
@@ -56,7 +56,7 @@ impl Window {
         }
     }
 
-    /// A place after all nodes that reach a point, of which `base` is the first: the end of a row.
+    /// Returns a slot after all nodes of the block with first node `base`: the end of a row.
     pub(crate) fn end_of<S: Space, B: Basis>(&self, base: [i32; 3]) -> usize {
         let slowest = S::DIMENSION - 1;
         let layer = self.len() / self.size[slowest] as usize;
@@ -64,7 +64,7 @@ impl Window {
         self.start + layer * end.min(self.size[slowest] as usize)
     }
 
-    /// Where the nodes are, unless a period cuts through them.
+    /// Returns the position of the block, or `None` if a periodic boundary cuts through it.
     #[inline(always)]
     fn patch<S: Space, B: Basis>(&self, base: [i32; 3]) -> Option<Patch> {
         let [length, rows, _] = self.size.map(|size| size as usize);
@@ -76,7 +76,7 @@ impl Window {
         Some(Patch { first: self.start + (z * rows + y) * length + x, row: length, layer: length * rows })
     }
 
-    /// The places of the nodes and of their copies, one by one.
+    /// Iterates over the slots of the nodes and the indices of their copies.
     fn places<S: Space, B: Basis>(&self, base: [i32; 3]) -> impl Iterator<Item = (usize, usize)> {
         let depth = if S::DIMENSION == 3 { B::WIDTH } else { 1 };
         (0..depth * B::WIDTH * B::WIDTH).map(move |number| {
@@ -92,33 +92,33 @@ impl Window {
     }
 }
 
-/// Nodes that follow each other in whole rows, which a thread adds to.
+/// Consecutive nodes in whole rows, to which a thread adds.
 pub(crate) struct Summed<'a, T> {
-    /// Place of the first among those of all fields.
+    /// Slot of the first node in the common node array.
     first: usize,
     nodes: &'a mut [T],
 }
 
 impl<'a, T: Copy> Summed<'a, T> {
-    /// These nodes, the first of which has this place.
+    /// Creates the view of nodes that start at slot `first`.
     pub(crate) const fn new(first: usize, nodes: &'a mut [T]) -> Self {
         Self { first, nodes }
     }
 
-    /// The same, for a while.
+    /// Reborrows the view.
     pub(crate) fn lent(&mut self) -> Summed<'_, T> {
         Summed { first: self.first, nodes: self.nodes }
     }
 
-    /// A row of them, if it is one of these.
+    /// Returns a row, if the view contains it.
     #[inline(always)]
     pub(crate) fn row(&mut self, row: Range<usize>) -> Option<&mut [T]> {
         let start = row.start.wrapping_sub(self.first);
         self.nodes.get_mut(start..start.wrapping_add(row.end - row.start))
     }
 
-    /// Those nodes among them that reach a point, of which `base` is the first, to be added to and then put back; none where
-    /// no node that reaches it is among them.
+    /// Returns the nodes of the view in the block with first node `base`, for accumulation followed by
+    /// [`Summed::put_back`]; returns `None` if the view contains no node of the block.
     #[inline(always)]
     pub(crate) fn reached<'b, S: Space, B: Basis>(
         &'b mut self,
@@ -139,7 +139,7 @@ impl<'a, T: Copy> Summed<'a, T> {
         }
     }
 
-    /// Puts copies of nodes back, where they are.
+    /// Writes copied nodes back to their slots.
     #[inline(always)]
     pub(crate) fn put_back<S: Space, B: Basis>(&mut self, window: &Window, base: [i32; 3], copies: &Copies<T>) {
         if window.patch::<S, B>(base).is_none() {

@@ -1,4 +1,4 @@
-//! Material points: structure of arrays, grouped by body and kept in cell order within a body.
+//! Material points: structure of arrays, grouped by body and sorted by cell within a body.
 
 use grainbench_lanes::{Team, take_off};
 use grainbench_scene::space::Space;
@@ -10,17 +10,17 @@ use std::ops::Range;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Points<S: Space> {
-    /// Number at the start, which stays with the point.
+    /// Initial index, which identifies the point.
     pub(crate) id: Vec<u32>,
-    /// Position at the start (m).
+    /// Initial position (m).
     pub(crate) start: Vec<S::Vector>,
     /// Position (m).
     pub(crate) position: Vec<S::Vector>,
-    /// Position at the end of the step under way (m).
+    /// Position at the end of the current step (m).
     pub(crate) next: Vec<S::Vector>,
     /// Velocity (m/s).
     pub(crate) velocity: Vec<S::Vector>,
-    /// Affine part of the velocity (1/s), or none of any point unless the transfer carries it.
+    /// Affine part of the velocity (1/s); empty unless the transfer carries it.
     pub(crate) affine: Vec<S::Matrix>,
     /// Mass (kg).
     pub(crate) mass: Vec<f64>,
@@ -32,19 +32,19 @@ pub(crate) struct Points<S: Space> {
     pub(crate) deformation: Vec<S::Matrix>,
     /// Cauchy stress (Pa).
     pub(crate) stress: Vec<S::Symmetric>,
-    /// Equivalent plastic strain, or none of any point where no material yields.
+    /// Equivalent plastic strain; empty if no material yields.
     pub(crate) plastic_strain: Vec<f64>,
 }
 
 impl<S: Space> Points<S> {
-    /// Memory that a point takes up (B), but for what not every scene calls for.
+    /// Memory of a point (bytes), without optional values.
     const BYTES: usize = size_of::<u32>()
         + 4 * size_of::<S::Vector>()
         + size_of::<S::Matrix>()
         + size_of::<S::Symmetric>()
         + 3 * size_of::<f64>();
 
-    /// Memory that the points take up (B).
+    /// Returns the memory of all points (bytes).
     pub(crate) fn bytes(&self) -> usize {
         self.len() * Self::BYTES + size_of_val(&*self.affine) + size_of_val(&*self.plastic_strain)
     }
@@ -70,7 +70,7 @@ impl<S: Space> Points<S> {
         self.position.len()
     }
 
-    /// Mass (kg) and centre of mass (m) of some points.
+    /// Returns the mass (kg) and centre of mass (m) of a range of points.
     pub(crate) fn centre_of_mass(&self, range: Range<usize>) -> (f64, Vector3<f64>) {
         let mut mass = 0.0;
         let mut moment = Vector3::zeros();
@@ -81,22 +81,22 @@ impl<S: Space> Points<S> {
         (mass, moment / mass)
     }
 
-    /// Gives every point an affine part of its velocity, zero at first, if the transfer `carries` one.
+    /// Adds an affine part of the velocity, initially zero, to every point if the transfer `carries` one.
     pub(crate) fn set_affine(&mut self, carries: bool) {
         self.affine = vec![S::NO_GRADIENT; if carries { self.len() } else { 0 }];
     }
 
-    /// Gives every point a plastic strain, zero at first, if any material `yields`.
+    /// Adds a plastic strain, initially zero, to every point if any material `yields`.
     pub(crate) fn set_plastic_strain(&mut self, yields: bool) {
         self.plastic_strain = vec![0.0; if yields { self.len() } else { 0 }];
     }
 
-    /// Affine part of the velocity of a point (1/s); zero where none is carried.
+    /// Returns the affine part of the velocity of a point (1/s); zero if there is none.
     pub(crate) fn affine_of(&self, at: usize) -> S::Matrix {
         self.affine.get(at).copied().unwrap_or(S::NO_GRADIENT)
     }
 
-    /// Equivalent plastic strain of a point; zero where nothing yields.
+    /// Returns the equivalent plastic strain of a point; zero if nothing yields.
     pub(crate) fn plastic_strain_of(&self, at: usize) -> f64 {
         self.plastic_strain.get(at).copied().unwrap_or(0.0)
     }
@@ -115,7 +115,7 @@ impl<S: Space> Points<S> {
         self.stress.push(S::Symmetric::default());
     }
 
-    /// Whether every point has all of its state, and just that which those of `other` have.
+    /// Returns true if all arrays have the same length as those of `other`, with the same optional values.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let count = other.len();
         let same = self.affine.len() == other.affine.len() && self.plastic_strain.len() == other.plastic_strain.len();
@@ -135,13 +135,12 @@ impl<S: Space> Points<S> {
         .all(|&length| length == count)
     }
 
-    /// The order of a body's points by the places that `place` says they are at, of equal ones that which they have: the number
-    /// of the first, then of the next.
+    /// Sorts a body's points by `place`, keeping the order of equal places, and returns the permutation.
     pub(crate) fn order(&self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) -> Order {
         let places: Vec<usize> = self.position[range.clone()].iter().map(|&position| place(position)).collect();
         let low = places.iter().copied().min().unwrap_or(0);
         let high = places.iter().copied().max().unwrap_or(0);
-        // How many points are at lower places, then where the next one at a place goes.
+        // Counting sort: the number of points at lower places, which becomes the next free index of each place.
         let mut before = vec![0; high - low + 2];
         places.iter().for_each(|place| before[place - low + 1] += 1);
         (1..before.len()).for_each(|place| before[place] += before[place - 1]);
@@ -154,7 +153,7 @@ impl<S: Space> Points<S> {
         Order { range, numbers }
     }
 
-    /// Puts the points of bodies in these orders; each thread does so with some of what points have.
+    /// Applies permutations to the points of bodies; each thread handles some of the arrays.
     pub(crate) fn put_in(&mut self, orders: &[Order], team: &Team) {
         let tasks = [
             put_in(&mut self.deformation, orders),
@@ -173,15 +172,15 @@ impl<S: Space> Points<S> {
     }
 }
 
-/// An order of points that follow each other.
+/// Permutation of consecutive points.
 #[derive(Clone, Debug)]
 pub(crate) struct Order {
     range: Range<usize>,
-    /// Which comes first, which next.
+    /// Old indices in the new order.
     numbers: Vec<usize>,
 }
 
-/// What puts values of points in some orders; of none where no point has them.
+/// Returns a task that applies permutations to an array; nothing is done if the array is empty.
 fn put_in<'a, T: Copy + Send>(values: &'a mut [T], orders: &'a [Order]) -> Box<dyn FnOnce() + Send + 'a> {
     Box::new(move || {
         if values.is_empty() {
@@ -196,9 +195,9 @@ fn put_in<'a, T: Copy + Send>(values: &'a mut [T], orders: &'a [Order]) -> Box<d
     })
 }
 
-/// Points that follow each other, lent to a thread.
+/// Mutable view of consecutive points for one thread.
 pub(crate) struct Lent<'a, S: Space> {
-    /// Number of the first.
+    /// Index of the first point.
     pub(crate) first: usize,
     pub(crate) position: &'a mut [S::Vector],
     pub(crate) next: &'a mut [S::Vector],
@@ -213,7 +212,7 @@ pub(crate) struct Lent<'a, S: Space> {
 }
 
 impl<S: Space> Lent<'_, S> {
-    /// Takes off the first, so many.
+    /// Splits off the first `count` points.
     pub(crate) fn take_off(&mut self, count: usize) -> Self {
         let first = self.first;
         self.first += count;
@@ -238,7 +237,7 @@ impl<S: Space> Lent<'_, S> {
 }
 
 impl<S: Space> Points<S> {
-    /// All of them, lent.
+    /// Returns a mutable view of all points.
     pub(crate) fn lent(&mut self) -> Lent<'_, S> {
         Lent {
             first: 0,

@@ -1,12 +1,12 @@
-//! Loops over points are compiled once for every processor, and threads share them; what they compute is the same.
+//! Tests that results are equal on all processors and for any number of threads.
 
 use crate::options::{Basis, Setting, StressUpdate, Transfer};
 use crate::trial::prepared;
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::space::{Plane, Solid, Space};
 
-/// State of the points, as text, after some steps of a round body that spins, flies across the faces of a periodic
-/// domain and shares nodes with its image.
+/// Returns the state of the points, as text, after some steps of a round body. The body spins, crosses the faces of a
+/// periodic domain and shares nodes with its image.
 fn state<S: Space>(processor: Processor, threads: usize, setting: Setting) -> String {
     let (dimension, axes, spin) = if S::DIMENSION == 2 { (2, 2, "0.3") } else { (3, 3, "[0.3, 0.1, -0.2]") };
     let vector = |value: &str| format!("[{}]", vec![value; axes].join(", "));

@@ -1,5 +1,5 @@
-//! Points that follow each other and reach the same nodes. Kept in the order of their cells most do, and loops over
-//! points take them four by four, each four with one set of nodes.
+//! Particle batches: consecutive points that share the same nodes. Points are sorted by cell, so most batches are long.
+//! Loops process the points of a batch four at a time with one set of nodes.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
@@ -11,27 +11,27 @@ use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Points of a run at most: few enough for their velocity gradients to stay in the cache.
+/// Maximum number of points in a batch, so that their velocity gradients stay in the cache.
 pub(crate) const LONGEST: usize = 256;
 
-/// Points that follow each other and reach the same nodes.
+/// A particle batch: consecutive points that share the same nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// The first of the nodes.
+    /// First node of the stencil block.
     pub(crate) base: [i32; 3],
-    /// Whether all of its points, where they are now, are known to reach these nodes.
+    /// True if all points at their current positions are known to use these nodes.
     pub(crate) is_known: bool,
 }
 
 impl Run {
-    /// Whether it holds what is in a box (m), the lowest and the highest along each axis.
+    /// Returns true if all positions in a box (m), given by its lower and upper corner, use the nodes of the batch.
     pub(crate) fn holds<S: Space>(&self, lattice: &Lattice, start: f64, box_around: [[f64; 3]; 2]) -> bool {
         box_around.iter().all(|&[x, y, z]| self.reaches::<S>(lattice, start, S::restrict(Vector3::new(x, y, z))))
     }
 
-    /// Whether a position (m) reaches the nodes of the run, of a basis that reaches from `start` on ([`Basis::START`]).
+    /// Returns true if a position (m) uses the nodes of the batch; `start` is the [`Basis::START`] of the basis.
     #[inline(always)]
     fn reaches<S: Space>(&self, lattice: &Lattice, start: f64, position: S::Vector) -> bool {
         let beyond = |axis: usize| lattice.cells::<S>(position, axis) - (f64::from(self.base[axis]) + start);
@@ -39,8 +39,9 @@ impl Run {
     }
 }
 
-/// Finds the runs of a range of points; which they are among all. Of a run that was found `before`, is known yet and starts where
-/// one starts now, the points need not be looked at.
+/// Finds the batches of a range of points and returns their indices in `runs`.
+///
+/// The points of a batch from the step `before` need not be checked if it is still known and starts at the same point.
 pub(crate) fn find<S: Space, B: Basis>(
     lattice: &Lattice,
     range: Range<usize>,
@@ -60,7 +61,7 @@ pub(crate) fn find<S: Space, B: Basis>(
                 Run { start, end: start + 1, base, is_known: false }
             }
         };
-        // Where the next run is known as well, to be elsewhere, none of its points have come.
+        // If the next batch is known too and has other nodes, none of its points can belong to this batch.
         let is_whole =
             run.is_known && next.is_some_and(|next| next.start == run.end && next.is_known && next.base != run.base);
         let more = if is_whole { run.end..run.end } else { run.end..range.end.min(start + LONGEST) };
@@ -73,7 +74,7 @@ pub(crate) fn find<S: Space, B: Basis>(
     first..runs.len()
 }
 
-/// Runs one after another that have no more points in all than the longest can have.
+/// Groups consecutive batches so that a group has at most as many points as the longest batch.
 pub(crate) fn in_groups(mut runs: &[Run]) -> impl Iterator<Item = &[Run]> {
     std::iter::from_fn(move || {
         let start = runs.first()?.start;
@@ -84,13 +85,13 @@ pub(crate) fn in_groups(mut runs: &[Run]) -> impl Iterator<Item = &[Run]> {
     })
 }
 
-/// Runs of a part, or some of them, on their grid.
+/// Batches of a part with their grid and points.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a, S: Space> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     pub(crate) runs: &'a [Run],
-    /// Number of the first point of which the following are given.
+    /// Index of the first point in the following arrays.
     pub(crate) first: usize,
     pub(crate) deformation: &'a [S::Matrix],
     pub(crate) position: &'a [S::Vector],
@@ -102,13 +103,13 @@ impl<'a, S: Space> Ground<'a, S> {
         Self { lattice, part, runs, first: 0, deformation: &points.deformation, position: &points.position }
     }
 
-    /// Of points that are lent.
+    /// Creates the view from a mutable view of points.
     #[inline(always)]
     pub(crate) fn lent(lattice: &'a Lattice, part: &'a Part, runs: &'a [Run], points: &'a Lent<'_, S>) -> Self {
         Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
     }
 
-    /// Of points that are lent, with their next positions (m).
+    /// Creates the view from a mutable view of points, and returns their next positions (m) separately.
     #[inline(always)]
     pub(crate) fn and_next(
         lattice: &'a Lattice,
@@ -120,7 +121,7 @@ impl<'a, S: Space> Ground<'a, S> {
         (Self { lattice, part, runs, first: *first, deformation, position }, next)
     }
 
-    /// The nodes around a batch of a run.
+    /// Computes the stencil of a SIMD pack of a batch.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: FourLanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Wide<L>> {
         let batch = batch.counted_from(self.first);
@@ -139,15 +140,14 @@ impl<'a, S: Space> Ground<'a, S> {
     }
 }
 
-/// Up to four points of a run.
+/// A SIMD pack: up to four points of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Batch {
     pub(crate) start: usize,
     pub(crate) count: usize,
 }
 
-/// The first of some positions with those after it, up to four in all, that reach the same nodes; and the first of
-/// these nodes.
+/// Returns the first positions, up to four, that share the same nodes, and the first of these nodes.
 #[inline(always)]
 pub(crate) fn first_batch<S: Space, B: Basis>(
     lattice: &Lattice,
@@ -164,12 +164,12 @@ pub(crate) fn first_batch<S: Space, B: Basis>(
     (Batch { start: range.start, count }, base)
 }
 
-/// One for each lane that has a point, zero for the others.
+/// Lane masks: one for each lane with a point, zero for the other lanes.
 const OWN: [[f64; LANES]; LANES + 1] =
     [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; 4]];
 
 impl Run {
-    /// Its points, four by four.
+    /// Iterates over its points, four at a time.
     #[inline(always)]
     pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
         let Self { start, end, .. } = *self;
@@ -178,13 +178,13 @@ impl Run {
 }
 
 impl Batch {
-    /// The same points in a list that starts at another point.
+    /// Returns the same points with indices relative to `first`.
     #[inline(always)]
     pub(crate) const fn counted_from(self, first: usize) -> Self {
         Self { start: self.start - first, ..self }
     }
 
-    /// What its points have. FourLanes without a point get that of another one.
+    /// Returns the values of its points. Lanes without a point get the value of another point.
     #[inline(always)]
     fn four<'a, T: Copy>(self, values: &'a [T], last: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {
         match values[self.start..].first_chunk() {
@@ -193,13 +193,13 @@ impl Batch {
         }
     }
 
-    /// Fewer than four are left.
+    /// Returns the last values of an array when fewer than four are left.
     #[cold]
     fn last<T: Copy>(self, values: &[T]) -> [T; LANES] {
         from_fn(|lane| values[(self.start + lane).min(values.len() - 1)])
     }
 
-    /// The positions of its points (m), by component, for a stencil: all of them are among the same nodes.
+    /// Returns the positions of its points (m) by component, for a stencil: lanes without a point use the same nodes.
     #[inline(always)]
     pub(crate) fn spread_vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
         let mut vectors = self.vectors::<S, L>(lanes, values);
@@ -209,21 +209,21 @@ impl Batch {
         vectors
     }
 
-    /// FourLanes without a point get what the first one has, so that all are among the nodes of the run.
+    /// Sets lanes without a point to the value of the first point, so that all lanes use the nodes of the batch.
     #[inline(always)]
     fn spread<L: FourLanes>(self, lanes: L, of: Wide<L>) -> Wide<L> {
         let [first, ..] = of.values();
         of.like(0.0).pick_below(Wide::four(lanes, OWN[self.count]), of, of.like(first))
     }
 
-    /// A number of each point, such as a mass; zero in lanes without one.
+    /// Returns an extensive quantity of each point, such as mass; zero in lanes without a point.
     #[inline(always)]
     pub(crate) fn amounts<L: FourLanes>(self, lanes: L, values: &[f64]) -> Wide<L> {
         let mut last = None;
         Wide::four(lanes, *self.four(values, &mut last)) * Wide::four(lanes, OWN[self.count])
     }
 
-    /// A vector of each point, by component.
+    /// Returns a vector of each point, by component.
     #[inline(always)]
     pub(crate) fn vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
         let mut last = None;
@@ -236,7 +236,7 @@ impl Batch {
         vectors
     }
 
-    /// A matrix of each point, row by row.
+    /// Returns a matrix of each point, by rows.
     #[inline(always)]
     pub(crate) fn matrices<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Matrix]) -> [[Wide<L>; 3]; 3] {
         let mut last = None;
@@ -245,7 +245,7 @@ impl Batch {
         side_by_side::<S, L>(lanes, &four)
     }
 
-    /// What of a symmetric tensor of each point acts in this space, row by row.
+    /// Returns the components of a symmetric tensor of each point in this space, by rows.
     #[inline(always)]
     pub(crate) fn tensors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Symmetric]) -> [[Wide<L>; 3]; 3] {
         let mut last = None;
@@ -263,7 +263,7 @@ impl Batch {
         }
     }
 
-    /// Writes a matrix, given row by row, for each point.
+    /// Writes a matrix, given by rows, for each point.
     #[inline(always)]
     pub(crate) fn write_matrices<S: Space, L: FourLanes>(self, rows: [[Wide<L>; 3]; 3], to: &mut [S::Matrix]) {
         let mut values = [[[0.0; LANES]; 3]; 3];
@@ -276,7 +276,7 @@ impl Batch {
     }
 }
 
-/// What of four matrices acts in this space, row by row.
+/// Packs the components of four matrices in this space, by rows.
 #[inline(always)]
 fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[Wide<L>; 3]; 3] {
     let mut rows = [[Wide::splat(lanes, 0.0); 3]; 3];
@@ -299,14 +299,14 @@ mod tests {
 
     const LATTICE: Lattice = Lattice { cell: [0.5; 3], inverse: [2.0; 3], origin: [0.1; 3], period: [None; 3] };
 
-    /// Numbers between -1 and 1 in no order that matters.
+    /// Returns a pseudo-random number between -1 and 1.
     fn draw(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Points wander, a few of them into other cells in each step: the runs that are found where others are known are those
-    /// of a search that knows none. There are cells with more points than the longest run has.
+    /// Points move at random, and a few change cells in each step. A search that reuses known batches finds the same
+    /// batches as a search without them. Some cells have more points than the longest batch.
     fn found_as_by_whoever_knows_nothing<B: Basis>(spread: f64) {
         let mut state = 7;
         let mut points = Points::<Plane>::new();
@@ -323,7 +323,7 @@ mod tests {
             let before = std::mem::take(&mut runs);
             known += before.iter().filter(|run| run.is_known).count();
             unknown += before.iter().filter(|run| !run.is_known).count();
-            // Two bodies, and now and then other shares.
+            // Two bodies, and sometimes other thread partitions.
             let cut = if step % 10 == 0 { 450 } else { 300 };
             let (mut left, mut none) = (&before[..], &[][..]);
             let mut expected = Vec::new();

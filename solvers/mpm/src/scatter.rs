@@ -1,6 +1,6 @@
-//! From points to nodes (P2G): mass, momentum and internal force.
+//! Transfer from points to nodes (P2G): mass, momentum and internal force.
 //!
-//! Over the points p of a body, at each of its nodes i, with N_i the basis function of the node:
+//! The sums are over the points p of a body, at each of its nodes i with basis function N_i:
 //!
 //! - m_i = Σ N_i(x_p) m_p, mass (kg);
 //! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with x positions (m), v velocities (m/s) and A
@@ -24,8 +24,8 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Points bring mass, momentum and internal force to the nodes, which are emptied before; and where surfaces are gripped it is
-/// told what nodes bear.
+/// Scatters mass, momentum and internal force of points to the nodes, which are cleared first. With `grips`, it also
+/// computes the weight limits of nodes at surfaces.
 pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>, grips: bool) {
     let Scheme { setting, processor, .. } = scheme;
     let State { bodies, points, shares, team, .. } = state;
@@ -56,15 +56,15 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
     });
 }
 
-/// The sum over the nodes of a row.
+/// Returns the weighted sum over the nodes of a row.
 #[inline(always)]
 pub(crate) fn weighted<B: Basis, N: Number>(of: [N; 3], weights: [N; 3]) -> N {
     let sum = of[0] * weights[0] + of[1] * weights[1];
     if B::WIDTH == 3 { sum + of[2] * weights[2] } else { sum }
 }
 
-/// The velocity that points show to the nodes of a stencil, v + A r with r from the point to the node: at the first
-/// node, and what is added from one node to the next along each axis.
+/// Velocity of points extrapolated to the nodes of a stencil, v + A r with r from the point to the node. It holds the
+/// value at the first node, and the increment to the next node along each axis.
 pub(crate) struct Shown<N> {
     first: [N; 3],
     next: [[N; 3]; 3],
@@ -91,7 +91,7 @@ impl<N: Number> Shown<N> {
         shown
     }
 
-    /// A component at the nodes of a row along x.
+    /// Returns a component at the nodes of a row along x.
     #[inline(always)]
     pub(crate) fn row<S: Space, B: Basis, T: Transfer>(&self, row: usize, component: usize) -> [N; 3] {
         let first = self.first[component];
@@ -107,7 +107,7 @@ impl<N: Number> Shown<N> {
     }
 }
 
-/// Mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
+/// Kernel that scatters mass, momentum and internal force, −Vσ∇N, of a body's points to its nodes.
 struct Scatter<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
@@ -177,7 +177,7 @@ fn give<S: Space, B: Basis, L: FourLanes>(brought: [[Wide<L>; 2 * LANES]; 3], no
     let zero = brought[0][7];
     let [x, y, z] = brought;
     let last = if S::DIMENSION == 2 {
-        // One number of each node is left.
+        // One value of each node is left.
         let [x, y, z, _] = Wide::sums([x[4], y[4], z[4], zero]);
         [[x, 0.0, 0.0, 0.0], [y, 0.0, 0.0, 0.0], [z, 0.0, 0.0, 0.0]]
     } else {

@@ -1,10 +1,10 @@
-//! How a run is computed, from its first step to its last.
+//! Scheme of a run, constant from its first step to its last.
 
 use crate::options::{Contact, Setting, StressUpdate};
 use grainbench_lanes::Processor;
 use grainbench_scene::space::Space;
 
-/// What does not change in a run.
+/// Constant parameters of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scheme {
     pub(crate) setting: Setting,
@@ -14,28 +14,28 @@ pub(crate) struct Scheme {
 }
 
 impl Scheme {
-    /// Whether all bodies share one velocity field.
+    /// Returns true if all bodies share one velocity field.
     pub(crate) fn has_one_field(&self) -> bool {
         self.setting.contact == Contact::NoSlip
     }
 
-    /// Whether points bring their new velocities to the nodes once more.
+    /// Returns true if points scatter their new velocities to the nodes again.
     pub(crate) fn is_projected(&self) -> bool {
         self.setting.stress_update == StressUpdate::ModifiedLast
     }
 
-    /// Whether points move with the velocities that they bring to the nodes once more.
+    /// Returns true if points move with the velocities that they scatter to the nodes again.
     pub(crate) fn moves_with_stress(&self) -> bool {
         self.setting.moves_with_stress && self.is_projected()
     }
 
-    /// Whether stresses follow before nodes take the step.
+    /// Returns true if stresses are updated before nodes are integrated.
     pub(crate) fn has_stress_first(&self) -> bool {
         self.setting.stress_update == StressUpdate::First
     }
 }
 
-/// What acts on all bodies alike; something else while they settle.
+/// Forces on all bodies; they have other values during relaxation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings<S: Space> {
     /// Gravity g (m/s²).

@@ -1,12 +1,12 @@
-//! Fills bodies with material points and covers them with tracers.
+//! Fills bodies with material points and covers their surfaces with tracers.
 //!
-//! Points of a disc stand on rings, those of a sphere on shells, at the radius and latitude at which mass, centre and
-//! tensor of inertia of the body are exact; those of a box on a lattice that fits it.
+//! Points of a disc are on rings, and points of a sphere on shells. Radius and latitude are chosen so that mass, centre
+//! and inertia tensor of the body are exact. Points of a box are on a lattice that fits it.
 
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-/// A material point in the making.
+/// Seed of a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seed {
     /// Position (m).
@@ -15,7 +15,7 @@ pub struct Seed {
     pub volume: f64,
 }
 
-/// A piece of surface in the making.
+/// Surface element of a tracer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// Position on the surface (m).
@@ -24,13 +24,14 @@ pub struct Patch {
     pub area: Vector3<f64>,
 }
 
-/// Number of parts of about `spacing` in `length`, one at least.
+/// Returns the number of parts of about `spacing` in `length`, at least one.
 fn parts(length: f64, spacing: f64) -> usize {
     (length / spacing).round().max(1.0) as usize
 }
 
-/// A disc, or the ring between two radii (m), in rings about `spacing` wide. A ring from r₁ to r₂ stands at
-/// √((r₁² + r₂²)/2), which has its moment of inertia.
+/// Fills a disc, or the ring between two radii (m), with rings of a width of about `spacing`.
+///
+/// Points of a ring from r₁ to r₂ are at √((r₁² + r₂²)/2), which gives its exact moment of inertia.
 #[must_use]
 pub fn rings(centre: Vector3<f64>, inner: f64, outer: f64, spacing: f64) -> Vec<Seed> {
     let count = parts(outer - inner, spacing);
@@ -46,14 +47,16 @@ pub fn rings(centre: Vector3<f64>, inner: f64, outer: f64, spacing: f64) -> Vec<
     seeds
 }
 
-/// Direction to the middle of a sector.
+/// Returns the direction to the middle of a sector.
 fn around(sector: usize, sectors: usize) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos((sector as f64 + 0.5) * TAU / sectors as f64);
     Vector3::new(cosine, sine, 0.0)
 }
 
-/// A sphere in shells about `spacing` thick. A shell from r₁ to r₂ stands at the radius with
-/// r² = (3/5)(r₂⁵ − r₁⁵)/(r₂³ − r₁³), a band between two latitudes at the mean of its squared height.
+/// Fills a sphere with shells of a thickness of about `spacing`.
+///
+/// Points of a shell from r₁ to r₂ are at the radius with r² = (3/5)(r₂⁵ − r₁⁵)/(r₂³ − r₁³). Points of a band between
+/// two latitudes are at the root mean square of its height.
 #[must_use]
 pub fn shells(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Seed> {
     let count = parts(radius, spacing);
@@ -73,8 +76,8 @@ pub fn shells(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Seed> {
     seeds
 }
 
-/// Unit vectors over the sphere in an even number of bands of latitude, each with its share of the whole: Σ share = 1,
-/// Σ share n = 0 and Σ share n nᵀ = 1/3.
+/// Returns unit vectors over the sphere in an even number of latitude bands, each with its share of the area:
+/// Σ share = 1, Σ share n = 0 and Σ share n nᵀ = 1/3.
 fn directions(bands: usize) -> Vec<(Vector3<f64>, f64)> {
     let bands = bands.div_ceil(2).max(1) * 2;
     let mut all = Vec::new();
@@ -91,7 +94,7 @@ fn directions(bands: usize) -> Vec<(Vector3<f64>, f64)> {
     all
 }
 
-/// A box from `low` to `high` (m), in a lattice of about `spacing` along each axis.
+/// Fills a box from `low` to `high` (m) with a lattice of about `spacing` along each axis.
 #[must_use]
 pub fn lattice(low: Vector3<f64>, high: Vector3<f64>, spacing: [f64; 3], dimensions: usize) -> Vec<Seed> {
     let mut count = [1; 3];
@@ -114,8 +117,8 @@ pub fn lattice(low: Vector3<f64>, high: Vector3<f64>, spacing: [f64; 3], dimensi
     seeds
 }
 
-/// The surface of a disc, counter-clockwise: tracers at most `spacing` apart, their number a multiple of four.
-/// With `outward` = −1 the surface of a hole, clockwise.
+/// Returns the surface of a disc, counter-clockwise: tracers at most `spacing` apart, their number a multiple of four.
+/// With `outward` = −1 it is the surface of a hole, clockwise.
 #[must_use]
 pub fn circle(centre: Vector3<f64>, radius: f64, spacing: f64, outward: f64) -> Vec<Patch> {
     let count = 4 * (TAU * radius / spacing / 4.0).ceil().max(1.0) as usize;
@@ -127,7 +130,7 @@ pub fn circle(centre: Vector3<f64>, radius: f64, spacing: f64, outward: f64) -> 
         .collect()
 }
 
-/// The surface of a sphere, patches of about `spacing` squared.
+/// Returns the surface of a sphere, with elements of an area of about `spacing` squared.
 #[must_use]
 pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
     let area = 4.0 * PI * radius * radius;
@@ -140,8 +143,9 @@ pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
         .collect()
 }
 
-/// The surface of a rectangle, counter-clockwise: the middles of pieces at most `spacing` long, so that none stands on a corner,
-/// where it would bear on two sides.
+/// Returns the surface of a rectangle, counter-clockwise: the centres of elements of a length of at most `spacing`.
+///
+/// No tracer is on a corner, where it would belong to two sides.
 #[must_use]
 pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let corners = [low, Vector3::new(high.x, low.y, 0.0), high, Vector3::new(low.x, high.y, 0.0)];
@@ -157,7 +161,7 @@ pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Pat
     patches
 }
 
-/// The surface of a box in space: the middles of rectangles of about `spacing`.
+/// Returns the surface of a box in three dimensions: the centres of rectangles with edges of about `spacing`.
 #[must_use]
 pub fn faces(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let mut patches = Vec::new();
@@ -187,7 +191,7 @@ mod tests {
         (mass, centre, squares)
     }
 
-    /// Mass, centre and inertia are those of the body at any resolution.
+    /// Mass, centre and inertia are exact at any resolution.
     #[test]
     fn moments_are_exact() {
         for spacing in [0.5, 0.19, 0.04] {
@@ -200,7 +204,7 @@ mod tests {
         }
     }
 
-    /// A closed surface has no total area vector, and the volume that ∮ x·n/d gives converges.
+    /// The area vectors of a closed surface sum to zero, and the volume ∮ x·n/d converges.
     #[test]
     fn surfaces_are_closed() {
         let globe = globe(Vector3::zeros(), 1.0, 0.1);
@@ -208,7 +212,7 @@ mod tests {
         assert!((volume / (4.0 / 3.0 * PI) - 1.0).abs() < 1e-12);
         let rectangle = rectangle(Vector3::zeros(), Vector3::new(2.0, 1.0, 0.0), 0.3);
         assert!(rectangle.iter().map(|patch| patch.area).sum::<Vector3<f64>>().norm() < 1e-12);
-        // What lies on a side is all of that side's own, and nothing of the next.
+        // Tracers on a side cover exactly this side.
         let below: f64 = rectangle.iter().filter(|patch| patch.position.y == 0.0).map(|patch| patch.area.norm()).sum();
         assert!((below - 2.0).abs() < 1e-12);
         let circle = circle(Vector3::zeros(), 1.0, 0.3, 1.0);

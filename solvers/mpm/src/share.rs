@@ -1,7 +1,8 @@
-//! A thread's share: points that follow each other, and nodes that follow each other.
+//! Thread partitions: consecutive points and consecutive nodes of a thread.
 //!
-//! What a point takes from nodes is found by the share that has the point; what points bring to a node is added up by the share
-//! that has the node, over all runs that reach it and in their order. So the bits do not depend on how many share the work.
+//! The partition with a point computes its gather from nodes. The partition with a node computes its sum over all
+//! batches that influence the node, in their order. The result is therefore independent of the number of threads, bit
+//! by bit.
 
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -13,66 +14,66 @@ use crate::runs::{self, LONGEST, Run};
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// Fewest points in a share: with fewer threads wait for one another longer than they work.
+/// Minimum number of points in a partition: with fewer points threads mostly wait for each other.
 pub(crate) const FEWEST: usize = 2000;
 
-/// A share of points and nodes.
+/// A thread partition of points and nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Share<S: Space> {
-    /// Its points.
+    /// Points of the partition.
     pub(crate) points: Range<usize>,
-    /// Its nodes, in whole rows along x.
+    /// Nodes of the partition, in whole rows along x.
     pub(crate) nodes: Range<usize>,
-    /// The first of its nodes that no share before reaches, nor any after that one.
+    /// First of its nodes such that no earlier partition influences this node or any later one.
     pub(crate) alone_from: usize,
-    /// Where the nodes end that its points reach.
+    /// End of the nodes that its points influence.
     reach: usize,
-    /// The runs of its points in the step under way.
+    /// Batches of its points in the current step.
     pub(crate) runs: Vec<Run>,
-    /// Those that were found before.
+    /// Batches of the previous step.
     pub(crate) before: Vec<Run>,
-    /// Which of them are of which body.
+    /// Ranges of batches by body.
     pub(crate) pieces: Vec<Piece>,
-    /// Velocity gradients of the points at hand (1/s).
+    /// Velocity gradients of the current points (1/s).
     pub(crate) gradients: Vec<S::Matrix>,
-    /// What stresses tell the budget, run by run, where it is kept.
+    /// Energies of stresses for the budget, batch by batch, if requested.
     pub(crate) flows: Vec<Flow>,
-    /// The first of its points that broke.
+    /// First failure of its points.
     pub(crate) failure: Option<Failure>,
 }
 
-/// Runs of a body in a share.
+/// Batches of a body in a partition.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    /// Place of the body.
+    /// Index of the body.
     pub(crate) body: usize,
-    /// Its runs, among those of the share.
+    /// Range of its batches within the partition.
     pub(crate) runs: Range<usize>,
-    /// The box around its points, lowest and highest along each axis (m), once they have moved.
+    /// Bounding box of its points after they have moved, lower and upper corner (m).
     pub(crate) bounds: [[f64; 3]; 2],
 }
 
-/// A box with nothing in it.
+/// Empty box.
 pub(crate) const NO_BOX: [[f64; 3]; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
-/// The farthest way that a point goes in a step.
+/// Largest displacement of a point in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Way {
-    /// Its square (m²).
+    /// Square of the displacement (m²).
     pub(crate) squared: f64,
-    /// Whether one goes where there is no number.
+    /// True if any displacement is NaN.
     pub(crate) is_lost: bool,
 }
 
 impl Way {
-    /// The farther of two.
+    /// Returns the larger of two displacements.
     pub(crate) fn farther(self, other: Self) -> Self {
         Self { squared: self.squared.max(other.squared), is_lost: self.is_lost || other.is_lost }
     }
 }
 
 impl<S: Space> Share<S> {
-    /// A share with nothing in it.
+    /// Returns an empty partition.
     pub(crate) fn new() -> Self {
         Self {
             points: 0..0,
@@ -88,13 +89,15 @@ impl<S: Space> Share<S> {
         }
     }
 
-    /// Its runs with their bodies.
+    /// Iterates over its batches with their bodies.
     pub(crate) fn parts<'a>(&'a self, bodies: &'a [Body]) -> impl Iterator<Item = (&'a Body, &'a [Run])> {
         self.pieces.iter().map(|piece| (&bodies[piece.body], &self.runs[piece.runs.clone()]))
     }
 
-    /// Puts its points where they are next, and boxes around those of each body; and which runs are known yet, for a basis
-    /// that reaches from `start` on ([`Basis::START`]).
+    /// Moves its points to their next positions, computes the bounding boxes of its bodies and marks batches that are
+    /// still known.
+    ///
+    /// `start` is the [`Basis::START`] of the basis. Returns the largest displacement.
     pub(crate) fn move_points(&mut self, points: &mut Lent<'_, S>, lattice: &Lattice, start: f64) -> Way {
         let mut way = Way::default();
         for piece in &mut self.pieces {
@@ -121,7 +124,7 @@ impl<S: Space> Share<S> {
         way
     }
 
-    /// Finds the runs of its points.
+    /// Finds the batches of its points.
     pub(crate) fn find_runs<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], points: &Points<S>) {
         std::mem::swap(&mut self.runs, &mut self.before);
         self.runs.clear();
@@ -141,8 +144,9 @@ impl<S: Space> Share<S> {
     }
 }
 
-/// Cuts the points of bodies into as many ranges as there are shares, about as long as each other. Where a body is cut, the
-/// points on both sides are in different cells: there every run ends, however many shares there are.
+/// Splits the points of bodies into ranges of about equal length, one for each partition.
+///
+/// A body is split only between points in different cells. Every batch ends there for any number of partitions.
 pub(crate) fn cut_points<S: Space, B: Basis>(
     shares: &mut [Share<S>],
     lattice: &Lattice,
@@ -165,8 +169,10 @@ pub(crate) fn cut_points<S: Space, B: Basis>(
     }
 }
 
-/// Cuts the nodes in use into as many ranges as there are shares, of whole rows: each share has those that its own points reach
-/// first; but as many as another where all bodies are on the same.
+/// Splits the nodes in use into ranges of whole rows, one for each partition.
+///
+/// Each partition gets the nodes that its own points influence first. If all bodies share one field, the ranges are
+/// equal.
 pub(crate) fn cut_nodes<S: Space>(shares: &mut [Share<S>], bodies: &[Body], used: usize, one_field: bool) {
     let count = shares.len();
     let first_of = |(number, share): (usize, &Share<S>)| {
@@ -191,13 +197,13 @@ pub(crate) fn cut_nodes<S: Space>(shares: &mut [Share<S>], bodies: &[Body], used
     }
 }
 
-/// Where the row of a node begins.
+/// Returns the first slot of a node's row.
 fn row_of(window: &Window, node: [i32; 3]) -> usize {
     let slot = window.slot(node);
     slot - window.along(0, node[0])
 }
 
-/// The box around positions and another box.
+/// Returns the bounding box of a box and positions.
 #[inline(always)]
 pub(crate) fn enclose<S: Space>([mut low, mut high]: [[f64; 3]; 2], positions: &[S::Vector]) -> [[f64; 3]; 2] {
     for &position in positions {

@@ -1,8 +1,8 @@
-//! One simulation: the cycle points → nodes → points.
+//! A simulation: the cycle points → nodes → points.
 //!
-//! Each stage is a function of the parts that it needs: the state of bodies and points ([`State`]), the grid
-//! ([`Grid`]), what bounds bodies ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums
-//! over points and nodes stand in [`crate::scatter`] and [`crate::gather`].
+//! Each stage uses only the parts that it needs: the state of bodies and points ([`State`]), the grid ([`Grid`]),
+//! boundaries ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums over points and
+//! nodes are in [`crate::scatter`] and [`crate::gather`].
 
 use crate::accounts::Accounts;
 use crate::basis::{Basis, with_basis};
@@ -29,7 +29,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Broken;
 use grainbench_scene::space::Space;
 
-/// A run.
+/// A running simulation.
 pub(crate) struct Simulation<S: Space> {
     pub(crate) scene: Scene,
     pub(crate) scheme: Scheme,
@@ -38,23 +38,23 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) grid: Grid<S>,
     pub(crate) boundary: Boundary<S>,
     pub(crate) contacts: Contacts<S>,
-    /// The energy budget, where it is asked for.
+    /// Energy budget, if requested.
     pub(crate) accounts: Option<Accounts<S>>,
-    /// The energy of a closed run, once it is watched.
+    /// Energy of a closed run, once it is monitored.
     pub(crate) watched: Option<Watched>,
-    /// Whether no step has been taken yet.
+    /// True before the first step.
     pub(crate) is_fresh: bool,
-    /// Time that the fastest wave takes through a cell (s).
+    /// Crossing time of the fastest wave through a cell (s).
     pub(crate) critical: f64,
     pub(crate) step: u64,
     pub(crate) settling: bool,
-    /// Step of the last look.
+    /// Step of the last observation.
     pub(crate) looked: u64,
     pub(crate) cost: Counts,
 }
 
 impl<S: Space> Simulation<S> {
-    /// Bodies where a scene has them; not yet settled nor set moving, see [`Simulation::begin`].
+    /// Creates the bodies of a scene, without relaxation and initial velocities, see [`Simulation::begin`].
     pub(crate) fn new(
         scene: &Scene,
         setting: Setting,
@@ -84,10 +84,10 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Settles the bodies and sets them moving.
+    /// Relaxes the bodies and sets their initial velocities.
     ///
     /// # Errors
-    /// When they reach farther than a grid can, or break while they settle.
+    /// When bodies extend farther than a grid can, or fail during relaxation.
     pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
         let team = self.state.team.clone();
         team.lead(|| self.settle())?;
@@ -99,25 +99,25 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Opens the energy budget, where it is asked for.
+    /// Opens the energy budget, if requested.
     pub(crate) fn open_accounts(&mut self) {
         let Self { scene, scheme, state, grid, .. } = self;
         self.accounts = scene.asks_for_budget().then(|| Accounts::open(scheme.setting.basis, state, &grid.lattice));
     }
 
-    /// Takes `steps` steps; after the last one what touches is known.
+    /// Takes `steps` steps; contact points are recorded in the last one.
     ///
     /// # Errors
-    /// When a point's state breaks.
+    /// When the state of a point becomes invalid.
     pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
         let team = self.state.team.clone();
         team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))
     }
 
-    /// One cycle.
+    /// Takes one step.
     ///
     /// # Errors
-    /// When a point's state breaks.
+    /// When the state of a point becomes invalid.
     pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<Broken>> {
         let Self { critical, step, scheme, .. } = *self;
         self.stages(record).map_err(|failure| failure.told(step, scheme.time_step, critical))?;
@@ -128,7 +128,7 @@ impl<S: Space> Simulation<S> {
         self.check()
     }
 
-    /// The stages of a cycle, one after another.
+    /// Executes the stages of a cycle.
     fn stages(&mut self, record: bool) -> Result<(), Failure> {
         let time = self.step as f64 * self.scheme.time_step;
         self.boundary.move_walls(time, self.scheme.time_step, self.settling);
@@ -148,20 +148,20 @@ impl<S: Space> Simulation<S> {
         self.move_on(if self.scheme.is_projected() { Velocities::Projected } else { Velocities::Stepped })
     }
 
-    /// Memory that points, tracers, nodes and contacts take up (B), by their numbers, and the budget where it is kept.
+    /// Returns the memory (bytes) of points, tracers, nodes, contacts and the energy budget.
     fn bytes(&self) -> usize {
         let Self { state, grid, contacts, accounts, .. } = self;
         state.bytes() + grid.bytes() + contacts.bytes() + accounts.as_ref().map_or(0, Accounts::bytes)
     }
 
-    /// Gives every field its window.
+    /// Assigns a window to every field.
     pub(crate) fn place_windows(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, .. } = self;
         let placed = grid.place_windows(&mut state.bodies, scheme.has_one_field());
         placed.map_err(|(place, cause)| state.failure(place, state.bodies[place].part.points.start, cause))
     }
 
-    /// Gives every thread its share, and takes the points to the nodes.
+    /// Partitions the points among threads and scatters them to the nodes.
     pub(crate) fn scatter(&mut self) {
         let Self { scheme, state, grid, contacts, .. } = self;
         state.find_runs(scheme.setting.basis, &grid.lattice);
@@ -169,7 +169,7 @@ impl<S: Space> Simulation<S> {
         scatter(scheme, state, grid, contacts.tracers.len() > 0);
     }
 
-    /// Begins the step for driven bodies and contacts.
+    /// Starts the step of driven bodies and contacts.
     fn begin_meeting(&mut self) {
         let Self { scheme, state, grid, boundary, contacts, accounts, settling, cost, step, .. } = self;
         if let Some(accounts) = accounts {
@@ -183,7 +183,7 @@ impl<S: Space> Simulation<S> {
         contacts.find_shared(scheme, state, grid, boundary, cost);
     }
 
-    /// Stresses from the velocities of the nodes as the points bring them, before nodes take the step.
+    /// Updates stresses from the velocities scattered by points, before nodes are integrated.
     fn stress_first(&mut self) -> Result<(), Failure> {
         self.grid.project();
         self.finish_projection();
@@ -202,14 +202,14 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Projected momenta become velocities that contacts, held sides and driven bodies allow.
+    /// Converts projected momenta to velocities that satisfy boundary and contact conditions.
     fn finish_projection(&mut self) {
         let Self { scheme, state, grid, boundary, contacts, .. } = self;
         boundary.hold_projected(state, grid);
         contacts.meet_projected(scheme, state, grid, boundary);
     }
 
-    /// The force of a manufactured solution.
+    /// Adds the body force of a manufactured solution.
     fn body_force(&mut self, time: f64) {
         let Some(motion) = self.scene.start.manufactured.filter(|_| !self.settling) else { return };
         let Self { scheme, state, grid, .. } = self;
@@ -224,7 +224,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Springs push; then held sides fold what is beyond them back, and all forces are known.
+    /// Adds spring forces, then folds mirror images at fixed or symmetry boundaries; all forces are then known.
     fn spring_forces(&mut self, record: bool) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         if let Some(accounts) = accounts {
@@ -241,8 +241,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Momenta and forces of the nodes become velocities after the step that boundary and contacts allow, and their
-    /// change.
+    /// Computes node velocities after the step under boundary and contact conditions, and their changes.
     fn step_nodes(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         let damping = Damping::over(surroundings.damping, scheme.time_step);
@@ -253,7 +252,7 @@ impl<S: Space> Simulation<S> {
         grid.find_changes(state, damping);
     }
 
-    /// Points take velocities and the way that they go from the nodes, driven ones from what drives them.
+    /// Gathers velocities and displacements of points from nodes; driven points get their prescribed velocity.
     fn gather(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, accounts, .. } = self;
         gather(scheme, Damping::over(surroundings.damping, scheme.time_step), state, grid);
@@ -273,7 +272,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Stresses follow, if they do not come first; tracers and points go where they are next, unless that is too far.
+    /// Updates stresses, unless they come first, and moves tracers and points; rejects displacements above one cell.
     fn move_on(&mut self, velocities: Velocities) -> Result<(), Failure> {
         let Self { scheme, state, grid, contacts, accounts, .. } = self;
         let cell = grid.lattice.shortest(S::DIMENSION);

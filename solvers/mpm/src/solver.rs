@@ -1,4 +1,4 @@
-//! The material point method as a solver: settings with names, the step, and the record of a run.
+//! The material point method as a solver: named settings, the time step, and the record of a run.
 
 use crate::grid::Lattice;
 use crate::limits;
@@ -15,7 +15,7 @@ use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps
 use grainbench_scene::space::{Plane, Solid, Space};
 use std::f64::consts::PI;
 
-/// The material point method in one setting.
+/// The material point method with one setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mpm {
     /// Name, such as `mpm:gap`.
@@ -25,9 +25,9 @@ pub struct Mpm {
 }
 
 impl Mpm {
-    /// The best known setting, one for all scenes.
+    /// Best known setting, used for all scenes.
     pub const BEST: Self = Self { name: "mpm", setting: Setting::BEST };
-    /// All settings with names.
+    /// All named settings.
     pub const ALL: [Self; 6] = [
         Self::BEST,
         Self { name: "mpm:2000", setting: Setting::classic(Contact::Kinematic) },
@@ -37,13 +37,13 @@ impl Mpm {
         Self { name: "mpm:no-slip", setting: Setting::classic(Contact::NoSlip) },
     ];
 
-    /// The setting of that name.
+    /// Returns the setting with the given name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|mpm| mpm.name == name)
     }
 
-    /// Another setting under the same name, for cases that say why.
+    /// Returns a changed setting under the same name; the case must give the reason.
     #[must_use]
     pub fn with(self, change: impl FnOnce(&mut Setting)) -> Self {
         let mut changed = self;
@@ -55,10 +55,10 @@ impl Mpm {
         RunError::Resolution { solver: self.name(), reason }
     }
 
-    /// The plan of a run, for callers who want to know what it would cost.
+    /// Returns the grid and steps of a run, for example to estimate its cost.
     ///
     /// # Errors
-    /// When the scene cannot be expressed or the resolution makes no sense.
+    /// When the scene is not supported or the resolution is invalid.
     pub fn plan(&self, scene: &Scene, resolution: &Resolution) -> Result<Plan, RunError> {
         if let Some(reason) = limits::reason(scene) {
             return Err(RunError::Unsupported { solver: self.name(), reason });
@@ -116,7 +116,7 @@ impl Mpm {
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.resolution_error("expected a duration in seconds".to_owned()));
         };
-        // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
+        // The number of steps is whole; the tolerance prevents rounding from adding a step.
         let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
         let damped = scene.global_damping * time / steps;
         if damped >= 2.0 {
@@ -172,15 +172,15 @@ impl Mpm {
     }
 }
 
-/// Steps after which a watcher hears of progress at the latest.
+/// Maximum number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
 
-/// What a material point takes, its share of tracers and springs with it (B).
+/// Memory of a material point with its share of tracers and springs (bytes).
 const BYTES_OF_A_POINT: f64 = 600.0;
-/// What a node takes in each body that reaches it (B).
+/// Memory of a node in each body that uses it (bytes).
 const BYTES_OF_A_NODE: f64 = 150.0;
 
-/// What is wrong with the points and nodes that a scene needs with cells of some lengths (m): more than there is memory for.
+/// Returns the reason if the points and nodes of a scene, with the given cell lengths (m), exceed the memory.
 fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
     let dimensions = scene.dimension.count();
     let in_cells = |volume: f64| cell[..dimensions].iter().fold(volume, |count, cell| count / cell);
@@ -205,14 +205,15 @@ fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
         .or_else(|| memory::beyond(nodes, "nodes", BYTES_OF_A_NODE))
 }
 
-/// Cells that a radius must have: a body smaller than a cell shows the grid no gradient of its own.
+/// Minimum radius in cells: a body smaller than a cell has no gradient on the grid.
 const SMALLEST: f64 = 0.5;
 
-/// Cells that must lie between two sides that are held: with one, energy was seen to grow 2e7-fold in 60 periods; with
-/// 1.5 it stays within .2 %.
+/// Minimum number of cells between two fixed or symmetry boundaries.
+///
+/// With one cell, the energy grew by a factor of 2e7 in 60 periods; with 1.5 cells it is constant within .2 %.
 const BETWEEN_SIDES: f64 = 1.5;
 
-/// A simulation under way.
+/// A running simulation.
 struct Running<'a, S: Space> {
     simulation: Simulation<S>,
     run: Run<'a>,
@@ -261,12 +262,14 @@ pub struct Plan {
     pub time_step: f64,
     /// Number of steps.
     pub steps: u64,
-    /// Time that the fastest wave takes through a cell (s).
+    /// Crossing time of the fastest wave through a cell (s).
     pub critical: f64,
 }
 
-/// Cells of about `cell` (m): along periodic axes a whole number of them. Nodes stand on the faces of the domain along
-/// periodic axes, else on the first held side, else at zero, shifted by the phase of the setting.
+/// Returns a lattice with cells of about `cell` (m), a whole number of them along periodic axes.
+///
+/// Nodes are on the faces of the domain along periodic axes, otherwise on the first fixed or symmetry boundary,
+/// otherwise at zero; they are shifted by the phase of the setting.
 fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
     let mut lattice = Lattice { cell: [cell; 3], inverse: [1.0 / cell; 3], origin: [0.0; 3], period: [None; 3] };
     for axis in 0..scene.dimension.count() {

@@ -1,4 +1,4 @@
-//! How a run starts: pressed, settled, set moving.
+//! Start of a run: initial stress, relaxation and initial velocities.
 
 use crate::basis::with_basis;
 use crate::failure::Failure;
@@ -13,7 +13,7 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
 impl<S: Space> Simulation<S> {
-    /// The damped phase before the clock starts.
+    /// Applies the initial stress and runs the damped relaxation before time zero.
     pub(crate) fn settle(&mut self) -> Result<(), Box<Broken>> {
         let start = self.scene.start;
         let gravity = start.settle.map_or(self.scene.gravity, |settle| settle.gravity);
@@ -27,25 +27,26 @@ impl<S: Space> Simulation<S> {
             }
             let (gravity, damping) = (S::restrict(self.scene.gravity), self.scene.global_damping);
             self.surroundings = Surroundings { gravity, damping };
-            // Its steps are not those of the scene's clock, but they are work.
+            // The steps of relaxation do not count for the simulated time, but they count as cost.
             (self.settling, self.step) = (false, 0);
             self.contacts.touches.clear();
         }
         Ok(())
     }
 
-    /// Drops surfaces that nobody needs, and finds the boxes around bodies.
+    /// Removes unneeded tracers and computes the bounding boxes of bodies.
     pub(crate) fn cover(&mut self) {
         let Self { scheme, state, boundary, contacts, .. } = self;
         contacts.drop_idle_surfaces(scheme.setting.contact, state, boundary);
         state.find_all_bounds(&mut contacts.tracers);
     }
 
-    /// Gives every point the velocity that the scene asks for, half a step before the clock starts: v − a Δt/2, with the
-    /// acceleration a of the first step ([`Simulation::accelerations`]), so that every step is alike.
+    /// Sets the initial velocity of every point, half a step before time zero: v − a Δt/2.
+    ///
+    /// Here a is the acceleration of the first step ([`Simulation::accelerations`]), so that all steps are alike.
     ///
     /// # Errors
-    /// When bodies reach farther than a grid can.
+    /// When bodies extend farther than a grid can.
     pub(crate) fn set_moving(&mut self) -> Result<(), Failure> {
         let half = 0.5 * self.scheme.time_step;
         let accelerations = self.accelerations()?;
@@ -53,7 +54,8 @@ impl<S: Space> Simulation<S> {
         before.resize(points.len(), S::ORIGIN);
         for body in bodies.iter() {
             let medium = body.medium();
-            // A grain that has settled has sunk: it turns about where its mass is, or it would start with a velocity.
+            // A relaxed grain has sunk. It must turn about its current centre of mass, or it would start with a
+            // velocity.
             let (_, centre) = points.centre_of_mass(body.part.points.clone());
             for at in body.part.points.clone() {
                 let position = S::embed(points.position[at]);
@@ -92,9 +94,10 @@ impl<S: Space> Simulation<S> {
 
     /// Returns the acceleration of every point at the start (m/s²).
     ///
-    /// Bodies that have settled are in balance: gravity beyond what they settled under acts on them. All others move by
-    /// gravity and by the stress that they start with, as the nodes i that reach a point feel them: a = Σ N_i (f_i/m_i + g),
-    /// f_i = −Σ V σ ∇N_i over the points, with no acceleration across held sides. A body whose stress bears its weight rests.
+    /// Relaxed bodies are in equilibrium, and only the change of gravity after relaxation acts on them. Other bodies
+    /// are accelerated by gravity and by their initial stress. As felt through the nodes i that influence a point, a =
+    /// Σ N_i (f_i/m_i + g), with f_i = −Σ V σ ∇N_i over the points and no acceleration across fixed or symmetry
+    /// boundaries. A body rests if its stress carries its weight.
     fn accelerations(&mut self) -> Result<Vec<S::Vector>, Failure> {
         let start = &self.scene.start;
         let balanced = start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);

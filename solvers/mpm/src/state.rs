@@ -1,4 +1,4 @@
-//! The state: bodies and their material points.
+//! State of a simulation: bodies and their material points.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -15,8 +15,9 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// Points are put in order when they make more runs than in order, by one in so many: with a third more a step costs little
-/// more, and putting them in order as much as a tenth of it.
+/// Inverse of the relative growth in the number of batches at which points are sorted again.
+///
+/// With a third more batches a step costs little more, while sorting costs up to a tenth of a step.
 const DISORDER: usize = 3;
 
 /// Bodies and points.
@@ -24,12 +25,12 @@ const DISORDER: usize = 3;
 pub(crate) struct State<S: Space> {
     pub(crate) bodies: Vec<Body>,
     pub(crate) points: Points<S>,
-    /// Velocities of the points a step before those of the last look (m/s): velocities are half a step behind
+    /// Velocities of the points one step before the last observation (m/s), because velocities are half a step behind
     /// positions.
     pub(crate) before: Vec<S::Vector>,
-    /// The shares of the threads.
+    /// Thread partitions.
     pub(crate) shares: Vec<Share<S>>,
-    /// The threads of the run.
+    /// Threads of the run.
     pub(crate) team: Team,
 }
 
@@ -39,20 +40,20 @@ impl<S: Space> State<S> {
         Self { bodies, before: points.velocity.clone(), points, shares, team }
     }
 
-    /// Has other threads share the work.
+    /// Replaces the threads.
     #[cfg(test)]
     pub(crate) fn set_team(&mut self, team: Team) {
         (self.shares, self.team) = (vec![Share::new(); team.members()], team);
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         let runs: usize = self.shares.iter().map(|share| size_of_val(&*share.runs) + size_of_val(&*share.before)).sum();
         self.points.bytes() + size_of_val(&*self.before) + runs + size_of_val(&*self.bodies)
     }
 
-    /// Gives each share its points and finds their runs. Where the points of a body no longer follow each other they are put
-    /// in the order of their cells.
+    /// Assigns points to thread partitions and finds their batches. The points of a body are sorted by cell when they
+    /// are too disordered.
     pub(crate) fn find_runs(&mut self, basis: Basis, lattice: &Lattice) {
         with_basis!(basis, B => {
             self.share_points::<B>(lattice);
@@ -84,7 +85,7 @@ impl<S: Space> State<S> {
         });
     }
 
-    /// The runs of these bodies are known no more.
+    /// Marks the batches of these bodies as unknown.
     fn forget_runs(&mut self, places: &[usize]) {
         for Share { pieces, runs, .. } in &mut self.shares {
             for piece in pieces.iter().filter(|piece| places.contains(&piece.body)) {
@@ -99,8 +100,8 @@ impl<S: Space> State<S> {
         team.each(shares.iter_mut(), |_, share| share.find_runs::<B>(lattice, bodies, points));
     }
 
-    /// Runs with their bodies, whose windows have some of these nodes, with the number of the share that they are in; all runs of
-    /// a body in their order.
+    /// Iterates over the bodies whose windows contain any of these nodes, with their batches and the number of the
+    /// partition; the batches of a body are in order.
     pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[Run])> {
         let Self { bodies, shares, .. } = self;
         let all = shares.iter().enumerate();
@@ -111,7 +112,7 @@ impl<S: Space> State<S> {
         })
     }
 
-    /// Puts the points where they are next.
+    /// Moves the points to their next positions.
     pub(crate) fn move_points(&mut self, lattice: &Lattice, start: f64) -> Way {
         let Self { points, shares, team, .. } = self;
         let mut left = points.lent();
@@ -120,7 +121,7 @@ impl<S: Space> State<S> {
         team.fold(parts, go, Way::default(), Way::farther)
     }
 
-    /// The boxes around all bodies, where shares have put boxes around their points, and runs of tracers have theirs.
+    /// Computes the bounding boxes of all bodies from those of thread partitions and tracer chunks.
     pub(crate) fn gather_bounds(&mut self, tracers: &Tracers<S>) {
         let Self { bodies, shares, .. } = self;
         let mut around = vec![NO_BOX; bodies.len()];
@@ -136,7 +137,7 @@ impl<S: Space> State<S> {
         }
     }
 
-    /// The boxes around all bodies and runs of tracers, where they were put.
+    /// Computes the bounding boxes of all bodies and tracer chunks from their positions.
     pub(crate) fn find_all_bounds(&mut self, tracers: &mut Tracers<S>) {
         tracers.find_boxes();
         for body in &mut self.bodies {
@@ -145,8 +146,10 @@ impl<S: Space> State<S> {
         }
     }
 
-    /// Kinetic energy (J) of the points' velocities and of the affine part that they carry, ½ m tr(A D Aᵀ) with
-    /// D = Σ w r rᵀ: what their momentum on the nodes has, but for the smoothing.
+    /// Returns the kinetic energy (J) of the points' velocities and their affine part, ½ m tr(A D Aᵀ) with D = Σ w r
+    /// rᵀ.
+    ///
+    /// This is the energy of their momentum on the nodes, without the smoothing.
     pub(crate) fn kinetic_energy(&self, basis: Basis, lattice: &Lattice) -> f64 {
         let Self { points, bodies, .. } = self;
         let mut sum = 0.0;
@@ -168,12 +171,12 @@ impl<S: Space> State<S> {
         sum
     }
 
-    /// A point of a body that broke.
+    /// Returns the failure of a point of a body.
     pub(crate) fn failure(&self, place: usize, point: usize, cause: Cause) -> Failure {
         Failure { owner: self.bodies[place].owner, position: S::embed(self.points.position[point]), cause }
     }
 
-    /// Which point went too far in a step (s), of those that may go a `cell` (m).
+    /// Returns the failure of the fastest point, which has moved more than a `cell` (m) in a step (s).
     pub(crate) fn ran_away(&self, time_step: f64, cell: f64) -> Failure {
         let points = &self.points;
         let all = |body: &Body| -> Range<usize> { body.part.points.clone() };
@@ -197,7 +200,7 @@ impl<S: Space> State<S> {
     }
 }
 
-/// A box in space, flat in the plane.
+/// Embeds a box in three dimensions; it is flat in the plane.
 fn in_space<S: Space>(bounds: [[f64; 3]; 2]) -> [Vector3<f64>; 2] {
     bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))))
 }

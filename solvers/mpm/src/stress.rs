@@ -1,4 +1,4 @@
-//! From velocity gradients to deformation and stress, material by material.
+//! Deformation and stress from velocity gradients, material by material.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -20,14 +20,14 @@ use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
-/// A point whose state broke.
+/// A point with an invalid state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BrokenPoint {
     point: usize,
     cause: Cause,
 }
 
-/// The deformation gradient in three dimensions: in the plane nothing is stretched out of it.
+/// Returns the deformation gradient in three dimensions; in plane strain the out-of-plane stretch is one.
 #[inline(always)]
 pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64> {
     let mut full = S::embed_gradient(deformation);
@@ -37,11 +37,12 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
     full
 }
 
-/// Velocity gradients, then deformation and stress of the points, with `then` what comes next for those of a share. What they
-/// tell the budget, if it `counts`, and the farthest of what `then` gives.
+/// Computes velocity gradients, deformation and stress of the points, then calls `then` for each thread partition.
+///
+/// Returns the energies for the budget, if it `counts`, and the largest displacement that `then` returns.
 ///
 /// # Errors
-/// With the first point that broke.
+/// The failure of the first point with an invalid state.
 pub(crate) fn follow<S: Space>(
     scheme: &Scheme,
     state: &mut State<S>,
@@ -73,7 +74,7 @@ pub(crate) fn follow<S: Space>(
     Ok((flow, way))
 }
 
-/// The same of a piece of a share.
+/// Computes gradients, deformation and stress for the points of one body in a partition.
 fn follow_piece<S: Space>(
     scheme: &Scheme,
     share: &mut Share<S>,
@@ -123,24 +124,28 @@ fn follow_piece<S: Space>(
     }
 }
 
-/// F ← (1 + Δt ∇v) F, volume and stress of every point of some runs, of which `gradients` are the velocity gradients
-/// (1/s). With `COUNT` tells of each run what the stresses after the step take on the strain of it, the work of
-/// plastic flow: the flow stress after the step times the plastic strain of it, on the mean volume; and that against
-/// viscosity: half of what the viscous stresses before and after the step do on the strain of it.
+/// Kernel of the update F ← (1 + Δt ∇v) F, of volume and of stress, for every point of some batches with velocity
+/// gradients `gradients` (1/s).
 ///
-/// Where points carry `spins` of their own, one that flows takes on that of the velocities around it: what it shared
-/// its spin with has moved on, and spins that nothing answers to grow until a grain of a few cells flies apart.
+/// With `COUNT` it records three energies of each batch. The first is the work of the stresses after the step on its
+/// strain. The second is the plastic work: the flow stress after the step times the plastic strain increment, on the
+/// mean volume. The third is the work against viscosity: half of the work of viscous stresses before and after the step
+/// on its strain.
+///
+/// If points carry `spins`, a yielding point takes the spin of the velocity field around it, because the neighbours
+/// that shared its spin have moved away. Otherwise unbalanced spins would grow until a grain of a few cells breaks
+/// apart.
 struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     law: L,
-    /// Runs one after another, of as many points in all as the longest can have.
+    /// Consecutive batches with at most as many points as the longest batch.
     runs: &'a [Run],
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
     points: &'a mut Lent<'b, S>,
-    /// Run by run, for these do not depend on the shares.
+    /// Energies by batch, because these do not depend on the thread partitions.
     flows: &'a mut Vec<Flow>,
-    /// The first point that broke, if any did.
+    /// First point with an invalid state.
     failure: &'a mut Option<BrokenPoint>,
 }
 
@@ -156,7 +161,8 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
         let stresses = &mut points.stress[range.clone()];
         let plastic_strains = L::PlasticStrain::those_of(points.plastic_strain, range.clone());
         let (volumes, references) = (&mut points.volume[range.clone()], &points.reference_volume[range.clone()]);
-        // What is found of many points at once: volume ratios, their logarithms, 3/2 s:s, and work against viscosity.
+        // Values computed for many points at once: volume ratios, their logarithms, 3/2 s:s, and work against
+        // viscosity.
         let (mut ratios, mut logarithms) = ([0.0; LONGEST], [0.0; LONGEST]);
         let (mut squares, mut works) = ([0.0; LONGEST], [0.0; LONGEST]);
         if COUNT && L::VISCOUS {
@@ -224,7 +230,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
     }
 }
 
-/// Deforms what a point is by F ← (1 + Δt ∇v) F. Gives its volume over that at the start.
+/// Updates the deformation F ← (1 + Δt ∇v) F and returns the ratio of volume to initial volume.
 #[inline(always)]
 fn deformed<S: Space>(deformation: &mut S::Matrix, increment: S::Matrix) -> f64 {
     *deformation = *deformation + increment * *deformation;

@@ -1,4 +1,4 @@
-//! The stress that bodies start with: that of a fluid at rest, or what the scene gives.
+//! Initial stress of bodies: hydrostatic pressure, or a stress given by the scene.
 
 use crate::bodies::Body;
 use crate::material::{Law, Material, State as Material3, with_law};
@@ -11,14 +11,15 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
-/// Why a body cannot start with the stress that the scene gives it, if one cannot. A stress that is linear in the place is
-/// largest at a corner of the box around the body.
+/// Returns the reason why a body cannot have the initial stress that the scene gives, or `None`.
+///
+/// A stress that is linear in position has its maximum at a corner of the bounding box.
 pub(crate) fn refusal(scene: &Scene) -> Option<String> {
     let dimensions = scene.dimension.count();
     scene.bodies.iter().find_map(|body| {
         let stress = body.stress.as_ref()?;
         let material = scene.deformable.get(usize::from(body.material)).copied().flatten()?;
-        // The step plays no part: what is at rest has no viscous stress.
+        // The time step has no influence, because material at rest has no viscous stress.
         let law = Material::of(&material, 1.0);
         let (low, high) = body.shape.corners();
         let centre = body.shape.centre();
@@ -53,14 +54,14 @@ fn state_under(law: &Material, stress: &Matrix3<f64>, dimensions: usize) -> Opti
     with_law!(law, law => law.under_stress(stress, dimensions))
 }
 
-/// Gives the points of bodies the stress that the scene says they start with, `gravity` (m/s²) being what a fluid rests under.
+/// Applies the initial stress of the scene to the points; `gravity` (m/s²) determines the hydrostatic pressure.
 pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut State<S>, tracers: &Tracers<S>) {
     let State { bodies, points, .. } = state;
     for body in bodies.iter() {
         if scene.start.initial_pressure.is_some() {
             let depth = |position: S::Vector| S::embed(position).dot(&gravity);
             let surface = tracers.position[body.tracers.clone()].iter().map(|&at| depth(at));
-            // Zero at its highest point.
+            // The pressure is zero at the highest point of the body.
             let top = surface.fold(f64::INFINITY, f64::min);
             let pressure = |position| body.density * (depth(position) - top);
             press(body, points, |position| Matrix3::from_diagonal_element(-pressure(position)));
@@ -75,10 +76,11 @@ pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut S
     }
 }
 
-/// Puts every point of a body under the stress at its place (Pa).
+/// Applies the stress at its position (Pa) to every point of a body.
 fn press<S: Space>(body: &Body, points: &mut Points<S>, stress: impl Fn(S::Vector) -> Matrix3<f64>) {
     for at in body.part.points.clone() {
-        // What no material bears was refused; a state that is no number breaks at the first step, and is told.
+        // Stresses that no material can carry were rejected before. A NaN state fails at the first step and is
+        // reported.
         let broken = || Material3 { deformation: Matrix3::from_element(f64::NAN), ..Material3::default() };
         let wanted = stress(points.position[at]);
         let Material3 { deformation, stress, .. } =

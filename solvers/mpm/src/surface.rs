@@ -1,4 +1,4 @@
-//! Tracers: massless points on the surface of bodies, carried by the grid.
+//! Tracers: massless points on the surface of bodies that move with the grid.
 
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -14,20 +14,20 @@ use nalgebra::Vector3;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Tracers of all bodies, structure of arrays.
+/// Tracers of all bodies, as a structure of arrays.
 #[derive(Clone, Debug)]
 pub(crate) struct Tracers<S: Space> {
     /// Position (m).
     pub(crate) position: Vec<S::Vector>,
     /// Area times outward unit normal (m²; m in the plane).
     pub(crate) area: Vec<S::Vector>,
-    /// In the plane, the neighbours along the surface: the one before and the one after.
+    /// In the plane, the previous and the next tracer along the surface.
     pub(crate) neighbours: Vec<[u32; 2]>,
-    /// Runs of tracers with the boxes around them.
+    /// Chunks of tracers with their bounding boxes.
     pub(crate) chunks: Vec<Chunk<S>>,
 }
 
-/// A run of tracers.
+/// A chunk of consecutive tracers.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk<S: Space> {
     pub(crate) tracers: Range<usize>,
@@ -36,13 +36,13 @@ pub(crate) struct Chunk<S: Space> {
 }
 
 impl<S: Space> Chunk<S> {
-    /// Puts the box around its tracers, which are here.
+    /// Computes the bounding box of its tracers from their positions.
     #[inline(always)]
     fn enclose(&mut self, positions: &[S::Vector]) {
         [self.low, self.high] = enclose::<S>(NO_BOX, positions).map(|[x, y, z]| S::restrict(Vector3::new(x, y, z)));
     }
 
-    /// Whether its box meets another.
+    /// Returns true if its box intersects another box.
     #[inline(always)]
     pub(crate) fn meets(&self, low: S::Vector, high: S::Vector) -> bool {
         (0..S::DIMENSION).all(|axis| {
@@ -51,13 +51,13 @@ impl<S: Space> Chunk<S> {
         })
     }
 
-    /// Squared distance from a position to its box (m²).
+    /// Returns the squared distance from a position to its box (m²).
     #[inline(always)]
     fn away(&self, position: S::Vector) -> f64 {
         self.away_from(position, position)
     }
 
-    /// Squared distance from another box to its box (m²).
+    /// Returns the squared distance between its box and another box (m²).
     #[inline(always)]
     fn away_from(&self, low: S::Vector, high: S::Vector) -> f64 {
         let mut squared = 0.0;
@@ -70,26 +70,26 @@ impl<S: Space> Chunk<S> {
     }
 }
 
-/// The surface of a body next to a position.
+/// Surface of a body near a position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near<S: Space> {
     /// Distance above the surface (m), negative inside.
     pub(crate) gap: f64,
-    /// Unit normal out of the body.
+    /// Outward unit normal of the body.
     pub(crate) normal: S::Vector,
 }
 
-/// Tracers in a run.
+/// Number of tracers in a chunk.
 const RUN: usize = 16;
 
-/// Reach of the mean over tracers in space, in their spacings: a dozen take part.
+/// Radius of the mean over tracers in three dimensions, in tracer spacings: about twelve tracers contribute.
 const SPREAD: f64 = 2.0;
 
-/// Cosine between two surfaces' normals above which they do not face each other.
+/// Cosine between the normals of two surfaces above which they do not face each other.
 const FACING: f64 = -0.2;
 
 impl<S: Space> Tracers<S> {
-    /// Memory that a tracer takes up (B), its part of a run included.
+    /// Memory of a tracer with its part of a chunk (bytes).
     pub(crate) const BYTES: usize =
         2 * size_of::<S::Vector>() + size_of::<[u32; 2]>() + size_of::<Chunk<S>>().div_ceil(RUN);
 
@@ -101,13 +101,13 @@ impl<S: Space> Tracers<S> {
         self.position.len()
     }
 
-    /// All of them, lent.
+    /// Returns a mutable view of all tracers.
     pub(crate) fn lent(&mut self) -> TracersOf<'_, S> {
         let Self { position, area, neighbours, chunks } = self;
         TracersOf { first: 0, position, area, neighbours, chunks }
     }
 
-    /// Adds a closed surface; in the plane its patches follow each other with the body on their left.
+    /// Adds a closed surface; in the plane its elements are ordered with the body on their left.
     pub(crate) fn add(&mut self, patches: &[seed::Patch]) {
         let (start, count) = (self.len() as u32, patches.len() as u32);
         for (number, patch) in (0..count).zip(patches) {
@@ -117,7 +117,7 @@ impl<S: Space> Tracers<S> {
         }
     }
 
-    /// Cuts the tracers of a body, the last that were added, into runs; which runs they are.
+    /// Splits the tracers of the body that was added last into chunks, and returns the indices of the chunks.
     pub(crate) fn cut(&mut self, tracers: Range<usize>) -> Range<usize> {
         let first = self.chunks.len();
         let mut start = tracers.start;
@@ -129,23 +129,23 @@ impl<S: Space> Tracers<S> {
         first..self.chunks.len()
     }
 
-    /// Boxes around all runs, where tracers were put and not carried.
+    /// Computes the boxes of all chunks from the positions of tracers.
     pub(crate) fn find_boxes(&mut self) {
         self.chunks.iter_mut().for_each(|chunk| chunk.enclose(&self.position[chunk.tracers.clone()]));
     }
 
-    /// A box around a box and some runs (m).
+    /// Returns the bounding box of a box and some chunks (m).
     pub(crate) fn enclose_runs(&self, runs: Range<usize>, around: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
         self.chunks[runs].iter().fold(around, |around, chunk| enclose::<S>(around, &[chunk.low, chunk.high]))
     }
 
-    /// Outward unit normal at a tracer.
+    /// Returns the outward unit normal at a tracer.
     #[inline(always)]
     pub(crate) fn normal(&self, at: usize) -> S::Vector {
         unit::<S>(self.area[at])
     }
 
-    /// Finds those of some runs that any tracer of a run, moved by `shift`, can have its nearest one in.
+    /// Finds the chunks that can contain the nearest tracer of any tracer of the chunk `of`, which is moved by `shift`.
     #[inline(always)]
     pub(crate) fn find_near(
         &self,
@@ -159,16 +159,18 @@ impl<S: Space> Tracers<S> {
         let is_near =
             |chunk: &usize| S::DIMENSION == 3 || self.chunks[*chunk].away_from(low, high) < 2.0 * reach * reach;
         near.clear();
-        // In space the mean over tracers reaches farther than the nearest one.
+        // In three dimensions the mean over tracers extends farther than the nearest tracer.
         near.extend(chunks.clone().filter(is_near));
     }
 
-    /// The surface made of some runs where a position on another, of which `facing` points out (of any length), has
-    /// gone through it; none when it has not, does not face it, or is farther than `reach` (m) from it.
+    /// Returns the surface of some chunks where a position has penetrated it.
     ///
-    /// `closest` is the tracer of these runs that the position before was closest to, and then the one that this is closest
-    /// to. Positions along a surface have theirs next to each other, so it tells how far to look; what is found does not
-    /// depend on it.
+    /// `facing` is an outward vector of any length at the position. Returns `None` if the position is outside, does not
+    /// face the surface, or is farther than `reach` (m) from it.
+    ///
+    /// On entry, `closest` is the tracer of these chunks nearest to the previous position, on return the tracer nearest
+    /// to this position. Neighbouring positions have neighbouring nearest tracers, so it limits the search radius; the
+    /// result does not depend on it.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
@@ -213,8 +215,7 @@ impl<S: Space> Tracers<S> {
         (faces && near.gap <= 0.0 && -near.gap < reach).then_some(near)
     }
 
-    /// Whether a position is above the surface for sure: higher over the tracer closest to it than the next one is
-    /// away.
+    /// Returns true if a position is certainly outside: its height over the nearest tracer exceeds the tracer spacing.
     #[inline(always)]
     fn is_above(&self, closest: usize, position: S::Vector) -> bool {
         let area = self.area[closest];
@@ -223,11 +224,13 @@ impl<S: Space> Tracers<S> {
         S::dot(position - self.position[closest], area) > squared * spacing
     }
 
-    /// The surface next to a position in space, where tracers have no neighbours: with weights a (1 − r²/H²)² of the
-    /// tracers y that face the given normal, a their areas and r their distance from the foot of the position on the
-    /// plane of the nearest one, n̄ = Σ w n/|Σ w n| and the gap Σ w (x − y)·(n̄ + n)/2 / Σ w. Exact on planes, and on
-    /// spheres where the gap is zero: there x − y is perpendicular to the sum of their normals. None where the foot
-    /// lies beside the surface.
+    /// Returns the surface near a position in three dimensions, where tracers have no neighbours.
+    ///
+    /// The sums are over tracers y that face the given normal, with weights w = a (1 − r²/H²)². Here a is the area of a
+    /// tracer, and r its distance from the foot of the position on the tangent plane of the nearest tracer. The normal
+    /// is n̄ = Σ w n/|Σ w n|, and the gap is Σ w (x − y)·(n̄ + n)/2 / Σ w. This is exact on planes, and on spheres at
+    /// zero gap, where x − y is perpendicular to the sum of the normals. Returns `None` if the foot is beside the
+    /// surface.
     #[inline(always)]
     fn around(
         &self,
@@ -268,7 +271,7 @@ impl<S: Space> Tracers<S> {
         Some(Near { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
     }
 
-    /// The chord between two tracers, seen from a position.
+    /// Returns the chord between two tracers with its point nearest to a position.
     #[inline(always)]
     fn chord(&self, from: usize, to: usize, position: S::Vector) -> Chord<S> {
         let chord = self.position[to] - self.position[from];
@@ -277,47 +280,47 @@ impl<S: Space> Tracers<S> {
         Chord { ends: [from, to], chord, part, off: way - chord * part }
     }
 
-    /// The surface over a chord: the cubic that has the tracers' normals at its ends.
+    /// Returns the surface over a chord: the cubic with the tracers' normals at its ends.
     #[inline(always)]
     fn on(&self, &Chord { ends: [from, to], chord, part, off }: &Chord<S>) -> Near<S> {
         let [first, last] = [self.normal(from), self.normal(to)];
         let mean = first * (1.0 - part) + last * part;
         let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
-        // Slopes of the surface against the chord, times its length, at both ends.
+        // Slopes of the surface relative to the chord, times its length, at both ends.
         let slope = |end: S::Vector| -S::dot(end, chord) / S::dot(end, normal);
         let bump = slope(first) * part * (1.0 - part) * (1.0 - part) - slope(last) * part * part * (1.0 - part);
         Near { gap: S::dot(off, normal) - bump, normal }
     }
 }
 
-/// A vector as long as one.
+/// Returns the unit vector.
 #[inline(always)]
 fn unit<S: Space>(vector: S::Vector) -> S::Vector {
     vector * (1.0 / S::dot(vector, vector).sqrt())
 }
 
-/// The chord between two tracers, seen from a position.
+/// Chord between two tracers, with its point nearest to a position.
 struct Chord<S: Space> {
     ends: [usize; 2],
-    /// From one to the other (m).
+    /// Vector from the first to the second tracer (m).
     chord: S::Vector,
-    /// Where on it the position is closest, as a part of it.
+    /// Nearest point on the chord, as a fraction of its length.
     part: f64,
-    /// From there to the position (m).
+    /// Vector from the nearest point to the position (m).
     off: S::Vector,
 }
 
 impl<S: Space> Chord<S> {
-    /// Squared distance (m²).
+    /// Returns the squared distance to the position (m²).
     #[inline(always)]
     fn away(&self) -> f64 {
         S::dot(self.off, self.off)
     }
 }
 
-/// Tracers that follow each other, lent to a thread: those of whole bodies.
+/// Mutable view of consecutive tracers of whole bodies, for one thread.
 pub(crate) struct TracersOf<'a, S: Space> {
-    /// Number of the first.
+    /// Index of the first tracer.
     first: usize,
     position: &'a mut [S::Vector],
     area: &'a mut [S::Vector],
@@ -326,7 +329,7 @@ pub(crate) struct TracersOf<'a, S: Space> {
 }
 
 impl<S: Space> TracersOf<'_, S> {
-    /// Takes off the first: those of some bodies that follow each other.
+    /// Splits off the tracers of the first bodies.
     pub(crate) fn take_off(&mut self, bodies: &[Body]) -> Self {
         let count = bodies.iter().map(|body| body.tracers.len()).sum();
         let first = self.first;
@@ -339,15 +342,16 @@ impl<S: Space> TracersOf<'_, S> {
     }
 }
 
-/// Carries the tracers of a body for `elapsed` (s) with `velocity` (m/s) of its nodes, interpolated over those that
-/// carry mass, and the boxes around their runs.
+/// Kernel that moves the tracers of a body for `elapsed` (s) and updates the boxes of their chunks.
+///
+/// The node `velocity` (m/s) is interpolated over nodes with mass.
 pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
-    /// Which tracers.
+    /// Tracers to move.
     pub(crate) of: TracersOf<'a, S>,
     pub(crate) nodes: &'a [N],
-    /// What each node counts for at most.
+    /// Weight limit of each node.
     pub(crate) most: &'a [f64],
     pub(crate) velocity: V,
     pub(crate) elapsed: f64,
@@ -360,7 +364,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
         let Self { lattice, part, of, nodes, most, velocity, elapsed, .. } = self;
         let TracersOf { first, position, area, neighbours, chunks } = of;
         let zero = Wide::splat(lanes, 0.0);
-        // Never read unless copied to.
+        // Placeholder that is overwritten before it is read.
         let Some(&any) = nodes.first() else { return };
         let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
         let mut range = 0..position.len();
@@ -389,7 +393,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
                     for (component, way) in way.iter_mut().enumerate().take(S::DIMENSION) {
                         *way = *way + weight * S::component(velocity, component);
                     }
-                    // A node that counts for less does so all around.
+                    // The gradient of a node is reduced with its weight.
                     if S::DIMENSION == 3 && bounds[place] > 0.0 {
                         let whole = bound.pick_below(value, zero, zero.like(1.0));
                         let [y, z] = across.slope;
@@ -404,7 +408,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
                     }
                 }
             }
-            // Where hardly anything carries mass nothing is carried.
+            // Tracers with hardly any mass around them are not moved.
             let (least, inverse) = (zero.like(1e-6), zero.like(1.0) / total);
             let mut next = at;
             for axis in 0..S::DIMENSION {
@@ -440,7 +444,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
     }
 }
 
-/// An area vector carried with the material: ȧ = (tr L) a − Lᵀa (Nanson).
+/// Returns an area vector moved with the material: ȧ = (tr L) a − Lᵀa (Nanson).
 #[inline(always)]
 fn transported<S: Space>(area: S::Vector, gradient: S::Matrix, elapsed: f64) -> S::Vector {
     let (gradient, area) = (S::embed_gradient(gradient), S::embed(area));
@@ -454,12 +458,12 @@ mod tests {
     use nalgebra::Vector2;
     use std::f64::consts::TAU;
 
-    /// The gap of a position inside a circle of radius R that tracers trace with chords of length L.
+    /// Gap of a position inside a circle of radius R that is sampled by chords of length L.
     ///
-    /// The cubic over a chord misses the circle by L⁴/(128 R³) at most, in its middle: with half the angle of the chord a =
-    /// L/2R and the place q L along it, −½ < q < ½, the gap on the circle comes out as R a⁴ (−⅛ + q² − 2q⁴). At a depth d
-    /// the normal is not that of the foot on the circle, at the angle φ ≤ a R/(R − d), but at φ (R − d)/R, which is worth
-    /// φ² d² (R − d)/2R² ≤ L² d²/(8R² (R − d)). Further terms are smaller by (L/R)².
+    /// The error of the cubic over a chord is at most L⁴/(128 R³), at its middle. With half the angle of the chord a =
+    /// L/2R and the position q L along it, −½ < q < ½, the gap on the circle is R a⁴ (−⅛ + q² − 2q⁴). At a depth d the
+    /// normal is not taken at the foot on the circle, at the angle φ ≤ a R/(R − d), but at φ (R − d)/R. The resulting
+    /// error is φ² d² (R − d)/2R² ≤ L² d²/(8R² (R − d)). Further terms are smaller by (L/R)².
     #[test]
     fn the_gap_in_a_circle_is_of_fourth_order() {
         let (centre, radius) = (Vector3::new(0.3, -0.2, 0.0), 1.5);

@@ -1,4 +1,5 @@
-//! What the method claims of itself, and what it owes less than solvers without a grid, setting by setting.
+//! Conformance properties of the method, and their weaker limits compared with solvers without a grid, for each
+//! setting.
 
 use crate::options::Contact;
 use crate::solver::Mpm;
@@ -27,7 +28,7 @@ const fn less(property: &'static str, quantity: &'static str, at_most: f64, beca
     Less { property, quantity, at_most, because }
 }
 
-/// With spins of points and quadratic splines.
+/// Limits with spins of points and quadratic splines.
 const BEST: &[Less] = &[
     less("momentum", "angular", 1e-3, ANGULAR),
     less("galilean-invariance", "", 0.1, GRID_AT_REST),
@@ -35,7 +36,7 @@ const BEST: &[Less] = &[
     less("free-flight", "", 1e-3, SPINNING),
 ];
 
-/// With hat functions.
+/// Limits with hat functions.
 const HATS: &[Less] = &[
     less("momentum", "angular", 0.1, ANGULAR),
     less("galilean-invariance", "", 0.8, GRID_AT_REST),
@@ -46,7 +47,7 @@ const HATS: &[Less] = &[
     less("objectivity", "spin", 0.5, NO_AFFINE_PART),
 ];
 
-/// With hat functions and the contacts of the papers.
+/// Limits with hat functions and the contacts of the original papers.
 const PAPERS: &[Less] = &[
     less("momentum", "momentum", 0.6, OWN_NORMALS),
     less("momentum", "angular", 1.0, OWN_NORMALS),
@@ -58,7 +59,7 @@ const PAPERS: &[Less] = &[
     less("objectivity", "spin", 0.5, NO_AFFINE_PART),
 ];
 
-/// The same with contacts that act at a distance.
+/// Limits of the 2000 paper, whose contact acts at a distance.
 const FIRST_PAPER: &[Less] = &[
     less("momentum", "momentum", 0.6, OWN_NORMALS),
     less("momentum", "angular", 1.0, OWN_NORMALS),
@@ -72,7 +73,9 @@ const FIRST_PAPER: &[Less] = &[
 ];
 
 impl Mpm {
-    /// What it claims of itself at two cells a radius: no order in the time step, for the grid's error is larger.
+    /// Returns the conformance properties at two cells per radius.
+    ///
+    /// There is no order in the time step, because the error of the grid is larger.
     #[must_use]
     pub fn terms(&self) -> Terms {
         let less = match self.setting.contact {

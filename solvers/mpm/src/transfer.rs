@@ -1,4 +1,4 @@
-//! How velocities travel between points and nodes, and the forces that reach nodes by themselves.
+//! Transfer of velocities between points and nodes, and separate transfer of forces to nodes.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil, Window};
@@ -7,22 +7,24 @@ use grainbench_lanes::Number;
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// How velocities travel between points and nodes.
+/// Transfer of velocities between points and nodes.
 pub(crate) trait Transfer: Copy + Send + 'static {
-    /// Whether points carry the affine part of the velocity, or its spin.
+    /// True if points carry the affine part of the velocity, or its spin.
     const AFFINE: bool;
-    /// Whether points take on the velocity of the nodes itself, and not its change alone.
+    /// True if points use the velocity of the nodes itself, and not only its change.
     const AROUND: bool;
-    /// A component of a point's velocity after the step, from what damping leaves of that before, the velocity of the
-    /// nodes around it and their change but for damping.
+    /// Returns a component of a point's velocity after the step.
+    ///
+    /// `before` is the damped velocity before the step, `around` the velocity of the nodes and `change` the change of
+    /// node velocities without damping.
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N;
-    /// What of nodes makes the affine part: their velocities or the changes of these.
+    /// Selects the node values that make the affine part: velocities or their changes.
     fn source<N>(velocity: N, change: N) -> N;
-    /// Affine part after the step, row by row, from that before and the one that the nodes make.
+    /// Returns the affine part after the step, by rows, from the previous one and the one computed from the nodes.
     fn carried<S: Space, N: Number>(before: [[N; 3]; 3], made: [[N; 3]; 3], stencil: &Stencil<N>) -> [[N; 3]; 3];
 }
 
-/// Points keep their velocity and take on its change (Brackbill & Ruppel 1986), blended with the velocity itself:
+/// FLIP: points keep their velocity and add its change (Brackbill & Ruppel 1986), blended with the velocity itself:
 /// v ← (1 − α)(v + Δv) + α v_grid.
 #[derive(Clone, Copy)]
 pub(crate) struct Flip {
@@ -48,8 +50,8 @@ impl Transfer for Flip {
     }
 }
 
-/// Points carry the affine part of the velocity (Jiang et al. 2015), which keeps angular momentum and damps what is
-/// shorter than a few cells.
+/// APIC: points carry the affine part of the velocity (Jiang et al. 2015). It conserves angular momentum and damps
+/// motion with wavelengths below a few cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Apic;
 
@@ -71,12 +73,12 @@ impl Transfer for Apic {
     }
 }
 
-/// Points keep their velocity and a spin, and take on the change of both: FLIP that does not lose the angular momentum
-/// which points of finite extent have, and, unlike APIC, damps nothing.
+/// FLIP with spin: points keep their velocity and a spin, and add the change of both. Unlike FLIP it does not lose the
+/// angular momentum of points of finite extent, and unlike APIC it has no damping.
 ///
-/// The change of the spin is that of the rigid rotation with the angular momentum that the nodes' change has about the
-/// point: Δω = Σ w r × Δv / Σ w |r|² about each axis, r from the point to the node and its lengths across that axis. A
-/// point that flows takes on the spin around it ([`crate::stress::Update`]).
+/// The change of spin is that of a rigid rotation with the angular momentum of the nodes' change about the point: Δω =
+/// Σ w r × Δv / Σ w |r|² about each axis, with r from the point to the node, perpendicular to that axis. A yielding
+/// point takes the spin of the velocity around it ([`crate::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 
@@ -94,14 +96,14 @@ impl Transfer for Spin {
     }
     #[inline(always)]
     fn carried<S: Space, N: Number>(before: [[N; 3]; 3], made: [[N; 3]; 3], stencil: &Stencil<N>) -> [[N; 3]; 3] {
-        // The affine part is B D⁻¹ with B = Σ w Δv rᵀ and D = Σ w r rᵀ, which is diagonal.
+        // The affine part is B D⁻¹ with B = Σ w Δv rᵀ and the diagonal matrix D = Σ w r rᵀ.
         let mut after = before;
         for a in 0..S::DIMENSION {
             for b in a + 1..S::DIMENSION {
                 let [one, two] = [stencil.spread(a), stencil.spread(b)];
                 let total = one + two;
                 let turn = (made[b][a] * one - made[a][b] * two) / total;
-                // A point on a node of hat functions has nothing to turn about.
+                // A point exactly on a node of hat functions has a zero moment of inertia.
                 let turn = total.like(0.0).pick_below(total, turn, total.like(0.0));
                 after[b][a] = after[b][a] + turn;
                 after[a][b] = after[a][b] - turn;
@@ -111,24 +113,26 @@ impl Transfer for Spin {
     }
 }
 
-/// The points of one body and the window they share.
+/// Points of one body and the window of their nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     /// The points.
     pub(crate) points: Range<usize>,
-    /// Where their field keeps its nodes.
+    /// Window of the nodes of their field.
     pub(crate) window: Window,
-    /// How many runs there were when the points were last put in order.
+    /// Number of batches when the points were last sorted.
     pub(crate) runs_in_order: usize,
     /// Half the extent of a point (cells), for GIMP.
     pub(crate) half: f64,
-    /// Mass of a full cell at the start (kg).
+    /// Initial mass of a full cell (kg).
     pub(crate) cell_mass: f64,
 }
 
 impl Part {
-    /// Half the extent of a point along each axis (cells): it grows with the material lines along the axis, √b_ii,
-    /// which keeps points contiguous where the stretch is along the axes and does not change under rotation.
+    /// Returns the half extent of a point along each axis (cells).
+    ///
+    /// It grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if the
+    /// stretch is along the axes, and the extent does not change under rotation.
     #[inline(always)]
     pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
         if !B::EXTENDED {
@@ -142,7 +146,7 @@ impl Part {
     }
 }
 
-/// Internal force alone, after the stress has changed.
+/// Adds internal forces to the nodes, after the stress has changed.
 pub(crate) fn scatter_force<S: Space, B: Basis>(
     lattice: &Lattice,
     part: &Part,
@@ -158,7 +162,7 @@ pub(crate) fn scatter_force<S: Space, B: Basis>(
     }
 }
 
-/// A force (N) on each point, such as that of a manufactured solution, to the nodes.
+/// Adds a force (N) of each point, such as that of a manufactured solution, to the nodes.
 pub(crate) fn scatter_body_force<S: Space, B: Basis>(
     lattice: &Lattice,
     part: &Part,
@@ -173,7 +177,7 @@ pub(crate) fn scatter_body_force<S: Space, B: Basis>(
     }
 }
 
-/// Sets a vector of each point of a part to Σ N_i Δv_i over the changes of the nodes that reach it.
+/// Sets a vector of each point of a part to Σ N_i Δv_i over the changes of nodes.
 pub(crate) fn gather_changes<S: Space, B: Basis>(
     lattice: &Lattice,
     part: &Part,

@@ -1,4 +1,4 @@
-//! Simulations of the tests within this crate.
+//! Simulations for tests in this crate.
 
 use crate::options::Setting;
 use crate::simulation::Simulation;
@@ -8,7 +8,7 @@ use grainbench_scene::source::SceneSource;
 use grainbench_scene::space::Space;
 use std::path::Path;
 
-/// A simulation of the scene in a text that has not begun yet, and how many steps it is to take.
+/// Returns a simulation of a scene text that has not begun yet, and its number of steps.
 pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, points: u32) -> (Simulation<S>, u64) {
     let text = format!("title = 'test'\n{text}");
     let source = SceneSource::from_text("test", Path::new(""), &text);

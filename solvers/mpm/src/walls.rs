@@ -5,16 +5,16 @@ use grainbench_scene::scene::{Wall, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// A plane where it is now.
+/// A plane at its current position.
 #[derive(Clone, Debug)]
 pub(crate) struct RigidPlane<S: Space> {
-    /// A point on it (m).
+    /// Point on the plane (m).
     pub(crate) point: S::Vector,
-    /// Unit normal out of the solid.
+    /// Unit normal out of the solid wall.
     pub(crate) normal: S::Vector,
-    /// Force of bodies on it in the last step (N).
+    /// Force of bodies on the plane in the last step (N).
     pub(crate) force: S::Vector,
-    /// Place of its material in the scene.
+    /// Index of its material in the scene.
     pub(crate) material: u16,
     start: [Vector3<f64>; 2],
     motion: Motion,
@@ -24,7 +24,7 @@ pub(crate) struct RigidPlane<S: Space> {
 }
 
 impl<S: Space> RigidPlane<S> {
-    /// The plane of a wall; none for walls of other shapes.
+    /// Returns the plane of a wall, or `None` for walls of other shapes.
     pub(crate) fn new(wall: &Wall) -> Option<Self> {
         let WallShape::Plane { point, normal } = wall.shape else { return None };
         Some(Self {
@@ -40,7 +40,7 @@ impl<S: Space> RigidPlane<S> {
         })
     }
 
-    /// Puts the plane where it is at `time` (s), with the velocity it has in the step that begins then.
+    /// Moves the plane to its position at `time` (s), with the velocity of the step that starts then.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let now = self.motion.displacement(time, time_step);
         self.point = S::restrict(self.motion.moved(self.start[0], &now));
@@ -53,18 +53,18 @@ impl<S: Space> RigidPlane<S> {
         }
     }
 
-    /// Holds it still, as it is before the clock starts.
+    /// Stops the plane, for the phase before time zero.
     pub(crate) fn stop(&mut self) {
         (self.velocity, self.spin) = (Vector3::zeros(), Vector3::zeros());
     }
 
-    /// Height of a position above the plane (m).
+    /// Returns the height of a position above the plane (m).
     #[inline(always)]
     pub(crate) fn height(&self, position: S::Vector) -> f64 {
         S::dot(position - self.point, self.normal)
     }
 
-    /// Velocity of the plane at a position (m/s).
+    /// Returns the velocity of the plane at a position (m/s).
     #[inline(always)]
     pub(crate) fn velocity(&self, position: S::Vector) -> S::Vector {
         S::restrict(self.velocity + self.spin.cross(&(S::embed(position) - self.centre)))

@@ -135,8 +135,8 @@ mod tests {
 
     /// Returns a session of one solver in one case on a machine with varying load.
     ///
-    /// Noise lengthens every time by up to a third, and the machine's speed drifts by up to half. The session as a whole
-    /// is slower by up to 4 %.
+    /// Noise lengthens every time by up to a third, and the machine's speed drifts by up to half. The session as a
+    /// whole is slower by up to 4 %.
     fn session(seed: u64, slower: f64, points: usize, repetitions: usize) -> Vec<Point> {
         let mut dice = Pcg64Mcg::seed_from_u64(seed);
         let mut unit = move || dice.random::<f64>();

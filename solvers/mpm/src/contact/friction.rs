@@ -1,49 +1,51 @@
-//! Friction of springs: what a tracer feels along the surface that it has gone through, or that nothing rubs.
+//! Friction of springs: the tangential force on a surface tracer that penetrates another surface.
 //!
-//! Along the surface a spring is stretched by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s =
-//! −k s, |F_s| ≤ μ k g, with s the stretch (m), g the depth (m) and k the stiffness of the tracer's springs (N/m).
+//! A tangential spring is displaced by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s = −k s,
+//! |F_s| ≤ μ k g. Here s is the tangential spring displacement (m), g the depth (m) and k the stiffness of the
+//! tracer's springs (N/m).
 
 use super::Other;
 use crate::off::Off;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A tracer that has gone through another surface.
+/// Overlap of a tracer that penetrates another surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Overlap<S: Space> {
-    /// How deep it is (m).
+    /// Depth (m).
     pub(crate) depth: f64,
-    /// Unit normal out of what it has gone into.
+    /// Outward unit normal of the penetrated body.
     pub(crate) normal: S::Vector,
     /// Stiffness k of its springs (N/m).
     pub(crate) stiffness: f64,
-    /// How far it moves against the other surface in the step (m).
+    /// Displacement relative to the other surface in the step (m).
     pub(crate) slip: S::Vector,
     /// Coefficient of friction μ.
     pub(crate) friction: f64,
 }
 
 impl<S: Space> Overlap<S> {
-    /// What of a vector is along the surface.
+    /// Returns the component of a vector along the surface.
     #[inline(always)]
     fn along(&self, vector: S::Vector) -> S::Vector {
         vector - self.normal * S::dot(vector, self.normal)
     }
 }
 
-/// What friction answers.
+/// Tangential response of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear<S: Space> {
     /// Force along the surface (N).
     pub(crate) force: S::Vector,
-    /// Stretch of the spring before the step and after it (m).
+    /// Tangential spring displacement before and after the step (m).
     stretch: [S::Vector; 2],
-    /// Whether Coulomb's limit was reached.
+    /// True if the Coulomb limit was reached.
     pub(crate) slipping: bool,
 }
 
 impl<S: Space> Shear<S> {
-    /// Force along the surface after `slip` more, and the spring's new stretch: −k s, at most μ times the push.
+    /// Computes the tangential force after a further `slip`, and the new spring displacement: −k s, at most μ times the
+    /// normal force.
     #[inline(always)]
     fn new(stretch: S::Vector, overlap: &Overlap<S>) -> Self {
         let Overlap { depth, stiffness, slip, friction, .. } = *overlap;
@@ -58,8 +60,10 @@ impl<S: Space> Shear<S> {
         }
     }
 
-    /// Work of friction in the step (J), in which the spring went from one stretch to another and slid for the rest of
-    /// the slip: the mean force of the spring times what its end slid.
+    /// Returns the frictional work in the step (J): the mean force of the spring times the sliding displacement of its
+    /// end.
+    ///
+    /// The sliding displacement is the slip less the change of the spring displacement.
     #[inline(always)]
     pub(crate) fn rubbed(&self, overlap: &Overlap<S>) -> f64 {
         let [before, after] = self.stretch;
@@ -67,15 +71,16 @@ impl<S: Space> Shear<S> {
         0.5 * overlap.stiffness * S::dot(before + after, along)
     }
 
-    /// Energy in the springs across and along the surface, ½ k (g² + s²) (J).
+    /// Returns the energy in the normal and tangential springs, ½ k (g² + s²) (J).
     #[inline(always)]
     pub(crate) fn energy(&self, overlap: &Overlap<S>) -> f64 {
         let [_, stretch] = self.stretch;
         0.5 * overlap.stiffness * (overlap.depth * overlap.depth + S::dot(stretch, stretch))
     }
 
-    /// The same at the end of the step, when points and stresses are looked at: forces are those at its beginning. A
-    /// spring that slips stores no more.
+    /// Returns the spring energy at the end of the step (J), when points and stresses are observed.
+    ///
+    /// Forces are those at the beginning of the step. A slipping spring stores no more energy.
     #[inline(always)]
     pub(crate) fn energy_ahead(&self, overlap: &Overlap<S>) -> f64 {
         let Overlap { depth, normal, stiffness, slip, .. } = *overlap;
@@ -87,18 +92,18 @@ impl<S: Space> Shear<S> {
     }
 }
 
-/// Friction of the springs of tracers, or its absence.
+/// Friction of tracer springs, or its absence.
 pub(crate) trait Tangential<S: Space> {
-    /// Whether there is a force along surfaces at all.
+    /// True if tangential forces exist.
     const ACTIVE: bool;
-    /// What a tracer feels along the surface of what it has gone into.
+    /// Computes the tangential response of a tracer that penetrates `other`.
     fn respond(&mut self, tracer: usize, other: Other, overlap: &Overlap<S>) -> Shear<S>;
 }
 
 impl<S: Space> Tangential<S> for Off {
     const ACTIVE: bool = false;
 
-    /// Surfaces slip wherever they move along each other.
+    /// Returns no force; surfaces slip wherever they move along each other.
     #[inline(always)]
     fn respond(&mut self, _tracer: usize, _other: Other, overlap: &Overlap<S>) -> Shear<S> {
         let along = overlap.along(overlap.slip);
@@ -107,22 +112,22 @@ impl<S: Space> Tangential<S> for Off {
     }
 }
 
-/// Springs along the surface that a tracer can have at a time.
+/// Maximum number of tangential springs of a tracer.
 const AT_ONCE: usize = 4;
 
-/// A spring along the surface.
+/// A tangential spring.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Spring<S: Space> {
-    /// What the tracer touches.
+    /// Contact partner.
     other: Other,
-    /// Evaluation at which it last touched.
+    /// Number of the evaluation at which it was last in contact.
     stamp: u64,
-    /// Stretch (m).
+    /// Tangential spring displacement (m).
     stretch: S::Vector,
 }
 
-/// Springs along the surface of every tracer; one that did not touch at the last evaluation has been forgotten.
+/// Tangential springs of all tracers. A spring without contact at the last evaluation is reset.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Coulomb<S: Space> {
@@ -136,7 +141,7 @@ impl<S: Space> Coulomb<S> {
         Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
     }
 
-    /// Stretch of the spring of a tracer to what it touches; it counts as touching now.
+    /// Returns the tangential spring displacement of a tracer and contact partner, and marks the spring as in contact.
     #[inline(always)]
     fn stretch(&mut self, tracer: usize, other: Other) -> &mut S::Vector {
         let (now, springs) = (self.now, &mut self.of[tracer]);
@@ -164,30 +169,30 @@ impl<S: Space> Tangential<S> for &mut Coulomb<S> {
     }
 }
 
-/// Friction of a scene's springs.
+/// Friction of the springs of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) enum Friction<S: Space> {
-    /// μ = 0 for all laws, or bodies meet at nodes.
+    /// μ = 0 for all laws, or contact acts at nodes.
     Absent,
-    /// Every tracer has springs.
+    /// Every tracer has tangential springs.
     Present(Coulomb<S>),
 }
 
 impl<S: Space> Friction<S> {
-    /// That of so many tracers, if it `acts`.
+    /// Returns the friction of a number of tracers; it is absent unless it `acts`.
     pub(crate) fn new(acts: bool, tracers: usize) -> Self {
         if acts { Self::Present(Coulomb::new(tracers)) } else { Self::Absent }
     }
 
-    /// Begins an evaluation.
+    /// Starts an evaluation.
     pub(crate) const fn begin(&mut self) {
         if let Self::Present(springs) = self {
             springs.now += 1;
         }
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Absent => 0,
@@ -195,7 +200,7 @@ impl<S: Space> Friction<S> {
         }
     }
 
-    /// Whether it is that of as many tracers as another one, or as absent.
+    /// Returns true if both frictions are absent, or both have the same number of tracers.
     pub(crate) const fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Absent, Self::Absent) => true,
@@ -211,7 +216,8 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// What a tracer with springs of 200 N/m that is .01 m deep feels along x, after it has slipped by `slip` (m).
+    /// Returns the force along x on a tracer with springs of 200 N/m at a depth of .01 m, after it has slipped by
+    /// `slip` (m).
     fn force(friction: &mut Friction<Plane>, slip: f64, coefficient: f64) -> f64 {
         let Friction::Present(springs) = friction else { return f64::NAN };
         let (normal, slip) = (Vector2::y(), Vector2::new(slip, 0.0));
@@ -219,7 +225,7 @@ mod tests {
         Tangential::respond(&mut &mut *springs, 0, Other::Wall(0), &overlap).force.x
     }
 
-    /// A spring is stretched for as long as its tracer touches, and no longer: after a hop it begins at nothing again.
+    /// A spring keeps its displacement only during contact: after a hop it starts at zero again.
     #[test]
     fn a_hop_leaves_no_stretch() {
         let mut friction = Friction::<Plane>::new(true, 1);
@@ -227,7 +233,7 @@ mod tests {
             (true, 1e-3, -0.2),
             (true, 1e-3, -0.4),
             (true, 0.0, -0.4),
-            // One evaluation without a touch, and the first one after it.
+            // One evaluation without contact, and the first evaluation after it.
             (false, 0.0, f64::NAN),
             (true, 0.0, 0.0),
             (true, -1e-3, 0.2),
@@ -240,8 +246,8 @@ mod tests {
         }
     }
 
-    /// A slipping tracer feels μ k g, whatever the stretch: μ 200 · .01 N. Two thousandths more of μ are two thousandths
-    /// more of it, and springs half as stiff half of it.
+    /// A slipping tracer has the force μ k g, independent of the displacement: μ 200 · .01 N. The force is proportional
+    /// to μ, so an increase of μ by two thousandths increases the force by the same ratio.
     #[test]
     fn what_slips_feels_the_coefficient_of_friction() {
         for coefficient in [0.3, 0.3 * 1.002] {

@@ -1,23 +1,25 @@
-//! A body as a point on its surface sees it: the nodes around that carry mass.
+//! Surface shape functions: interpolation between a point on a body's surface and the nodes with mass around it.
 //!
-//! Forces on a surface act on nodes and tracers follow nodes, weighted by the basis functions. Where flow has drawn a
-//! grain out to three times its length its points stand a cell and a half apart, and a node may count half at a tracer
-//! and have a thousandth of the mass of others: pushed as hard as they are it flies off, and takes along what it can.
-//! So no node counts for more than its mass can bear.
+//! Forces on a surface act on nodes, and tracers follow nodes, with weights of the basis functions. In strong plastic
+//! flow a grain may be stretched to three times its length, and its points are then a cell and a half apart. A node can
+//! have half of the weight at a tracer but a thousandth of the mass of other nodes. An unlimited force would accelerate
+//! this node without bound, and it would drag the surface along. The weight of a node is therefore limited by its mass.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::transfer::Part;
 use grainbench_scene::space::Space;
 
-/// What w² of a node is at most, in its mass over that of a full cell. An impulse on a surface changes the velocity
-/// there by Σ w²/m, which is 1 to 2 (per mass of a cell) in sum where a surface is well sampled. There only nodes that
-/// points hardly reach are above it, which count for little anyway: rolling, impacts and presses differ in the fourth
-/// digit.
+/// Upper limit of w² of a node, relative to its mass over the mass of a full cell.
+///
+/// An impulse on a surface changes the velocity there by Σ w²/m, which is 1 to 2 (per mass of a cell) where a surface
+/// is well sampled. There the limit affects only nodes with hardly any mass, which have small weights anyway. Rolling,
+/// impacts and presses change in the fourth digit.
 const MOST: f64 = 4.0;
 
-/// What every node of a body's window, of given masses (kg), counts for at most at its surface: √(4 m/m_cell), so that
-/// a node fades out with its mass.
+/// Computes the weight limit of every node of a window from its mass (kg): √(4 m/m_cell).
+///
+/// A node with vanishing mass therefore has no influence.
 pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]) {
     let factor = MOST / cell_mass;
     for (most, node) in most.iter_mut().zip(nodes) {
@@ -25,18 +27,18 @@ pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]
     }
 }
 
-/// A body held at a point on its surface.
+/// Interpolation at a point on the surface of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grip<S: Space> {
     stencil: Stencil<f64>,
     /// Sum of the weights.
     total: f64,
-    /// Velocity there (m/s).
+    /// Interpolated velocity (m/s).
     pub(crate) velocity: S::Vector,
 }
 
 impl<S: Space> Grip<S> {
-    /// The body at `position`; none where it has no mass around. Nodes hold momenta.
+    /// Creates the interpolation at `position`, or returns `None` if there is no mass nearby. Nodes hold momenta.
     #[inline(always)]
     pub(crate) fn new<B: Basis>(
         lattice: &Lattice,
@@ -61,7 +63,7 @@ impl<S: Space> Grip<S> {
         (total > 1e-6).then(|| Self { stencil, total, velocity: velocity * (1.0 / total) })
     }
 
-    /// A force (N) on the body there.
+    /// Applies a force (N) to the body at this point.
     #[inline(always)]
     pub(crate) fn push<B: Basis>(&self, part: &Part, force: S::Vector, nodes: &mut [Node<S>], most: &[f64]) {
         let share = force * (1.0 / self.total);
@@ -77,7 +79,7 @@ mod tests {
     use crate::grid::Node;
     use grainbench_scene::space::Plane;
 
-    /// What a node of a mass counts for at most, in a body with 3 kg a cell.
+    /// Returns the weight limit of a node with the given mass, in a body with 3 kg per cell.
     fn most(mass: f64) -> f64 {
         let mut most = [f64::NAN];
         bear::<Plane>(&[Node { mass, ..Node::EMPTY }], CELL, &mut most);
@@ -88,12 +90,12 @@ mod tests {
 
     #[test]
     fn a_node_counts_by_its_function_until_it_has_hardly_any_mass() {
-        // A plane half way between two nodes, and on a node: what is outside has a sixth of a cell's mass, and a
-        // fiftieth.
+        // A surface halfway between two nodes, and one on a node: the outer nodes have a sixth and a forty-eighth of
+        // the mass of a cell.
         for (weight, mass) in [(0.5, CELL / 6.0), (0.75, 0.5 * CELL), (0.125, CELL / 48.0)] {
             assert!(weight < most(mass));
         }
-        // Then it fades out, so that w²/m stays what it is at most.
+        // For smaller masses the limit acts, so that w²/m does not exceed its bound.
         for mass in [0.1, 1e-6] {
             assert!((most(mass) * most(mass) / mass * CELL / MOST - 1.0).abs() < 1e-12);
         }

@@ -1,4 +1,4 @@
-//! How bodies touch: springs between surfaces, or conditions at nodes.
+//! Contact of bodies: springs between surfaces, or conditions at nodes.
 
 pub(crate) mod friction;
 pub(crate) mod grip;
@@ -11,33 +11,33 @@ pub(crate) mod shared;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// What a body touches.
+/// Contact partner of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Other {
     Body(u32),
     Wall(u16),
 }
 
-/// One place where a body touches another or a wall, as the last step had it.
+/// A contact point between a body and another body or a wall, in the last step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch<S: Space> {
-    /// Which body.
+    /// Index of the body.
     pub(crate) body: u32,
     pub(crate) other: Other,
-    /// Where (m).
+    /// Contact point (m).
     pub(crate) point: S::Vector,
-    /// Force on the body along the normal into it (N).
+    /// Normal force on the body (N), directed into it.
     pub(crate) push: S::Vector,
-    /// Force on the body along the surface (N).
+    /// Tangential force on the body (N).
     pub(crate) shear: S::Vector,
-    /// How deep the surfaces overlap (m).
+    /// Overlap of the surfaces (m).
     pub(crate) depth: f64,
     pub(crate) slipping: bool,
-    /// Energy in its springs at the end of the step (J).
+    /// Energy in the springs at the end of the step (J).
     pub(crate) energy: f64,
 }
 
-/// Friction between materials; pairs without a law do not feel each other.
+/// Friction coefficients between materials; pairs without a law do not interact.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionTable {
     coefficients: Vec<Option<f64>>,
@@ -50,7 +50,7 @@ impl FrictionTable {
         Self { coefficients, materials: scene.materials.len() }
     }
 
-    /// Whether any law has friction.
+    /// Returns true if any law has friction.
     pub(crate) fn acts(&self) -> bool {
         self.coefficients.iter().flatten().any(|&friction| friction != 0.0)
     }

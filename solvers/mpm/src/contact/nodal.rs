@@ -1,17 +1,18 @@
-//! The papers' contact: at nodes that several bodies or a wall share, each body is held against the common velocity.
+//! Contact conditions of the original papers, at nodes that several bodies or a wall share: each body is constrained
+//! relative to the common velocity.
 //!
-//! The common velocity is that of the centre of mass (of the wall, where there is one), v. Where a body of velocity vᵍ
-//! is in contact, with its own outward normal n, Δv = vᵍ − v and t along its tangential part, vᵍ ← vᵍ − Δv_n (n + μ'
-//! t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23; Bardenhagen et al. 2001, eq. 10).
-//! Contact means
+//! The common velocity v is the velocity of the wall, if there is one, or of the centre of mass. For a body in contact
+//! with velocity vᵍ and its own outward normal n, Δv = vᵍ − v, and t is the unit vector along the tangential part of
+//! Δv. Then vᵍ ← vᵍ − Δv_n (n + μ' t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23;
+//! Bardenhagen et al. 2001, eq. 10). The contact condition depends on the paper:
 //!
 //! - 2000: approach, Δv_n > 0;
-//! - 2001: compression, n·σn < 0, whichever way the body moves; departing, the quotient above is negative and the body
-//!   sticks, as the equation has it. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the rate of strain
-//!   that it would give a cell (eqs. 17–22; eq. 22 prints `max`, which would enlarge it).
+//! - 2001: compression, n·σn < 0, for any motion of the body. For a departing body the quotient above is negative and
+//!   the body sticks, as the equation states. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the strain
+//!   rate that it would cause in a cell (eqs. 17–22; eq. 22 prints `max`, which would increase the impulse).
 //!
-//! At a wall the normal is the wall's. Between bodies normals are not common, so momentum is kept only as far as they
-//! are opposite.
+//! At a wall the normal of the wall is used. The normals of two bodies are not opposite in general, and momentum is
+//! conserved only as far as they are.
 
 use super::shared::{Field, Shared};
 use super::{FrictionTable, Other};
@@ -26,10 +27,10 @@ use grainbench_scene::space::Space;
 /// Safety factor γ of eq. 21.
 const COLLAPSE: f64 = 0.5;
 
-/// Traction, over the modulus, below which a surface counts as free of it.
+/// Traction, relative to the modulus, below which a surface counts as traction-free.
 const UNSTRESSED: f64 = 1e-9;
 
-/// What the rules need to know.
+/// Parameters of nodal contact.
 pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) friction: &'a FrictionTable,
@@ -37,8 +38,7 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// Who feels what is taken from the bodies, as a force over the step: walls and driven bodies, which both move as they
-/// are told.
+/// Bodies with prescribed motion, which receive the reactions as forces over the step: walls and driven bodies.
 pub(crate) struct Felt<'a, S: Space, A> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
@@ -46,7 +46,7 @@ pub(crate) struct Felt<'a, S: Space, A> {
     pub(crate) ledger: A,
 }
 
-/// Velocities after contact.
+/// Applies nodal contact to the velocities.
 pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -60,7 +60,7 @@ pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
     }
 }
 
-/// Velocities after contact at all shared nodes.
+/// Applies the contact conditions of the papers at all shared nodes.
 fn apply<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -86,7 +86,7 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
         let moved = group.wall.is_some() || mover.is_some();
         let common_before = if moved { common } else { before * (1.0 / mass) };
         for member in members {
-            // What is moved goes on; with one field for all, bodies are no members of their own.
+            // Driven bodies keep their velocity. With one field for all bodies, no member is a body of its own.
             if bodies[member.body as usize].driven.is_some() && rules.contact != Contact::NoSlip {
                 continue;
             }
@@ -120,7 +120,8 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
                 let along = S::dot(away, normal);
                 let touching = match rules.contact {
                     Contact::Traction => {
-                        // A surface that nothing has pressed yet is held while bodies approach, or nothing ever would.
+                        // A surface without any traction yet counts as in contact while bodies approach, so that
+                        // contact can begin.
                         let none = UNSTRESSED * body.deformable.longitudinal_modulus() * member.mass / body.density;
                         let traction = S::dot(normal, face.stress * normal);
                         traction < if along > 0.0 { none } else { 0.0 }
@@ -132,7 +133,7 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
                 }
                 let tangential = away - normal * along;
                 let size = S::dot(tangential, tangential).sqrt();
-                // Departing, Δv_t/Δv_n is below μ whatever it is.
+                // For departing bodies Δv_t/Δv_n is negative and therefore always below μ.
                 let kept = if along > 0.0 && size > friction * along { friction * along / size } else { 1.0 };
                 let change = normal * along + tangential * kept;
                 let wanted = if rules.contact == Contact::Traction {
@@ -167,9 +168,11 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
     }
 }
 
-/// Pairs of bodies, and of bodies and walls, that have met at a node: pushed apart along their common normal while they
-/// approach or press, with Coulomb friction, by projected Gauss–Seidel over the pairs of each node. Impulses are equal
-/// and opposite, so momentum is kept to rounding however many bodies meet.
+/// Applies contact to pairs of bodies, or bodies and walls, whose surfaces intersect near a node.
+///
+/// Pairs are separated along their common normal while they approach or are under pressure, with Coulomb friction. The
+/// pairs of each node are solved by projected Gauss–Seidel. Impulses are equal and opposite, so momentum is conserved
+/// to rounding for any number of bodies.
 fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -207,8 +210,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 if along <= 0.0 && !pressing && S::dot(before, normal) <= 0.0 {
                     continue;
                 }
-                // Impulse on the other along the normal: what stops the approach, and pulls only while the bodies
-                // press.
+                // Normal impulse on the other body. It stops the approach, and may be negative only while the bodies
+                // are under pressure.
                 let sum = S::dot(before, normal) + effective * along;
                 let push = if pressing { sum } else { sum.max(0.0) };
                 let rubbed = before - normal * S::dot(before, normal) + (apart - normal * along) * effective;
@@ -256,7 +259,7 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     }
 }
 
-/// Sweeps over the pairs of a node at most.
+/// Maximum number of sweeps over the pairs of a node.
 const SWEEPS: usize = 12;
 
 #[cfg(test)]
@@ -270,8 +273,8 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// Velocities of three bodies of 1, 2 and 3 kg at a node, of which the first meets the second and the second the third
-    /// along x, after contact.
+    /// Returns the velocities after contact of three bodies of 1, 2 and 3 kg at a node. The first and second body, and
+    /// the second and third body, are in contact along x.
     fn after(friction: f64, velocities: [Vector2<f64>; 3]) -> [Vector2<f64>; 3] {
         let discs = ["a", "b", "c"].map(|name| format!("grains.{name} = {{ material = 'm', radius = 1.0, position = "));
         let text = format!(
@@ -306,9 +309,9 @@ mod tests {
         [0, 1, 2].map(|at| nodes[at].velocity)
     }
 
-    /// Three bodies at a node. The error of the second pair's impulse falls by (1/m₂)²/((1/m₁ + 1/m₂)(1/m₂ + 1/m₃)) = 1/5
-    /// in a sweep, and there are twelve. The first pair is solved with that of the sweep before: it leaves 5⁻¹¹ p₂/3 of the
-    /// first velocity, with p₂ = 5 N s where bodies come from both sides, and less elsewhere.
+    /// Three bodies at a node. The error of the second pair's impulse falls by (1/m₂)²/((1/m₁ + 1/m₂)(1/m₂ + 1/m₃)) =
+    /// 1/5 in each of twelve sweeps. The first pair is solved with the impulse of the previous sweep. The error of the
+    /// first velocity is then 5⁻¹¹ p₂/3, with p₂ = 5 N s for impacts from both sides, and smaller otherwise.
     #[test]
     fn three_bodies_at_a_node_end_with_one_velocity() {
         let vector = Vector2::new;
@@ -316,22 +319,23 @@ mod tests {
             let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).norm()).fold(0.0, f64::max);
             assert!(off < 3.5e-8, "{found:?}");
         };
-        // The first pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they pass each other.
+        // The first body pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they slide past each
+        // other.
         let [pushed, still] = [vector(1.0, 0.3), Vector2::zeros()];
         let sixth = 1.0 / 6.0;
         near(after(0.0, [pushed, still, still]), [vector(sixth, 0.3), vector(sixth, 0.0), vector(sixth, 0.0)]);
-        // Friction that holds whatever comes: they move as one.
+        // With very high friction they move as one body.
         near(after(1e6, [pushed, still, still]), [vector(sixth, 0.05); 3]);
-        // The last one leaves, and nothing holds it: (1 + 0)/(1 + 2) m/s for the other two.
+        // The last body departs freely: (1 + 0)/(1 + 2) m/s for the other two.
         let third = 1.0 / 3.0;
         near(after(0.0, [pushed, still, vector(5.0, 0.0)]), [vector(third, 0.3), vector(third, 0.0), vector(5.0, 0.0)]);
-        // From both sides: (1 · 4 − 3 · 2)/6 m/s.
+        // Impacts from both sides: (1 · 4 − 3 · 2)/6 m/s.
         let together = vector(-2.0 * sixth, 0.0);
         near(after(0.0, [vector(4.0, 0.0), still, vector(-2.0, 0.0)]), [together; 3]);
     }
 
-    /// Friction of .1 takes .1 of what pushes along: where two bodies of 1 and 2 kg meet at (6, 3) and 0 m/s, the impulse
-    /// along is 6/(1 + ½) = 4 N s, and .4 N s across.
+    /// With μ = .1 the tangential impulse is .1 of the normal impulse. Two bodies of 1 and 2 kg meet at (6, 3) and 0
+    /// m/s: the normal impulse is 6/(1 + ½) = 4 N s, and the tangential impulse .4 N s.
     #[test]
     fn friction_at_a_node_is_a_part_of_the_push() {
         let found = after(0.1, [Vector2::new(6.0, 3.0), Vector2::zeros(), Vector2::new(50.0, 0.2)]);

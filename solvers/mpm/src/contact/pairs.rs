@@ -1,27 +1,27 @@
-//! Which bodies may touch.
+//! Search for pairs of bodies that may be in contact.
 
 use crate::bodies::Body;
 use crate::grid::Lattice;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// Two bodies whose boxes meet. The tracers of the first are held against the surface of the second.
+/// Two bodies whose bounding boxes intersect. Tracers of the first are tested against the surface of the second.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<S: Space> {
     pub(crate) first: u32,
     pub(crate) second: u32,
-    /// From the second body to its image next to the first (m): whole periods.
+    /// Translation from the second body to its periodic image nearest to the first (m): whole periods.
     pub(crate) shift: S::Vector,
 }
 
-/// Finds pairs by the cells of a coarse grid that their boxes reach, so that the work grows with the number of bodies.
+/// Finds pairs with a coarse grid of cells, so that the work grows linearly with the number of bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<S: Space> {
-    /// Cells that bodies reach, by number, and the bodies.
+    /// Numbers of the cells that each body intersects, with the body.
     reached: Vec<(u64, u32)>,
-    /// Each pair once, the lower body first.
+    /// Each pair once, with the lower body index first.
     pub(crate) found: Vec<Pair<S>>,
-    /// How many pairs of boxes were held against each other.
+    /// Number of tested pairs of boxes.
     pub(crate) tests: u64,
 }
 
@@ -30,18 +30,18 @@ impl<S: Space> Pairs<S> {
         Self { reached: Vec::new(), found: Vec::new(), tests: 0 }
     }
 
-    /// No pairs.
+    /// Removes all pairs.
     pub(crate) fn clear(&mut self) {
         self.found.clear();
         self.tests = 0;
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.reached) + size_of_val(&*self.found)
     }
 
-    /// All pairs whose boxes are closer than `margin` (m).
+    /// Finds all pairs whose boxes are closer than `margin` (m).
     pub(crate) fn find(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
         self.clear();
         self.reach(bodies, lattice, margin);
@@ -49,7 +49,7 @@ impl<S: Space> Pairs<S> {
             for (at, &(_, a)) in group.iter().enumerate() {
                 let bounds = &bodies[a as usize].bounds;
                 for &(_, b) in &group[at + 1..] {
-                    // What is moved is not moved by each other.
+                    // Two driven bodies do not act on each other.
                     if bodies[a as usize].driven.is_some() && bodies[b as usize].driven.is_some() {
                         continue;
                     }
@@ -70,15 +70,16 @@ impl<S: Space> Pairs<S> {
         self.found.dedup_by_key(|pair| (pair.first, pair.second));
     }
 
-    /// Finds the cells that each box with half of `margin` (m) around it reaches, in order of cells and bodies. Cells
-    /// are as large as bodies are in the mean.
+    /// Finds the cells that each box, enlarged by half of `margin` (m), intersects; sorted by cell and body.
+    ///
+    /// The cell size is the mean size of the bodies.
     fn reach(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
         self.reached.clear();
         let extent =
             |body: &Body| (0..S::DIMENSION).map(|axis| body.bounds[1][axis] - body.bounds[0][axis]).fold(0.0, f64::max);
         let sum: f64 = bodies.iter().map(extent).sum();
         let size = sum / bodies.len() as f64 + margin;
-        // Along periodic axes a whole number of cells.
+        // Along periodic axes there is a whole number of cells.
         let periods = [0, 1, 2].map(|axis| {
             let length = f64::from(lattice.period[axis]?) * lattice.cell[axis];
             Some((length, (length / size).floor().max(1.0)))
@@ -110,7 +111,7 @@ impl<S: Space> Pairs<S> {
     }
 }
 
-/// Whole periods that bring the middle of the second box next to that of the first.
+/// Returns the whole periods that move the centre of the second box next to the centre of the first.
 fn shift(lattice: &Lattice, first: &[Vector3<f64>; 2], second: &[Vector3<f64>; 2]) -> Vector3<f64> {
     let mut shift = Vector3::zeros();
     for axis in 0..3 {
@@ -124,7 +125,7 @@ fn shift(lattice: &Lattice, first: &[Vector3<f64>; 2], second: &[Vector3<f64>; 2
 }
 
 impl<S: Space> Pair<S> {
-    /// The same pair with the bodies exchanged.
+    /// Returns the pair with its bodies exchanged.
     pub(crate) fn exchanged(&self) -> Self {
         Self { first: self.second, second: self.first, shift: -self.shift }
     }

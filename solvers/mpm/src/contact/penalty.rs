@@ -1,7 +1,7 @@
-//! Springs between surfaces: each tracer that has gone through another surface is pushed out by κ |g| a, with g the gap
-//! (m), a the tracer's area and κ a stiffness per area; along the surface a spring of the same stiffness rubs, where
-//! there is friction ([`super::friction`]). Forces act where the surfaces meet, at the same point on both, so linear
-//! momentum is kept to rounding and torques are right.
+//! Springs between surfaces: each tracer that penetrates another surface is pushed out by the force κ |g| a. Here g is
+//! the gap (m), a the tracer's area and κ a stiffness per area. With friction, a tangential spring of the same
+//! stiffness acts along the surface ([`super::friction`]). Forces on both surfaces act at the same contact point, so
+//! linear momentum is conserved to rounding and torques are consistent.
 
 use super::friction::{Friction, Overlap, Tangential};
 use super::grip::Grip;
@@ -17,31 +17,31 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// What is kept of springs from step to step.
+/// State of springs that persists between steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs<S: Space> {
-    /// Springs along surfaces, or their absence.
+    /// Tangential springs, or their absence.
     pub(crate) friction: Friction<S>,
-    /// What each share of the pairs has found.
+    /// Penetrating tracers found by each subrange of pairs.
     pub(crate) found: Vec<Found<S>>,
-    /// How many tracers have touched since the evaluation began.
+    /// Number of tracers in contact since the evaluation began.
     pub(crate) touched: u64,
 }
 
 impl<S: Space> Springs<S> {
-    /// Those of so many tracers, with friction if it `acts`.
+    /// Returns the springs of a number of tracers, with friction if it `acts`.
     pub(crate) fn new(acts: bool, tracers: usize) -> Self {
         Self { friction: Friction::new(acts, tracers), found: Vec::new(), touched: 0 }
     }
 
-    /// Begins an evaluation.
+    /// Starts an evaluation.
     pub(crate) const fn begin(&mut self) {
         self.friction.begin();
         self.touched = 0;
     }
 }
 
-/// What all springs need to know.
+/// Parameters of all springs.
 #[derive(Clone, Copy)]
 pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
@@ -51,18 +51,17 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// What springs tell of a step.
+/// Outputs of the springs in a step.
 pub(crate) struct Told<'a, S: Space, A> {
     /// The energy budget, or its absence.
     pub(crate) ledger: A,
-    /// What touches, where it is asked for.
+    /// Contact points, if requested.
     pub(crate) touches: Option<&'a mut Vec<Touch<S>>>,
-    /// How many tracers have touched.
+    /// Number of tracers in contact.
     pub(crate) touched: &'a mut u64,
 }
 
-/// Springs of all bodies, with walls and with each other, in one step: with friction or without, with an energy budget
-/// or without.
+/// Springs of all bodies with walls and with each other in one step. Type parameters select friction and energy budget.
 pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
@@ -71,7 +70,7 @@ pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) friction: F,
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) nodes: &'a mut [Node<S>],
-    /// What each node counts for at most at a surface.
+    /// Weight limit of each node at a surface.
     pub(crate) most: &'a [f64],
     pub(crate) told: Told<'a, S, A>,
     pub(crate) basis: PhantomData<B>,
@@ -88,7 +87,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> FourKernel for Push<'_, S,
 }
 
 impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
-    /// Springs between bodies and walls.
+    /// Applies springs between bodies and walls.
     #[inline(always)]
     fn at_walls(&mut self) {
         let Self { rules, bodies, tracers, friction, walls, nodes, most, told, .. } = self;
@@ -124,7 +123,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                     if let Some(tally) = told.ledger.tally() {
                         let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
                         tally.walls += worked;
-                        // The other half of a wall's part is known now, too.
+                        // The wall's part at the end of the step is known already: its velocity is prescribed.
                         tally.taken += 0.5 * (worked - S::dot(force, overlap.slip));
                     }
                 }
@@ -132,7 +131,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         }
     }
 
-    /// The spring between two bodies at a tracer of the first that has gone through the surface of the second.
+    /// Applies the spring at a tracer of the first body that penetrates the surface of the second.
     #[inline(always)]
     fn between(&mut self, Gone { pair, tracer, overlap, there, grips: [one, two] }: &Gone<S>) {
         let Self { bodies, friction, nodes, most, told, .. } = self;
@@ -147,16 +146,16 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
     }
 }
 
-/// Where a tracer of a body touches.
+/// Contact point of a tracer.
 struct Place<S: Space> {
     body: u32,
     other: Other,
-    /// Where (m).
+    /// Contact point (m).
     point: S::Vector,
 }
 
 impl<S: Space, A: Ledger> Told<'_, S, A> {
-    /// Force (N) on a tracer: what pushes it out, k g along the normal, and friction. What is asked for is told.
+    /// Returns the force (N) on a tracer, the normal force k g and friction, and records the requested outputs.
     #[inline(always)]
     fn force<F: Tangential<S>>(
         &mut self,
@@ -184,7 +183,7 @@ impl<S: Space, A: Ledger> Told<'_, S, A> {
     }
 }
 
-/// Height of the lowest corner of a body's box above a wall (m).
+/// Returns the height of the lowest corner of a body's bounding box above a wall (m).
 fn lowest<S: Space>(body: &Body, wall: &RigidPlane<S>) -> f64 {
     let normal = S::embed(wall.normal);
     let [low, high] = &body.bounds;

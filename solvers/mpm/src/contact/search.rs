@@ -1,4 +1,4 @@
-//! Which tracers have gone through the surface of another body, and how both bodies are held there.
+//! Search for tracers that penetrate the surface of another body, with the interpolation of both bodies there.
 
 use super::friction::Overlap;
 use super::grip::Grip;
@@ -12,55 +12,55 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// How far a surface can bulge beyond the box around its tracers (cells).
+/// Largest bulge of a surface beyond the bounding box of its tracers (cells).
 const BULGE: f64 = 0.25;
 
-/// Depth at which surfaces are taken to have passed through each other, and are let go (cells).
+/// Largest depth (cells); beyond it surfaces count as having passed through each other and have no contact.
 const DEEPEST: f64 = 0.8;
 
-/// A tracer of the first body of a pair that has gone through the surface of the second.
+/// A tracer of the first body of a pair that penetrates the surface of the second.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gone<S: Space> {
-    /// The bodies, that of the tracer first.
+    /// Pair of bodies; the tracer belongs to the first.
     pub(crate) pair: Pair<S>,
     pub(crate) tracer: usize,
-    /// The spring between them, with half of the stiffness, since the tracers of the second do the same.
+    /// Spring between the bodies, with half of the stiffness because tracers of the second body add the other half.
     pub(crate) overlap: Overlap<S>,
-    /// Where the surfaces meet, by the first body (m).
+    /// Contact point near the first body (m).
     pub(crate) there: S::Vector,
-    /// Both bodies there.
+    /// Interpolation of both bodies at the contact point.
     pub(crate) grips: [Grip<S>; 2],
 }
 
-/// What a share of the pairs has found, and what it works with.
+/// Results and scratch memory of a subrange of pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct Found<S: Space> {
-    /// In the order of the pairs.
+    /// Penetrating tracers in the order of the pairs.
     pub(crate) gone: Vec<Gone<S>>,
-    /// Runs of the other surface that are near the tracers at hand.
+    /// Chunks of the other surface near the current tracers.
     near: Vec<usize>,
 }
 
 impl<S: Space> Found<S> {
-    /// Nothing yet.
+    /// Returns an empty result.
     pub(crate) const fn new() -> Self {
         Self { gone: Vec::new(), near: Vec::new() }
     }
 }
 
-/// What is around tracers.
+/// Surroundings of tracers.
 #[derive(Clone, Copy)]
 pub(crate) struct Around<'a, S: Space, B> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
     pub(crate) tracers: &'a Tracers<S>,
     pub(crate) nodes: &'a [Node<S>],
-    /// What each node counts for at most at a surface.
+    /// Weight limit of each node at a surface.
     pub(crate) most: &'a [f64],
     pub(crate) basis: PhantomData<B>,
 }
 
-/// Holds the tracers of both bodies of some pairs against the surface of the other.
+/// Tests the tracers of both bodies of some pairs against the surface of the other body.
 pub(crate) struct Search<'a, S: Space, B> {
     pub(crate) around: Around<'a, S, B>,
     pub(crate) pairs: &'a [Pair<S>],
@@ -103,8 +103,8 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
 }
 
 impl<S: Space, B: Basis> Around<'_, S, B> {
-    /// What holds a tracer of the first body of a pair that has gone through the surface of the second, `near`; none where
-    /// nothing does.
+    /// Returns the contact of a tracer of the first body that penetrates the surface `near` of the second, or `None` if
+    /// no force acts there.
     #[inline(always)]
     fn gone(&self, pair: Pair<S>, tracer: usize, near: Near<S>) -> Option<Gone<S>> {
         let Self { rules, bodies, tracers, nodes, most, .. } = self;
@@ -115,7 +115,7 @@ impl<S: Space, B: Basis> Around<'_, S, B> {
         let per_area = 0.5 * rules.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
         let area = tracers.area[tracer];
         let depth = -near.gap;
-        // Out of the second body, as the mean of both surfaces has it, so that no surface is preferred.
+        // Outward normal of the second body: the mean of both surfaces, so that the result is symmetric.
         let out = near.normal - tracers.normal(tracer);
         let normal = out * (1.0 / S::dot(out, out).sqrt());
         let middle = tracers.position[tracer] - pair.shift + near.normal * (0.5 * depth);
@@ -129,7 +129,7 @@ impl<S: Space, B: Basis> Around<'_, S, B> {
     }
 }
 
-/// How far beyond a box a position is, along the axis along which it is farthest (m); negative inside.
+/// Returns the largest distance of a position beyond a box along any axis (m); negative inside.
 #[inline(always)]
 fn beyond<S: Space>(position: S::Vector, low: S::Vector, high: S::Vector) -> f64 {
     let beyond = |axis: usize| {

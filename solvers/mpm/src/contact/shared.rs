@@ -1,4 +1,4 @@
-//! Nodes that several bodies, or a body and a wall, share.
+//! Nodes that are shared by several bodies, or by a body and a wall.
 
 use super::Other;
 use super::pairs::Pair;
@@ -11,17 +11,17 @@ use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// Velocities of nodes: those of the step, or those that were projected once more.
+/// Velocities of nodes: after the step, or projected from points.
 pub(crate) trait Field<S: Space> {
-    /// Whether what walls take counts as their force.
+    /// True if reactions of walls count as forces on them.
     const COUNTS: bool;
     fn velocity(&self, slot: usize) -> S::Vector;
-    /// Before the step.
+    /// Returns the velocity before the step.
     fn before(&self, slot: usize) -> S::Vector;
     fn set(&mut self, slot: usize, velocity: S::Vector);
 }
 
-/// Velocities of the step; where their change will be, nodes still hold those before it.
+/// Velocities after the step; `change` of the nodes still holds the velocities before it.
 pub(crate) struct Stepped<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
 
 impl<S: Space> Field<S> for Stepped<'_, S> {
@@ -68,36 +68,36 @@ pub(crate) struct Member {
     pub(crate) mass: f64,
 }
 
-/// The surface of a body as a node sees it.
+/// The surface of a body near a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Face<S: Space> {
-    /// Outward, of any length.
+    /// Outward normal, not normalised.
     pub(crate) normal: S::Vector,
-    /// Σ w V σ: the stress, times a volume (Pa m³).
+    /// Σ w V σ: the stress times a volume (Pa m³).
     pub(crate) stress: S::Matrix,
 }
 
-/// A body that has met another or a wall, at a node.
+/// Contact of a body with another body or a wall at a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting<S: Space> {
     pub(crate) key: u64,
     pub(crate) body: u32,
     pub(crate) other: Other,
-    /// Where the node is (m).
+    /// Position of the node (m).
     pub(crate) position: S::Vector,
-    /// The node of the body and that of the other.
+    /// Slots of the node in the body's field and in the other body's field.
     pub(crate) slots: [usize; 2],
     pub(crate) masses: [f64; 2],
-    /// Unit normal from the body to the other.
+    /// Unit normal from the body to its contact partner.
     pub(crate) normal: S::Vector,
-    /// Impulse on the other so far (N s).
+    /// Impulse on the contact partner so far (N s).
     pub(crate) impulse: S::Vector,
 }
 
 /// A shared node.
 pub(crate) struct Group<S: Space> {
     pub(crate) members: Range<usize>,
-    /// The wall it is behind.
+    /// Wall that contains the node.
     pub(crate) wall: Option<usize>,
     pub(crate) position: S::Vector,
 }
@@ -110,11 +110,11 @@ pub(crate) struct Shared<S: Space> {
     pub(crate) faces: Vec<Face<S>>,
     pub(crate) meetings: Vec<Meeting<S>>,
     densities: Vec<f64>,
-    /// Whether a body shares any node.
+    /// For each body, true if it shares a node.
     touching: Vec<bool>,
 }
 
-/// One number for a node.
+/// Returns a unique number of a node.
 fn key(node: [i32; 3]) -> u64 {
     const BIAS: i64 = 1 << 20;
     let part = |axis: usize| (i64::from(node[axis]) + BIAS) as u64 & 0x1f_ffff;
@@ -133,7 +133,7 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Memory that is in use (B).
+    /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.members)
             + size_of_val(&*self.groups)
@@ -151,7 +151,7 @@ impl<S: Space> Shared<S> {
         })
     }
 
-    /// Finds the nodes that bodies share with each other or with a wall.
+    /// Finds nodes that bodies share with each other or with a wall.
     pub(crate) fn find(
         &mut self,
         lattice: &Lattice,
@@ -207,7 +207,7 @@ impl<S: Space> Shared<S> {
         self.members.push(Member { key, body: body as u32, slot, mass: nodes[slot].mass });
     }
 
-    /// Which bodies share nodes.
+    /// Marks the bodies that share nodes.
     pub(crate) fn find_touching(&mut self, bodies: usize) {
         self.touching.clear();
         self.touching.resize(bodies, false);
@@ -222,7 +222,7 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Normals from the gradient of mass, and stresses, of all bodies that share nodes.
+    /// Computes surface normals from the mass gradient, and stresses, for all bodies that share nodes.
     pub(crate) fn find_faces<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.faces.clear();
         self.faces.resize(used, Face { normal: S::ORIGIN, stress: S::NO_GRADIENT });
@@ -244,8 +244,8 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Normals from a density at the middles of cells, smoothed by a quadratic B-spline (2000, eq. 24), and its
-    /// gradient at the nodes.
+    /// Computes surface normals of the 2000 paper: the gradient of a density at cell centres that is smoothed by a
+    /// quadratic B-spline (eq. 24).
     pub(crate) fn smooth_normals(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.densities.clear();
         self.densities.resize(used, 0.0);
@@ -263,8 +263,8 @@ impl<S: Space> Shared<S> {
                 });
             }
         }
-        // The middle of the cell above node i has its number; at the node itself hats of middles have their kinks, and
-        // the gradient is the mean over the cells around it.
+        // The centre of the cell above node i has the number i. Hat functions of the centres have kinks at the nodes,
+        // and the gradient is the mean over the adjacent cells.
         for member in &self.members {
             let window = &bodies[member.body as usize].part.window;
             let node = window.node(member.slot - window.start);
@@ -283,7 +283,7 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Finds the nodes around tracers that have gone through another surface or a wall, with the normals there.
+    /// Finds the nodes around tracers that penetrate another surface or a wall, with the normals there.
     pub(crate) fn find_meetings(
         &mut self,
         lattice: &Lattice,
@@ -319,7 +319,7 @@ impl<S: Space> Shared<S> {
                     let near = tracers.gone_through(chunks, seen, tracers.area[at], reach, &mut closest);
                     let Some(near) = near else { continue };
                     let normal = tracers.normal(at);
-                    // The lower body comes first, so that both passes find the same pair.
+                    // The lower body index comes first, so that both passes find the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
                     let (position, shift) =
@@ -344,7 +344,7 @@ impl<S: Space> Shared<S> {
         }
     }
 
-    /// Notes a place where surfaces have met at every node around it that both carry mass at.
+    /// Adds a contact at every node around a contact point where both bodies have mass.
     fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &Met<S>, nodes: &[Node<S>]) {
         let &Met { body, other, position, normal, shift } = met;
         let window = bodies[body].part.window;
@@ -357,7 +357,7 @@ impl<S: Space> Shared<S> {
             let place = [0, 1, 2].map(|axis| base[axis] + node.offset(axis));
             let mass_of = |body: usize, slot: usize| {
                 let mass = nodes[slot].mass;
-                // Nothing moves a driven body.
+                // A driven body has a prescribed motion and thus infinite mass.
                 if bodies[body].driven.is_some() && mass > 0.0 { f64::INFINITY } else { mass }
             };
             let mass = mass_of(body, node.slot);
@@ -376,7 +376,7 @@ impl<S: Space> Shared<S> {
                     ([node.slot, slot], [mass, mass_of(other as usize, slot)])
                 }
             };
-            // A node that the place does not reach, where it lies on a line of the grid, has no normal from it.
+            // A node with zero weight, because the contact point is on a grid line, gets no normal from it.
             if node.weight > 0.0 && masses[0] > 0.0 && masses[1] > 0.0 {
                 self.meetings.push(Meeting {
                     key: key(lattice.wrapped(place)),
@@ -393,20 +393,21 @@ impl<S: Space> Shared<S> {
     }
 }
 
-/// A place where the surface of a body has met another body or a wall.
+/// Contact point between the surface of a body and another body or a wall.
 struct Met<S: Space> {
     body: usize,
     other: Other,
-    /// Where (m).
+    /// Position (m).
     position: S::Vector,
-    /// Unit vector out of the body.
+    /// Outward unit normal of the body.
     normal: S::Vector,
-    /// Periods between the body and the other (m).
+    /// Translation between the body and the periodic image of its partner (m).
     shift: S::Vector,
 }
 
-/// Visits the nodes that two windows share, the second one's `periods` nodes further on: the node in the first, in the
-/// second, and their places.
+/// Visits the nodes that two windows share, with the second window shifted by `periods` nodes.
+///
+/// The arguments of `visit` are the node in the first and in the second window, and their slots.
 fn each_common(one: &Window, two: &Window, periods: [i32; 3], mut visit: impl FnMut([i32; 3], [i32; 3], usize, usize)) {
     let low = [0, 1, 2].map(|axis| one.low[axis].max(two.low[axis] + periods[axis]));
     let high =

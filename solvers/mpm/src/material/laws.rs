@@ -1,5 +1,5 @@
-//! The laws between deformation and stress, and which of them a material has. A new one is a variant of [`Material`], a line of
-//! [`with_law`], and its stress.
+//! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and its
+//! stress.
 
 use super::{Law, State, VolumeRatio, symmetric_root};
 use crate::off::Off;
@@ -8,7 +8,7 @@ use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
-/// The law of a body's material.
+/// Constitutive law of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Material {
     NeoHookean(NeoHookean),
@@ -17,7 +17,7 @@ pub(crate) enum Material {
     VonMises(VonMises),
 }
 
-/// An expression with the law of a [`Material`] as a type of its own.
+/// Evaluates an expression with the law of a [`Material`] as its own type.
 macro_rules! with_law {
     ($material:expr, $law:ident => $call:expr) => {
         match $material {
@@ -32,7 +32,7 @@ macro_rules! with_law {
 pub(crate) use with_law;
 
 impl Material {
-    /// The law of a material in steps of `time_step` (s).
+    /// Returns the law of a material for steps of `time_step` (s).
     pub(crate) fn of(deformable: &Deformable, time_step: f64) -> Self {
         let &Deformable { bulk_modulus, shear_modulus, constitutive } = deformable;
         let elastic = Hypoelastic { bulk_modulus, shear_modulus };
@@ -86,7 +86,7 @@ impl Law for NeoHookean {
         self.stress::<S>(deformation, volume)
     }
 
-    /// λ (1 − ln J) + G (1 + b_nn), with the largest sum of a row of |b| in the place of the largest b_nn.
+    /// λ (1 − ln J) + G (1 + b_nn), with the largest row sum of |b| as a bound of the largest b_nn.
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
         let stretch = finger.row_iter().map(|row| row.abs().sum()).fold(0.0, f64::max);
         self.lame * (1.0 - ln(volume_ratio)) + self.shear_modulus * (1.0 + stretch)
@@ -112,7 +112,7 @@ impl Law for NeoHookean {
         let excess = |volume_ratio: f64| finger(volume_ratio).determinant() - volume_ratio * volume_ratio;
         let sum: f64 = (0..dimensions).map(|axis| stress[(axis, axis)]).sum();
         let linear = sum / (dimensions as f64 * self.lame + 2.0 * self.shear_modulus);
-        // What the linear law says, and a place beside it, from which the slope is known.
+        // The linear solution, and a value next to it for the first secant.
         let (mut before, mut now) = (1.0001 * (1.0 + linear), 1.0 + linear);
         let mut old = excess(before);
         for _ in 0..50 {
@@ -129,9 +129,11 @@ impl Law for NeoHookean {
     }
 }
 
-/// Neo-Hookean, with a viscous stress beside it: σ + 2η dev D + ζ tr D 1, D the symmetric part of ∇v (1/s) on the configuration
-/// half-way through a step, where a rotation has none ([`Space::at_midpoint`]). In small strain it is the solid of Kelvin and
-/// Voigt, whose wave of wave number k loses its amplitude at η_L k²/2ρ, η_L = 4η/3 + ζ along it and η across.
+/// Neo-Hookean law with an additional viscous stress, σ + 2η dev D + ζ tr D 1.
+///
+/// D is the symmetric part of ∇v (1/s) on the configuration at the middle of a step, for which a rotation gives D = 0
+/// ([`Space::at_midpoint`]). For small strain it is the Kelvin–Voigt solid. The amplitude of a wave with wave number k
+/// decays at the rate η_L k²/2ρ, with η_L = 4η/3 + ζ for longitudinal waves and η for transverse waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KelvinVoigt {
     /// The elastic part.
@@ -189,10 +191,11 @@ impl Law for KelvinVoigt {
 
 /// σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW, D and W the symmetric and skew parts of ∇v (1/s).
 ///
-/// A step follows it by the midpoint rule (Hughes & Winget 1980): with H = Δt ∇v on the configuration half-way through the
-/// step ([`Space::at_midpoint`]), σ ← R σ Rᵀ + 2G dev ε + K tr ε 1, ε = sym H and R = (1 − W/2)⁻¹(1 + W/2), W = skew H. A rigid
-/// rotation makes no strain and leaves the invariants of the stress alone, whatever the step. On the configuration at the
-/// start of the step a rotation by θ would be a compression by 1 − cos θ, to which a spinning body gives way by growing.
+/// A step is integrated by the midpoint rule (Hughes & Winget 1980): with H = Δt ∇v on the configuration at the middle
+/// of the step ([`Space::at_midpoint`]), σ ← R σ Rᵀ + 2G dev ε + K tr ε 1, ε = sym H and R = (1 − W/2)⁻¹(1 + W/2),
+/// W = skew H. For any step size, a rigid rotation gives no strain and keeps the invariants of the stress. On the
+/// configuration at the start of the step, a rotation by θ would give a compression by 1 − cos θ, and a spinning body
+/// would grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hypoelastic {
     /// Bulk modulus K (Pa).
@@ -234,7 +237,7 @@ impl Law for Hypoelastic {
         (self.stress::<S>(increment, stress), 0.0)
     }
 
-    /// J (K + 4G/3): the moduli are those of the stress in space, and the density falls with J.
+    /// J (K + 4G/3): the moduli belong to the Cauchy stress, and the density is ρ₀/J.
     fn wave_modulus(&self, volume_ratio: f64, _finger: &Matrix3<f64>) -> f64 {
         volume_ratio * (self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus)
     }
@@ -246,13 +249,13 @@ impl Law for Hypoelastic {
         density * state.deformation.determinant()
     }
 
-    /// It knows a stress and no deformation from which that came: it starts as it is.
+    /// Returns the given stress with zero deformation, because the law does not define the deformation of a stress.
     fn under_stress(&self, stress: &Matrix3<f64>, _dimensions: usize) -> Option<State> {
         Some(State { stress: *stress, ..State::default() })
     }
 }
 
-/// Hypoelastic up to q = Y + H ε_p with q = √(3/2 s:s), s = dev σ; beyond, radial return:
+/// Hypoelastic up to q = Y + H ε_p with q = √(3/2 s:s), s = dev σ. Beyond this limit, radial return:
 /// Δε_p = (q − Y − H ε_p)/(3G + H), s ← s (1 − 3G Δε_p/q) (Simo & Hughes 1998, box 3.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VonMises {
@@ -290,7 +293,7 @@ impl Law for VonMises {
     #[inline(always)]
     fn flow<S: Space>(&self, (stress, squared): (S::Symmetric, f64), plastic_strain: &mut f64) -> S::Symmetric {
         let limit = self.flow_stress(*plastic_strain);
-        // A root only where it is needed: most of the time nothing flows.
+        // The square root is computed only when the point yields, which is rare.
         if squared <= limit * limit {
             return stress;
         }

@@ -1,4 +1,5 @@
-//! Constitutive laws, three by three in both dimensions: in the plane the strain out of it is zero, the stress is not.
+//! Constitutive laws with 3 × 3 tensors in both dimensions: in plane strain the out-of-plane strain is zero, but the
+//! stress is not.
 
 mod laws;
 mod plastic_strain;
@@ -11,7 +12,7 @@ use grainbench_lanes::logarithm::ln;
 use grainbench_scene::space::{Solid, Space};
 use nalgebra::Matrix3;
 
-/// The state of a material point.
+/// State of a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Deformation gradient F.
@@ -28,17 +29,17 @@ impl Default for State {
     }
 }
 
-/// The volume of a point over that at the start.
+/// Volume of a point relative to its initial volume.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeRatio {
     /// The ratio J.
     pub ratio: f64,
-    /// ln J, of laws that take it: it is found for many points at once.
+    /// ln J, for laws that use it; it is computed for many points at once.
     pub logarithm: f64,
 }
 
 impl VolumeRatio {
-    /// A ratio with its logarithm.
+    /// Returns a ratio with its logarithm.
     #[inline(always)]
     #[must_use]
     pub fn of(ratio: f64) -> Self {
@@ -46,16 +47,19 @@ impl VolumeRatio {
     }
 }
 
-/// A law between deformation and stress.
+/// A constitutive law.
 pub trait Law: Copy + Send + Sync + 'static {
-    /// The plastic strain that it reads and changes: [`crate::off::Off`] for laws that never yield.
+    /// Plastic strain that the law reads and changes: [`crate::off::Off`] for laws without yielding.
     type PlasticStrain: PlasticStrain;
-    /// Whether its stress takes the logarithm of the volume ratio.
+    /// True if the stress depends on the logarithm of the volume ratio.
     const LOGARITHM: bool = false;
-    /// Whether a part of its stress is viscous.
+    /// True if a part of the stress is viscous.
     const VISCOUS: bool = false;
-    /// Returns the stress after a step with the displacement gradient `increment` = Δt ∇v on the configuration at its start,
-    /// from the stress before it and the deformation after it, of which `volume` is the determinant.
+    /// Returns the stress after a step with the displacement gradient `increment` = Δt ∇v on the configuration at its
+    /// start.
+    ///
+    /// `stress` is the stress before the step, and `deformation` the deformation after it, with the determinant
+    /// `volume`.
     fn follow<S: Space>(
         &self,
         increment: S::Matrix,
@@ -64,7 +68,7 @@ pub trait Law: Copy + Send + Sync + 'static {
         stress: S::Symmetric,
         plastic_strain: &mut Self::PlasticStrain,
     ) -> S::Symmetric;
-    /// The same of a state in three dimensions, which holds the deformation after the step and the stress before it.
+    /// Updates a state in three dimensions, which holds the deformation after the step and the stress before it.
     fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
         let stress = Solid::restrict_symmetric(state.stress);
         let own = std::slice::from_mut(&mut state.plastic_strain);
@@ -74,15 +78,16 @@ pub trait Law: Copy + Send + Sync + 'static {
         plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
     }
-    /// Whether its stress is that of [`Law::trial`], found for many points at once, and then of [`Law::flow`].
+    /// True if the stress is computed by [`Law::trial`], for many points at once, followed by [`Law::flow`].
     const TRIES: bool = false;
-    /// The stress after a step if nothing flows, and 3/2 s:s of it, s = dev σ (Pa²), of laws that yield; of others that is not
-    /// read.
+    /// Returns the trial stress after a step without plastic flow, and its 3/2 s:s, s = dev σ (Pa²).
+    ///
+    /// The second value is read only for laws with yielding.
     #[inline(always)]
     fn trial<S: Space>(&self, _increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
         (stress, 0.0)
     }
-    /// The stress after flow, where there is some, from what [`Law::trial`] gave.
+    /// Returns the stress after plastic flow, if any, from the result of [`Law::trial`].
     #[inline(always)]
     fn flow<S: Space>(
         &self,
@@ -91,12 +96,12 @@ pub trait Law: Copy + Send + Sync + 'static {
     ) -> S::Symmetric {
         stress
     }
-    /// Stress at which it flows after a plastic strain (Pa); zero for laws that do not.
+    /// Returns the flow stress at a plastic strain (Pa); zero for laws without yielding.
     #[inline(always)]
     fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
         0.0
     }
-    /// What the viscous part of the stress in a state does on a strain, per volume (J/m³); zero for laws without viscosity.
+    /// Returns the work of the viscous stress of a state on a strain, per volume (J/m³); zero without viscosity.
     #[inline(always)]
     fn viscous_work<S: Space>(
         &self,
@@ -107,20 +112,26 @@ pub trait Law: Copy + Send + Sync + 'static {
     ) -> f64 {
         0.0
     }
-    /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, ρ₀ the density at the start and c its speed in space (m/s), of
-    /// material with a volume ratio and the left Cauchy–Green tensor b = F Fᵀ; from above where b has shear.
+    /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, with ρ₀ the initial density and c the spatial wave speed
+    /// (m/s).
     ///
-    /// For a wave along n it is the second derivative of the elastic energy of (1 + ε n ⊗ n) F per volume at the start by ε.
+    /// The state is given by the volume ratio and the left Cauchy–Green tensor b = F Fᵀ. The result is an upper bound
+    /// if b has shear. For a wave along n it is the second derivative by ε of the elastic energy of (1 + ε n ⊗ n) F per
+    /// initial volume.
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64;
-    /// Elastic energy per volume at the start (J/m³).
+    /// Returns the elastic energy per initial volume (J/m³).
     fn energy(&self, state: &State) -> f64;
-    /// The state without rotation and plastic strain in which a stress (Pa) acts along the axes that can deform: the first
-    /// `dimensions`. Laws that know the stress by its history take the rest of it too. None where there is no such state.
+    /// Returns the state without rotation and plastic strain under a stress (Pa), or `None` if there is no such state.
+    ///
+    /// The stress acts along the first `dimensions` axes, which can deform. Laws that integrate the stress also take
+    /// its other components.
     fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State>;
 }
 
-/// The symmetric root of a positive definite matrix near the unit one, by the coupled iteration of Denman and Beavers (1976),
-/// which needs sums and inverses alone; none where it does not converge.
+/// Returns the symmetric square root of a positive definite matrix near the identity.
+///
+/// The coupled iteration of Denman and Beavers (1976) needs only sums and inverses. Returns `None` if it does not
+/// converge.
 fn symmetric_root(of: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let (mut root, mut inverse) = (*of, Matrix3::identity());
     for _ in 0..50 {
@@ -128,7 +139,7 @@ fn symmetric_root(of: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         inverse = (inverse + root.try_inverse()?) * 0.5;
         let way = (next - root).norm();
         root = next;
-        // What it gains with each step is squared: the next would change nothing but the last digits.
+        // Convergence is quadratic: a further step would change only the last digits.
         if way <= 1e-13 * root.norm() {
             let is_root = (root * root - of).norm() <= 1e-12 * of.norm() && root.determinant() > 0.0;
             return is_root.then_some(root);

@@ -5,13 +5,13 @@ use std::ops::Range;
 
 /// Equivalent plastic strain ε_p of a material point, or its absence.
 pub trait PlasticStrain: Copy {
-    /// Those of a range of points, in a list that has none where no material yields.
+    /// Returns the values of a range of points; the list is empty if no material yields.
     fn those_of(list: &mut [f64], range: Range<usize>) -> &mut [f64];
-    /// That of a point, by its place in the list.
+    /// Reads the value of a point by its index in the list.
     fn read(list: &[f64], at: usize) -> Self;
-    /// Puts it back there.
+    /// Writes the value of a point.
     fn write(self, list: &mut [f64], at: usize);
-    /// ε_p; zero where it is absent.
+    /// Returns ε_p; zero if it is absent.
     fn value(self) -> f64;
 }
 
