@@ -1,5 +1,4 @@
-//! What a scene does not call for takes no memory, and what is called for with a value that does nothing changes no
-//! bit.
+//! Tests that absent effects take no memory, and that effects with a neutral value change no bit.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -16,7 +15,7 @@ use support::{collision, column, incline, run, scene};
 
 const AT: Resolution = Resolution::grid(4.0, 2);
 
-/// Two discs that meet off centre and turn, of a material that is hypoelastic or flows at once, with friction or none.
+/// Two rotating discs that collide off centre, of a hypoelastic or readily yielding material, with or without friction.
 fn discs(friction: f64, constitutive: &str) -> Scene {
     let modulus = "shear_modulus = 6.0";
     let text = collision(0.1, friction, 0.5).replace(modulus, &format!("{modulus}, {constitutive}"));
@@ -31,7 +30,7 @@ fn ran(solver: Mpm, scene: &Scene) -> Record {
     solver.run(scene, &AT, &mut ()).unwrap()
 }
 
-/// A record in every bit, without what it cost and which effects it names.
+/// Returns the series and snapshots of a record with all bits, without cost and names of effects.
 fn bits(record: &Record) -> String {
     format!("{:?} {:?}", record.series, record.snapshots)
 }
@@ -49,11 +48,11 @@ fn what_is_off_has_no_size() {
     assert_eq!(size_of::<<VonMises as Law>::PlasticStrain>(), size_of::<f64>());
 }
 
-/// Memory falls by just what the effect keeps: four springs of 32 B a tracer, a number or a matrix a point, three
-/// vectors a node.
+/// Absent effects save exactly the memory of their data: four springs of 32 B per tracer, a number or a matrix per
+/// point, and three vectors per node.
 #[test]
 fn what_is_off_takes_no_memory() {
-    // Before the discs meet, while they have the same nodes.
+    // The time is before the discs collide, while both scenes have the same nodes.
     let discs = |friction: f64, constitutive: &str| {
         let duration = Duration::Seconds(0.1);
         Scene { duration, ..discs(friction, constitutive) }
@@ -62,7 +61,7 @@ fn what_is_off_takes_no_memory() {
     let points = |cost: Cost| cost.particle_steps / cost.steps;
     let cost = ran(Mpm::BEST, &elastic).cost;
     let plain = cost.bytes.unwrap();
-    // Two circles of 6 tracers a cell, 4 cells a radius: 2π·24 of each, rounded up to a multiple of four.
+    // Two circles with 6 tracers per cell and 4 cells per radius: 2π·24 on each, rounded up to a multiple of four.
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.5, ELASTIC)) - plain, 2 * 152 * 4 * 32);
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.0, YIELDING)) - plain, points(cost) * 8);
     let flip = Mpm::BEST.with(|setting| setting.transfer = Transfer::Flip { pic: 0.0 });
@@ -74,7 +73,7 @@ fn what_is_off_takes_no_memory() {
     assert!(bytes_of(Mpm::BEST, &asked) > plain);
 }
 
-/// A disc at rest, at which both transfers have the same nodes.
+/// A disc at rest, for which both transfers have the same nodes.
 fn alone() -> Scene {
     scene(
         "dimension = 2\nduration = 0.5\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
@@ -82,15 +81,15 @@ fn alone() -> Scene {
     )
 }
 
-/// Where bodies meet at nodes no tracer has a spring, whatever friction there is.
+/// With nodal contact no tracer has a spring, for any friction.
 #[test]
 fn contact_at_nodes_has_no_springs() {
     let gap = Mpm::named("mpm:gap").unwrap();
     assert_eq!(bytes_of(gap, &discs(0.5, ELASTIC)), bytes_of(gap, &discs(0.0, ELASTIC)));
 }
 
-/// An effect that is there and does nothing is as if it were not: friction of a material that no grain has, between
-/// discs and at a plane, and a yield stress that nothing reaches.
+/// An effect with a neutral value gives the same result as its absence. Tested are friction of a material that no grain
+/// has, between discs and at a plane, and a yield stress that is never reached.
 #[test]
 fn an_idle_effect_changes_no_bit() {
     let plane = || scene(&format!("{}[output]\nsnapshots = 3\n", incline(30.0, 0.0, 0.1, false)));
@@ -107,14 +106,14 @@ fn an_idle_effect_changes_no_bit() {
         assert!(effect.switch_on_idly(&mut idle) && effect.is_on(&idle));
         let [without, idle] = [ran(solver, &without), ran(solver, &idle)];
         assert!(bits(&without) == bits(&idle), "{}, {effect:?} is not idle", solver.name);
-        // Viscosity keeps nothing from step to step.
+        // Viscosity stores nothing between steps.
         if solver == Mpm::BEST && effect != Effect::Viscosity {
             assert!(without.cost.bytes < idle.cost.bytes, "{effect:?} takes no memory");
         }
     }
 }
 
-/// A budget that is asked for changes nothing but that it is there.
+/// A requested budget does not change the other results.
 #[test]
 fn a_budget_only_looks_on() {
     for solver in Mpm::ALL {
@@ -124,7 +123,7 @@ fn a_budget_only_looks_on() {
     }
 }
 
-/// With FLIP the kinetic energy of a disc that spins is ½ I ω², of the velocities of its points and of nothing else.
+/// With FLIP the kinetic energy of a spinning disc is ½ I ω², from the velocities of its points alone.
 #[test]
 fn points_without_an_affine_part_have_no_energy_in_it() {
     let spin: f64 = 0.1;

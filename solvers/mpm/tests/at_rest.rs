@@ -1,4 +1,4 @@
-//! Bodies that start with the stress of their weight: nothing moves.
+//! Tests that bodies with the initial stress of their weight stay at rest.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -14,8 +14,9 @@ const YOUNG: f64 = 1e6;
 const POISSON: f64 = 0.3;
 const HEIGHT: f64 = 1.0;
 
-/// Soil in a smooth box under K₀ stress: σ_yy = ρg(y − H) and σ_xx = K₀ σ_yy, K₀ = ν/(1 − ν), which `sign` times the gradient
-/// gives, from half-way up.
+/// Soil in a smooth box under K₀ stress: σ_yy = ρg(y − H) and σ_xx = K₀ σ_yy, K₀ = ν/(1 − ν).
+///
+/// The stress is given at half height, with `sign` times its gradient.
 fn soil(law: &str, sign: f64) -> String {
     let (middle, gradient) = (-0.5 * DENSITY * GRAVITY * HEIGHT, sign * DENSITY * GRAVITY);
     let beside = POISSON / (1.0 - POISSON);
@@ -32,13 +33,13 @@ fn soil(law: &str, sign: f64) -> String {
     )
 }
 
-/// Settlement of the top without the stress, ρgH²/2M, M = E(1 − ν)/(1 + ν)(1 − 2ν) (m).
+/// Returns the settlement of the top without initial stress, ρgH²/2M, M = E(1 − ν)/(1 + ν)(1 − 2ν) (m).
 fn settlement() -> f64 {
     let modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
     0.5 * DENSITY * GRAVITY * HEIGHT * HEIGHT / modulus
 }
 
-/// The largest displacement of two points (m) in .2 s, in which a wave goes through the height five times; and the steps.
+/// Returns the largest displacement of two points (m) in .2 s, or five wave transits of the height, and the steps.
 fn moved(change: impl FnOnce(&mut Setting), text: &str, cells: f64, points: u32) -> (f64, f64) {
     let record = try_run("mpm", change, text, Resolution::grid(cells, points)).unwrap();
     let columns = ["top.ux", "top.uy", "middle.ux", "middle.uy"];
@@ -46,8 +47,8 @@ fn moved(change: impl FnOnce(&mut Setting), text: &str, cells: f64, points: u32)
     (most, record.cost.steps as f64)
 }
 
-/// With three points to a cell the sums over points are the integrals of the basis functions times the linear stress, and
-/// nothing but rounding moves: the spacing of numbers at the height, in every step.
+/// With three points per cell the sums over points equal the integrals of basis functions times the linear stress. Only
+/// rounding remains: the spacing of floating-point numbers at the height, in every step.
 #[test]
 fn stress_of_the_weight_keeps_soil_at_rest() {
     let soft = soil("constitutive = 'hypoelastic'", 1.0);
@@ -70,9 +71,9 @@ fn stress_of_the_weight_keeps_soil_at_rest() {
     }
 }
 
-/// Two points to a cell leave what the midpoint rule leaves of the free surface, of the order of the square of a cell. Under a
-/// gradient of the other sign the stress is off by −2ρg(y − H/2) from that of the weight: the middle swings about a place that is
-/// ρgH²/4M lower, half of the settlement.
+/// With two points per cell the midpoint rule leaves an error at the free surface, of second order in the cell size.
+/// With a gradient of the wrong sign the stress differs by −2ρg(y − H/2) from the stress of the weight. The middle then
+/// vibrates about a position that is lower by ρgH²/4M, half of the settlement.
 #[test]
 fn the_sign_of_a_stress_gradient_is_felt() {
     let [right, wrong] = [1.0, -1.0].map(|sign| moved(|_| (), &soil("constitutive = 'hypoelastic'", sign), 8.0, 2).0);

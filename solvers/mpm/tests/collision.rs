@@ -1,4 +1,4 @@
-//! Deformable against deformable: two discs, three, and what is kept.
+//! Collisions of two and three deformable discs, and conserved quantities.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -20,8 +20,8 @@ fn momentum_drift(record: &Record) -> f64 {
     pair.map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max) / (std::f64::consts::PI * SPEED)
 }
 
-/// Head on without friction: energy is kept, restitution is that of the converged elastic answer, .98. At four cells a
-/// radius quadratic functions are too coarse for the vibration that the impact leaves.
+/// In a head-on collision without friction energy is conserved, and restitution is .98, the converged elastic result.
+/// At four cells per radius quadratic functions are too coarse for the vibration after the impact.
 #[test]
 fn springs_keep_energy_and_momentum() {
     for (cells, energy_allowed, restitution_allowed) in [(4.0, 0.025, 0.04), (8.0, 0.005, 0.015)] {
@@ -34,8 +34,8 @@ fn springs_keep_energy_and_momentum() {
     }
 }
 
-/// Kinetic, elastic and contact energy are those of one and the same time: their sum hardly rings while discs touch.
-/// (With contact springs as they were at the beginning of the step it is off by +.8 and −1.8 % here.)
+/// Kinetic, elastic and contact energy refer to the same time: their sum is nearly constant during contact. (With
+/// spring energies at the beginning of the step the error would be +.8 and −1.8 % here.)
 #[test]
 fn the_sum_of_energies_hardly_rings() {
     let at = Resolution::Grid { cells: 8.0, points: 3, courant: 0.2 };
@@ -45,8 +45,8 @@ fn the_sum_of_energies_hardly_rings() {
     assert!(low > 0.99 * energy[0] && high < 1.002 * energy[0], "{} {}", low / energy[0], high / energy[0]);
 }
 
-/// Damping takes what points ring with against each other, which nodes do not show: energy falls as e^(−αt) or faster,
-/// where 2e-3 of it stayed when nodes alone were damped. And it says what it took.
+/// Damping acts on the relative motion of points that nodes do not represent. Energy falls as e^(−αt) or faster. With
+/// damping of nodes alone, 2e-3 of it would remain. The budget reports the damping work.
 #[test]
 fn damping_reaches_what_nodes_do_not_show() {
     let text = collision(0.02, 0.5, 0.5) + "budget.budget = true\n";
@@ -60,7 +60,7 @@ fn damping_reaches_what_nodes_do_not_show() {
     assert!((of("unbalanced") / start - 1.0).abs() < 1e-3, "{} of {start}", of("unbalanced"));
 }
 
-/// Off centre with strong friction: ωR/v₀ = .40 at eight cells.
+/// Off centre with strong friction, ωR/v₀ = .40 at eight cells per radius.
 #[test]
 fn friction_turns_discs() {
     let record = run("mpm", &collision(0.25, 0.9, 0.5), 8.0, 3);
@@ -69,8 +69,8 @@ fn friction_turns_discs() {
     assert!(momentum_drift(&record) < 1e-12);
 }
 
-/// The gap contact never makes energy and keeps momentum; release on departure makes it, and the 2001 criterion does
-/// not.
+/// The gap contact creates no energy and conserves momentum. Release on departure (2000) creates energy, and the 2001
+/// criterion creates less.
 #[test]
 fn nodal_contacts_do_what_they_are_known_for() {
     let gap = run("mpm:gap", &collision(0.5, 0.0, 0.0), 8.0, 3);
@@ -83,8 +83,7 @@ fn nodal_contacts_do_what_they_are_known_for() {
     assert!(energy(&traction) < energy(&kinematic));
 }
 
-/// Discs of materials without a law between them go through each other, as in the other solvers; with one field they
-/// cannot.
+/// Discs of materials without a contact law pass through each other, as in the other solvers.
 #[test]
 fn without_a_law_nothing_is_felt() {
     let mut scene = support::scene(&collision(0.5, 0.0, 0.0));
@@ -96,7 +95,7 @@ fn without_a_law_nothing_is_felt() {
     }
 }
 
-/// Three discs that meet at a point keep momentum, and all are thrown back alike.
+/// Three discs that collide at a point conserve momentum, and all rebound alike.
 #[test]
 fn three_discs_keep_momentum() {
     let at = |number: f64| {
@@ -125,7 +124,7 @@ fn three_discs_keep_momentum() {
     }
 }
 
-/// A pair that meets across a periodic face does as in the middle.
+/// A pair that collides across a periodic face behaves like a pair in the middle of the domain.
 #[test]
 fn a_periodic_face_is_not_felt() {
     let scene = |shift: f64| {
@@ -140,7 +139,7 @@ fn a_periodic_face_is_not_felt() {
             (shift + 1.0_f64).rem_euclid(8.0)
         )
     };
-    // Where a node's traction is nearly zero, rounding decides whether the 2001 criterion holds there.
+    // At a node with nearly zero traction, rounding decides the 2001 criterion.
     for (solver, allowed) in [("mpm", 1e-7), ("mpm:gap", 1e-7), ("mpm:2001", 2e-3)] {
         let [middle, face] = [4.0, 8.0].map(|shift| run(solver, &scene(shift), 4.0, 2));
         for name in ["a.vx", "a.vy", "a.omega"] {

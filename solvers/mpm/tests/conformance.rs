@@ -1,5 +1,5 @@
-//! What every solver owes, and what a method with a grid owes less: every setting with a name, in the plane; `mpm` in
-//! space too with `GRAINBENCH_LONG=1`.
+//! Conformance properties, with the weaker limits of methods with a grid: every named setting in the plane, and `mpm`
+//! also in three dimensions with `GRAINBENCH_LONG=1`.
 
 use grainbench_harness::conformance::failures;
 use grainbench_mpm::solver::Mpm;

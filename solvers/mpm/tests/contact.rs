@@ -1,4 +1,4 @@
-//! What contact springs push and rub with, by hand: at a wall, between bodies, on a belt, in a moving frame.
+//! Tests of contact spring forces against hand calculations: at a wall, between bodies, on a belt, in a moving frame.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -11,7 +11,7 @@ use support::{column, incline, last, run, try_run};
 /// E' = E/(1 − ν²) of E = 100 Pa, ν = .3: 100/.91 Pa.
 const PLANE_MODULUS: f64 = 109.890_109_890_109_89;
 
-/// The first step of a block 2 m wide whose lower face is .01 m deep in a plane that moves at 10 m/s along x.
+/// Returns the first step of a block 2 m wide that overlaps a plane by .01 m; the plane moves at 10 m/s along x.
 fn pressed_block(friction: f64, change: impl FnOnce(&mut Setting)) -> Record {
     let text = format!(
         "dimension = 2\nduration = 1.0e-3\nreference_length = 1.0\noutput.every_cycles = 1\n\
@@ -24,9 +24,11 @@ fn pressed_block(friction: f64, change: impl FnOnce(&mut Setting)) -> Record {
     try_run("mpm", change, &text, Resolution::grid(4.0, 2)).unwrap()
 }
 
-/// Springs of κ = 2.6 E'/h per area, h = .25 m, push a face of 2 m that is g = .01 m deep by κ · 2 g. They are stretched by
-/// 10 m/s Δt, more than μ g, so that the plane rubs with μ times that, and feels all of it backwards. Springs half as stiff
-/// and two thousandths more of friction are felt as what they are.
+/// Springs of κ = 2.6 E'/h per area, h = .25 m, push a face of 2 m at a depth g = .01 m with κ · 2 g.
+///
+/// They are displaced tangentially by 10 m/s Δt, more than μ g. The friction force is therefore μ times the normal
+/// force, and the plane receives the opposite forces. The forces scale with half the stiffness and with two thousandths
+/// more friction.
 #[test]
 fn a_plane_pushes_and_rubs_with_its_springs() {
     let push = 2.6 * PLANE_MODULUS / 0.25 * 2.0 * 0.01;
@@ -45,8 +47,10 @@ fn a_plane_pushes_and_rubs_with_its_springs() {
     }
 }
 
-/// A scene of two discs of radius 1 m that overlap by .009 m and are looked at after the first step. `between` is their
-/// contact and what else it needs, `second` the material of the second disc; they pass each other with `speed` (m/s) each.
+/// Returns a scene of two discs of radius 1 m that overlap by .009 m, observed after the first step.
+///
+/// `between` is their contact law with any further tables, and `second` the material of the second disc. They move past
+/// each other with `speed` (m/s) each.
 fn two_discs(between: &str, second: &str, speed: f64) -> String {
     format!(
         "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
@@ -58,11 +62,13 @@ fn two_discs(between: &str, second: &str, speed: f64) -> String {
     )
 }
 
-/// Two discs of radius R = 1 m that overlap by δ = .009 m, in the first step. Each has tracers on springs of ½κ per area, κ =
-/// 2.6 E'/h, with the depth g = δ − s²/R at the arc s from the line of centres: together κ ∫ g ds = κ (4/3) δ √(δR).
+/// Two discs of radius R = 1 m that overlap by δ = .009 m, in the first step. Both have tracers on springs of ½κ per
+/// area, κ = 2.6 E'/h. At the arc length s from the line of centres the depth is g = δ − s²/R. The total force is
+/// κ ∫ g ds = κ (4/3) δ √(δR).
 ///
-/// Tracers a sixth of a cell ℓ apart sum a parabola that ends in kinks to ¼ ℓ²/(δR); what is not a parabola is worth δ/R.
-/// E' is the harmonic mean of both bodies: 3/2 of one's where the other is three times as stiff.
+/// Tracers at a spacing of a sixth of a cell ℓ sum a parabola that ends in kinks with an error of ¼ ℓ²/(δR). The
+/// deviation from a parabola is of the order of δ/R. E' is the harmonic mean of both bodies: 3/2 of one if the other is
+/// three times as stiff.
 #[test]
 fn discs_push_with_the_springs_of_both() {
     let force = |second: f64, penalty: f64| {
@@ -82,9 +88,9 @@ fn discs_push_with_the_springs_of_both() {
     assert!((force(3.0, 2.6) / alike - 1.5).abs() < 1e-12);
 }
 
-/// The same discs pass each other at 20 m/s: the springs of all tracers, those of either disc, have slipped in the first
-/// step and rub with μ times what they push with. The first disc goes up and is held back; what holds it is counted
-/// positive down, which is the right of the line from it to the other.
+/// The same discs move past each other at 20 m/s. All tracer springs of both discs slip in the first step, with
+/// friction forces of μ times their normal forces. The first disc moves up, and its friction force points down. A
+/// downward force is positive: it points to the right of the line from the first to the second disc.
 #[test]
 fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     let force = |friction: f64, speed: f64| {
@@ -96,16 +102,17 @@ fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     for friction in [0.3, 0.1] {
         for (speed, sign) in [(10.0, 1.0), (-10.0, -1.0)] {
             let found = force(friction, speed);
-            // The line along which a tracer rubs turns by s/R from the middle of the contact to its ends, δ/R at most.
+            // The direction of friction at a tracer turns by s/R from the middle of the contact to its ends, at most
+            // δ/R.
             assert!((found / (sign * friction) - 1.0).abs() < 0.02, "{found} for {}", sign * friction);
         }
     }
 }
 
-/// A disc at rest on a belt that has begun to run at V = 6 m/s: springs are stretched beyond Coulomb's limit in every step, μ δ
-/// at a depth δ, so that the disc feels μ times what presses it, and gains v_x = μ (g t + v_y). Velocities at the start are
-/// taken for those half a step earlier, when nothing rubbed yet: t is half a step longer. Sums of some hundred steps are
-/// exact to 1e-10. The belt turns the disc counter-clockwise.
+/// A disc at rest on a belt that starts at V = 6 m/s. Springs exceed the Coulomb limit μ δ at a depth δ in every step.
+/// The friction is therefore μ times the normal force, and the disc gains v_x = μ (g t + v_y). Initial velocities
+/// belong to half a step earlier, when no friction acted, so that t is half a step longer. Sums of some hundred steps
+/// are exact to 1e-10. The belt turns the disc counter-clockwise.
 #[test]
 fn a_belt_drags_a_disc_by_what_presses_it() {
     let (speed, time) = (6.0, 0.15);
@@ -124,9 +131,10 @@ fn a_belt_drags_a_disc_by_what_presses_it() {
     }
 }
 
-/// The incline seen by one who goes by: plane and disc move along at V, and after t they are V t farther. What is left is
-/// that nodes are passed, within what the disc is off by at this resolution (.7 % of the rigid displacement). A plane that
-/// moved a hundredth faster would drag the rolling disc a third of .01 V t farther, 4.7 % of it.
+/// The incline in a moving frame: plane and disc also move at V, and after a time t they are V t farther. The remaining
+/// difference is caused by crossing nodes. It is within the discretisation error of the disc at this resolution (.7 %
+/// of the rigid displacement). If the plane moved 1 % faster, the rolling disc would be a third of .01 V t farther, 4.7
+/// %.
 #[test]
 fn an_incline_in_a_moving_frame_is_an_incline() {
     let (speed, time) = (4.0, 0.1);

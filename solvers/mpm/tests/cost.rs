@@ -1,4 +1,4 @@
-//! What a run costs, by counts that do not depend on the machine.
+//! Tests of run cost by counts that do not depend on the machine.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -9,7 +9,7 @@ use support::run;
 const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
     contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n";
 
-/// Discs in a square lattice that overlap a little: every one has four contacts but those at the rim.
+/// Slightly overlapping discs in a square lattice: each has four contacts, except at the rim.
 fn discs(count: [u32; 2]) -> Cost {
     let text = format!(
         "dimension = 2\nduration = 0.2\n{MATERIAL}\
@@ -20,14 +20,14 @@ fn discs(count: [u32; 2]) -> Cost {
     run("mpm", &text, 3.0, 2).cost
 }
 
-/// Growth from ten to a thousand grains at the same points a grain, as exponents of their number.
+/// Cost grows from ten to a thousand grains, at constant points per grain, with exponents near one.
 #[test]
 fn cost_grows_with_the_number_of_grains_and_no_faster() {
     let [few, many] = [discs([2, 5]), discs([25, 40])];
     assert_eq!(few.steps, many.steps);
     assert_eq!(100 * few.particle_steps, many.particle_steps);
     let exponent = |of: fn(&Cost) -> u64| (of(&many) as f64 / of(&few) as f64).log10() / 2.0;
-    // Ten discs have 13 contacts, a thousand have 1935: what is counted by contact grows as 148.8 = 100^1.086.
+    // Ten discs have 13 contacts and a thousand have 1935: counts by contact grow by 148.8 = 100^1.086.
     let contacts = (1935.0_f64 / 13.0).log10() / 2.0;
     let nodes = exponent(|cost| cost.node_updates.unwrap());
     let memory = exponent(|cost| cost.bytes.unwrap());
@@ -38,8 +38,8 @@ fn cost_grows_with_the_number_of_grains_and_no_faster() {
     }
 }
 
-/// A body by itself has no surface, no pairs and no springs: the run takes as much memory as one in which bodies cannot
-/// tell each other apart, and evaluates no contact.
+/// A single body has no surface, no pairs and no springs. The run evaluates no contact and takes as much memory as with
+/// one velocity field for all bodies.
 #[test]
 fn a_body_by_itself_pays_nothing_for_contact() {
     let text = format!(
@@ -51,13 +51,14 @@ fn a_body_by_itself_pays_nothing_for_contact() {
         (cost.bytes, cost.node_updates)
     });
     assert!(costs.iter().all(|cost| *cost == costs[0]), "{costs:?}");
-    // With a wall that it never meets it has a surface, and that is what it costs.
+    // With a wall that is never in contact, the only cost is the surface.
     let wall = "[walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -9.0], normal = [0.0, 1.0] }\n";
     let with_wall = run("mpm:penalty", &(text + wall), 8.0, 2).cost;
     assert!(with_wall.bytes > costs[0].0 && with_wall.contact_evaluations == Some(0), "{with_wall:?}");
 }
 
-/// A box of 2 m × 1 m at four cells a metre and two points a cell and axis has 16 · 8 points, and each is stepped once a step.
+/// A box of 2 m × 1 m with four cells per metre and two points per cell and axis has 16 · 8 points. Each point counts
+/// once per step.
 #[test]
 fn points_are_counted_once_a_step() {
     let text = format!(

@@ -1,4 +1,4 @@
-//! Driven grains, and where the energy goes that they bring.
+//! Tests of driven grains and of the energy budget of their work.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -6,8 +6,7 @@ mod support;
 use grainbench_scene::solver::Resolution;
 use support::{collision, column, last, run, scene, try_run};
 
-/// The left disc of a collision is driven, faster than the sound of a push can let the right one escape, and yields
-/// where `yields`.
+/// Returns a collision whose left disc is driven, fast enough that the right disc cannot escape; it yields if `yields`.
 fn pushed(friction: f64, offset: f64, yields: bool) -> String {
     let speed = 0.01 * 18.0_f64.sqrt();
     let mut text = collision(0.1, friction, offset);
@@ -27,7 +26,7 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
         let start = column(&record, "a.x")[0];
         assert!((last(&record, "a.x") - start - way).abs() < 1e-12, "{name}: {}", last(&record, "a.x"));
         assert!(last(&record, "a.angle").abs() < 1e-12 && (last(&record, "a.vx") - speed).abs() < 1e-14, "{name}");
-        // What it pushed has been pushed, and moves on.
+        // The pushed disc moves on.
         assert!(last(&record, "b.vx") > 0.0, "{name}: {}", last(&record, "b.vx"));
         let scale = last(&record, "budget.impulse_x");
         let off = last(&record, "budget.momentum_x") - column(&record, "budget.momentum_x")[0] - scale;
@@ -37,7 +36,7 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
 
 #[test]
 fn the_budget_of_a_push_closes() {
-    // Points that flow take on the spin around them, which loses what their own held.
+    // Yielding points take the spin of the field around them and lose their own spin energy.
     for (name, yields, allowed, lost) in [
         ("mpm", false, 2e-3, 0.005),
         ("mpm", true, 2e-3, 0.02),
@@ -51,13 +50,13 @@ fn the_budget_of_a_push_closes() {
         assert!(of("work") > 0.0 && open.abs() < allowed, "{name}: {open}");
         assert_eq!(of("plastic") > 0.0, yields, "{name}");
         assert_eq!(of("friction") > 0.0, name != "mpm:no-slip", "{name}");
-        // What the method itself loses or makes is small beside what is brought in.
+        // Energy lost or created by the method is small compared with the work.
         let made = (of("transfer") + of("contact")) / of("work");
         assert!(made.abs() < lost, "{name}: {made}");
     }
 }
 
-/// A budget that leaves out an entry does not close: friction here.
+/// A budget without one of its entries, here friction, does not close.
 #[test]
 fn the_budget_misses_what_is_left_out() {
     let record = run("mpm", &pushed(0.5, 0.5, false), 8.0, 2);
@@ -81,8 +80,8 @@ fn a_grain_that_yields_says_so() {
     assert_eq!(scene(&pushed(0.5, 0.5, true)).driven[0].grains, [0]);
 }
 
-/// What does not close is of first order in the step: a quarter of it leaves less than two fifths, whatever the contact and
-/// the material.
+/// The residual of the budget is of first order in the step. With a quarter of the step less than two fifths remain,
+/// for any contact and material.
 #[test]
 fn the_budget_closes_as_the_step_goes_to_zero() {
     for name in ["mpm", "mpm:gap", "mpm:2000", "mpm:no-slip"] {
@@ -98,7 +97,7 @@ fn the_budget_closes_as_the_step_goes_to_zero() {
     }
 }
 
-/// Places are those of the function, to the rounding of the steps; a spin is refused.
+/// Positions follow the function to rounding; a spin is rejected.
 #[test]
 fn a_driven_grain_follows_a_sine() {
     let of = |driven: &str| format!("{}[driven.ram]\ngrains = 'a'\n{driven}\n", collision(0.1, 0.0, 0.5));

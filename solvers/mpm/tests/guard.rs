@@ -1,5 +1,5 @@
-//! Runs that end because the step became too long, energy came from nowhere, or bodies started in each other; and a tension at
-//! rest, which once did so silently.
+//! Tests of runs that stop because the step became too long, energy was created or bodies overlapped at the start, and
+//! of a bar under tension at rest.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod support;
@@ -15,8 +15,9 @@ fn broken(error: RunError) -> Broken {
     *broken
 }
 
-/// A bar between two fixed ends under a tension along it (E), with ν = 0, that hardly swings: at .02 m/s, a 3500th of the speed
-/// of sound.
+/// Returns a bar between two fixed ends under an axial tension (E), with ν = 0.
+///
+/// It vibrates slightly, at .02 m/s or a 3500th of the speed of sound.
 fn bar(tension: f64, duration: f64) -> String {
     format!(
         "dimension = 2\nduration = {duration}\nreference_length = 0.05\n\
@@ -28,8 +29,8 @@ fn bar(tension: f64, duration: f64) -> String {
     )
 }
 
-/// What swings keeps its energy: its kinetic energy never passes that at the start by more than the 4 % that MUSL makes at the
-/// limit of the step. Points that move with other velocities than the stress follows made it grow a thousandfold.
+/// A vibration keeps its energy: kinetic energy exceeds its initial value by at most the 4 % that MUSL creates at the
+/// limit of the step. If points moved with other velocities than the stress update, it would grow a thousandfold.
 #[test]
 fn a_bar_under_tension_rests() {
     for (tension, basis) in [(0.08, Basis::Quadratic), (0.08, Basis::Gimp), (0.0, Basis::Quadratic)] {
@@ -44,8 +45,8 @@ fn a_bar_under_tension_rests() {
     }
 }
 
-/// Under a tension of .3 E a wave is √((1 + λ²)/2) = 1.184 times as fast, with the stretch λ = 1.344 of E/2 (λ − 1/λ) = .3 E: a
-/// step of .95 h/c is then above the limit, one of .4 is not.
+/// Under a tension of .3 E a wave is √((1 + λ²)/2) = 1.184 times as fast. The stretch λ = 1.344 follows from
+/// E/2 (λ − 1/λ) = .3 E. A step of .95 h/c is then above the limit, and a step of .4 h/c is not.
 #[test]
 fn a_step_that_becomes_too_long_is_told() {
     let at = |courant| Resolution::Grid { cells: 4.0, points: 3, courant };
@@ -53,14 +54,14 @@ fn a_step_that_becomes_too_long_is_told() {
     let Cause::Stiffened { crossing, at_start } = found.cause else { panic!("{found}") };
     let stretch = 0.3 + (0.09_f64 + 1.0).sqrt();
     let faster = ((1.0 + stretch * stretch) / 2.0).sqrt();
-    // What swings changes the stretch by .02 m/s over the speed of sound.
+    // The vibration changes the stretch by .02 m/s over the speed of sound.
     assert!((at_start / crossing / faster - 1.0).abs() < 1e-3, "{found}");
     assert!(found.time_step > crossing && found.to_string().contains("is stable"), "{found}");
     assert!(try_run("mpm", |_| (), &bar(0.3, 0.02), at(0.4)).is_ok());
 }
 
-/// Discs that start deep in each other would be thrown apart: the springs of .1 R at eight cells a radius strain the surface by
-/// 1.7. A tenth of that begins.
+/// Discs with a deep initial overlap would be thrown apart: at .1 R and eight cells per radius, springs strain the
+/// surface by 1.7. A tenth of this overlap is accepted.
 #[test]
 fn an_overlap_at_the_start_is_told() {
     let pair = |overlap: f64| {
@@ -83,8 +84,8 @@ fn an_overlap_at_the_start_is_told() {
     assert!(try_run("mpm", |_| (), &pair(0.01), at).is_ok());
 }
 
-/// GIMP with the stress updated last is stable up to .5 h/c and makes energy at .7: a disc that flies and turns breaks up without
-/// a point that leaves its cell, and the energy tells. At .4 it flies on.
+/// GIMP with the stress updated last is stable up to .5 h/c and creates energy at .7. A flying and spinning disc breaks
+/// up without a point leaving its cell, and the energy check reports it. At .4 it is stable.
 #[test]
 fn energy_from_nowhere_is_told() {
     let text = "dimension = 2\nduration = 30.0\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
@@ -100,7 +101,7 @@ fn energy_from_nowhere_is_told() {
     assert!(try_run("mpm", last, text, at(0.4)).is_ok());
 }
 
-/// A run that ends while it settles is told as any other, with what it looked like.
+/// A run that stops during relaxation is reported like any other run.
 #[test]
 fn an_overlap_is_told_while_bodies_settle() {
     let text = "dimension = 2\nduration = 0.01\nlargest_initial_overlap = 0.5\nsettle = { duration = 0.1, damping = 1.0 }\n\

@@ -1,4 +1,4 @@
-//! Constitutive laws at a point.
+//! Tests of constitutive laws at a point.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VolumeRatio, VonMises};
@@ -14,12 +14,12 @@ const METAL: VonMises = VonMises {
     hardening_modulus: 0.01e9,
 };
 
-/// Displacement gradient on the configuration at the start of a step, from that H half-way through it: H (1 − H/2)⁻¹.
+/// Converts the displacement gradient H at the middle of a step to the one at its start: H (1 − H/2)⁻¹.
 fn at_start(middle: Matrix3<f64>) -> Matrix3<f64> {
     middle * (Matrix3::identity() - middle * 0.5).try_inverse().unwrap()
 }
 
-/// Takes a state through steps whose displacement gradients half-way through each add up to `strain`.
+/// Integrates a state through steps whose displacement gradients at mid-step add up to `strain`.
 fn strained(law: impl Law, state: &mut State, strain: Matrix3<f64>, steps: u32) {
     let increment = at_start(strain / f64::from(steps));
     for _ in 0..steps {
@@ -79,13 +79,13 @@ fn large_plastic_shear_does_not_oscillate() {
     assert!((state.plastic_strain / 1.140_55 - 1.0).abs() < 1e-4);
 }
 
-/// Whole turns leave the stress as it was, turned with the body.
+/// A full turn leaves the stress unchanged.
 #[test]
 fn rotation_makes_no_stress() {
     let law = Hypoelastic { bulk_modulus: BULK, shear_modulus: SHEAR };
     let mut state = State { stress: Matrix3::new(1.0, 2.0, 0.0, 2.0, -3.0, 0.0, 0.0, 0.0, 4.0), ..State::default() };
     let before = state.stress;
-    // The rotation of a step is 2 atan(w/2).
+    // In each step the rotation is 2 atan(w/2).
     let steps = 1000;
     let rate = 2.0 * (std::f64::consts::PI / f64::from(steps)).tan();
     let rounding = f64::from(steps) * BULK * f64::EPSILON;
@@ -93,7 +93,7 @@ fn rotation_makes_no_stress() {
     assert!((state.stress - before).norm() < rounding);
 }
 
-/// Turns a stress in equal steps about an axis, with the displacement gradient R − 1 of a rotation in each.
+/// Rotates a stress in equal steps about an axis, with the displacement gradient R − 1 in each.
 fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps: u32) -> Matrix3<f64> {
     let law = Hypoelastic { bulk_modulus: BULK, shear_modulus: SHEAR };
     let rotation = Rotation3::new(axis * (angle / f64::from(steps))).into_inner();
@@ -105,11 +105,11 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     S::embed_symmetric(stress)
 }
 
-/// Stress (Pa) of about the modulus times the rounding of a strain of one, where 250 steps may each lose one digit.
+/// Rounding error of stress (Pa): about the modulus times the rounding of unit strain, with 250 steps.
 const ROUNDING: f64 = 250.0 * BULK * f64::EPSILON;
 
-/// An eighth of a turn carries the stress along, σ' = R σ Rᵀ: σ_xx' = (σ_xx + σ_yy)/2 − σ_xy, σ_yy' the same with +σ_xy,
-/// σ_xy' = (σ_xx − σ_yy)/2. A quarter of a turn gives the same stress whichever way it goes.
+/// An eighth of a turn rotates the stress, σ' = R σ Rᵀ: σ_xx' = (σ_xx + σ_yy)/2 − σ_xy, σ_yy' the same with +σ_xy,
+/// σ_xy' = (σ_xx − σ_yy)/2. A quarter of a turn would give the same stress in both directions.
 #[test]
 fn an_eighth_of_a_turn_carries_the_stress_along() {
     const STRESS: Matrix3<f64> = Matrix3::new(1.0, 2.0, 0.0, 2.0, -3.0, 0.0, 0.0, 0.0, 4.0);
@@ -122,7 +122,7 @@ fn an_eighth_of_a_turn_carries_the_stress_along() {
     ] {
         assert!((found - expected).norm() < ROUNDING, "{found}");
     }
-    // About any axis, and the other way round.
+    // The test covers a general axis and both directions.
     let axis = Vector3::new(0.6, -0.48, 0.64);
     for angle in [eighth, -eighth] {
         let rotation = Rotation3::new(axis * angle).into_inner();
@@ -131,7 +131,7 @@ fn an_eighth_of_a_turn_carries_the_stress_along() {
     }
 }
 
-/// A rotation strains nothing, however far it goes in a step: metal does not flow, and a viscous solid bears no stress.
+/// A rotation of any size in a step gives no strain: metal does not yield, and a viscous solid has no stress.
 #[test]
 fn a_rotation_strains_nothing() {
     let rotation = Rotation3::new(Vector3::new(0.6, -0.48, 0.64) * 0.3).into_inner();
@@ -146,7 +146,7 @@ fn a_rotation_strains_nothing() {
     assert!(viscous.stress.norm() < ROUNDING, "{}", viscous.stress);
 }
 
-/// The stress is the derivative of the energy, and of the pressure asked for.
+/// The stress is the derivative of the energy.
 #[test]
 fn neo_hookean_energy_gives_its_stress() {
     let law = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
@@ -185,8 +185,8 @@ fn waves_are_as_fast_as_the_energy_says() {
     }
 }
 
-/// The state under a stress is one from which the law gives that stress, and without rotation: of a pressure, of shear, and of a
-/// third of the moduli.
+/// The law gives the requested stress for the state under that stress, which has no rotation. Tested are a pressure, a
+/// shear, and stresses of a third of the moduli.
 #[test]
 fn a_law_starts_under_any_stress() {
     let rubber = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
@@ -209,9 +209,9 @@ fn a_law_starts_under_any_stress() {
             }
         }
     }
-    // Moduli bound the pull, not the push: at fifty times the moduli there is no such state.
+    // Tension is limited by the moduli, compression is not: no such state exists at fifty times the moduli.
     assert!(rubber.under_stress(&Matrix3::from_diagonal_element(100.0), 3).is_none());
-    // A law with a history starts under it as it is, where it does not yield at once.
+    // A law with history starts with the given stress, unless it yields at once.
     let steel = Matrix3::new(0.17e9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     assert_eq!(METAL.under_stress(&steel, 2).unwrap().stress, steel);
     assert!(METAL.under_stress(&(steel * 2.0), 2).is_none());

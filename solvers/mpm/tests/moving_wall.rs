@@ -1,11 +1,12 @@
-//! Walls that move: nothing depends on the frame from which a block is seen that slides on a wall.
+//! Tests of moving walls: the friction of a sliding block does not depend on the frame of reference.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
 
 use support::{column, run};
 
-/// Change of the velocity of a block (m/s) that slides at 1 m/s over a wall in a frame in which the wall moves along itself.
+/// Returns the change of velocity (m/s) of a block that slides at 1 m/s relative to a wall with tangential velocity
+/// `wall`.
 fn braked(solver: &str, wall: f64) -> f64 {
     let text = format!(
         "dimension = 2\nduration = 0.1\ngravity = [0.0, -9.8]\nsettle = {{ duration = 0.3, damping = 60.0 }}\n\
@@ -22,9 +23,9 @@ fn braked(solver: &str, wall: f64) -> f64 {
     velocity[velocity.len() - 1] - velocity[0]
 }
 
-/// Coulomb's law takes μ g t = .49 m/s from it in .1 s, whatever the frame. With a wall that is taken to rest where it moves at
-/// −2 m/s, friction would push the block, which then moves at −1 m/s, the other way. Cells that the block passes in one frame
-/// and not in the other are worth a tenth.
+/// Coulomb friction changes the velocity by μ g t = .49 m/s in .1 s in any frame. If a wall at −2 m/s were treated as
+/// at rest, friction on the block, which moves at −1 m/s, would have the opposite sign. Crossing cells in only one of
+/// the frames causes a difference of at most a tenth.
 #[test]
 fn a_block_is_braked_alike_in_any_frame() {
     for solver in ["mpm", "mpm:2000", "mpm:2001", "mpm:gap"] {

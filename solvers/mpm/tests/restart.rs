@@ -1,4 +1,4 @@
-//! A run that is continued from a checkpoint ends as the run that was never interrupted, in every bit.
+//! Tests that a run continued from a checkpoint ends in the same bits as an uninterrupted run.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -9,7 +9,7 @@ use grainbench_scene::record::{Cost, Record};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 use support::{collision, incline, scene};
 
-/// Keeps every checkpoint of a run, as a reader of its file has it.
+/// Observer that stores every checkpoint of a run, after conversion to and from bytes.
 struct Keeper {
     every: u64,
     kept: Vec<Checkpoint>,
@@ -26,7 +26,7 @@ impl Watch for Keeper {
     }
 }
 
-/// A record without its times, in every bit.
+/// Returns a record with all bits, without wall time.
 fn untimed(record: Record) -> String {
     format!("{:?}", Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record })
 }
@@ -37,7 +37,7 @@ fn checkpoints(solver: Mpm, text: &str, at: &Resolution, every: u64) -> (String,
     (whole, keeper.kept)
 }
 
-/// A sphere that rolls, cut short.
+/// A rolling sphere with a short duration.
 fn sphere() -> String {
     "dimension = 3\nduration = 0.05\ngravity = [3.0, 0.0, -9.0]\n\
      materials.m = { density = 1000.0, bulk_modulus = 6.0e6, shear_modulus = 3.0e6 }\n\
@@ -53,8 +53,8 @@ fn driven() -> String {
     format!("{}budget.budget = true\n[driven.ram]\ngrains = 'a'\nvelocity = [0.05, 0.0]\n", collision(0.1, 0.9, 0.5))
 }
 
-/// Contact with friction between bodies and at a plane, settled, in space: every way to touch, from early and from
-/// late.
+/// The cases cover all kinds of contact with friction: between bodies, at a plane, after relaxation and in three
+/// dimensions. Each restarts from an early and a late checkpoint.
 #[test]
 fn a_continued_run_leaves_the_same_bits() {
     let sampled = |text: String| format!("{text}[output]\nsnapshots = 3\n");
@@ -79,7 +79,7 @@ fn a_continued_run_leaves_the_same_bits() {
     }
 }
 
-/// Another scene, setting, resolution or solver is refused, each by its name; and so is a file that was cut.
+/// Another scene, setting, resolution or solver is rejected with its name, and a truncated file is rejected too.
 #[test]
 fn another_run_and_half_a_file_are_refused() {
     let (text, at) = (collision(0.1, 0.9, 0.5), Resolution::grid(4.0, 2));

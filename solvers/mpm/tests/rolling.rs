@@ -1,4 +1,4 @@
-//! A disc and a sphere on a rigid plane.
+//! Tests of a disc and a sphere on a rigid plane.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -7,7 +7,7 @@ use grainbench_mpm::solver::Mpm;
 use grainbench_scene::record::Cost;
 use support::{column, incline, last, run};
 
-/// Displacement against that of a rigid disc, in percent.
+/// Returns the error of displacement relative to a rigid disc (%), and the ratio of rolling to translation.
 fn error(solver: &str, (slope, friction, duration): (f64, f64, f64), cells: f64, settled: bool) -> (f64, f64) {
     let record = run(solver, &incline(slope, friction, duration, settled), cells, 3);
     let (angle, x) = (slope.to_radians(), column(&record, "g.x"));
@@ -18,7 +18,7 @@ fn error(solver: &str, (slope, friction, duration): (f64, f64, f64), cells: f64,
     (100.0 * ((x[x.len() - 1] - x[0]) / rigid - 1.0), rolled)
 }
 
-/// Settled, against the elastic answer: +1.47 %, +.65 ± .1 % and −.3 ± .1 % of the rigid displacement.
+/// After relaxation, compared with the elastic result: +1.47 %, +.65 ± .1 % and −.3 ± .1 % of the rigid displacement.
 #[test]
 fn settled_disc_rolls_and_slips_as_an_elastic_one() {
     for (case, elastic, allowed) in [
@@ -34,8 +34,8 @@ fn settled_disc_rolls_and_slips_as_an_elastic_one() {
     assert!((error("mpm", (60.0, 0.3, 0.3), 8.0, true).1 - 0.39).abs() < 0.02);
 }
 
-/// The papers' contact at a distance, reproduced: at two cells a radius the disc slides without turning, and one that
-/// should roll is a third to two thirds slow.
+/// The nodal contact of the papers, which acts at a distance, is reproduced. At two cells per radius the slipping disc
+/// does not turn, and the rolling disc is too slow by a third to two thirds.
 #[test]
 fn the_papers_contact_does_not_roll_at_two_cells() {
     let (slip, turned) = error("mpm:2000", (60.0, 0.3, 0.3), 2.0, false);
@@ -46,7 +46,7 @@ fn the_papers_contact_does_not_roll_at_two_cells() {
     assert!((-55.0..-38.0).contains(&literal), "{literal}");
 }
 
-/// No body falls through a plane, in any method at any level; a plane that carries a body feels its weight.
+/// No body falls through a plane, in any method at any resolution; the plane carries the weight of the body.
 #[test]
 fn nothing_falls_through_a_plane() {
     let weight = 3000.0 * std::f64::consts::PI * 0.25 * 9.8;
@@ -61,7 +61,7 @@ fn nothing_falls_through_a_plane() {
     }
 }
 
-/// Settled sphere, no slip, a second: −.2 ± .3 % of the rigid displacement.
+/// A relaxed sphere that rolls without slip for a second: −.2 ± .3 % of the rigid displacement.
 #[test]
 fn settled_sphere_rolls() {
     let pull = -10.0 * 45_f64.to_radians().cos();
@@ -81,7 +81,7 @@ fn settled_sphere_rolls() {
     assert!(last(&record, "g.y").abs() < 1e-3);
 }
 
-/// The same run leaves the same bits.
+/// A repeated run gives the same bits.
 #[test]
 fn reruns_are_equal_to_the_bit() {
     let bits = || {

@@ -1,4 +1,4 @@
-//! One body without contact: flight, rotation, vibration, manufactured motion, failures.
+//! Tests of one body without contact: flight, rotation, vibration, manufactured motion and failures.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod support;
@@ -8,7 +8,7 @@ use grainbench_scene::manufactured::Medium;
 use grainbench_scene::solver::{Cause, Resolution, RunError};
 use support::{column, last, run, scene, try_run};
 
-/// A disc (a sphere) in free fall, turning: the fall is exact up to the step, the spin is kept.
+/// A spinning disc or sphere in free fall: the fall is exact to rounding, and the spin is conserved.
 #[test]
 fn free_flight_keeps_momentum() {
     for (dimension, position, velocity, spin, gravity, cells) in [
@@ -28,7 +28,7 @@ fn free_flight_keeps_momentum() {
         assert!((last(&record, height) - fallen).abs() < 1e-12, "{}", last(&record, height));
         let spins = column(&record, spin);
         assert!((spins[0] - 0.3).abs() < 1e-12);
-        // Lumped mass spreads a body over its nodes: spin is kept to that order.
+        // Lumped mass spreads a body over its nodes, and spin is conserved only to that order.
         assert!((last(&record, spin) / 0.3 - 1.0).abs() < 5e-3, "{}", last(&record, spin));
         if dimension == 2 {
             assert!((last(&record, "g.angle") - 0.3).abs() < 2e-3, "{}", last(&record, "g.angle"));
@@ -36,7 +36,7 @@ fn free_flight_keeps_momentum() {
     }
 }
 
-/// Points turn with their body, past a whole turn too, and stand in the snapshots that were asked for.
+/// Points rotate with their body, also beyond a full turn, and are in the requested snapshots.
 #[test]
 fn points_turn_with_their_body() {
     let text = "dimension = 2\nduration = 1.0\n\
@@ -82,12 +82,12 @@ fn a_bar_vibrates_at_its_period() {
     assert!((2.0 * (crossings[1] - crossings[0]) / 10.0 - 1.0).abs() < 2e-3, "{crossings:?}");
     let energy = column(&record, "all.total_energy");
     assert!(energy.iter().all(|now| (now / energy[0] - 1.0).abs() < 5e-3));
-    // The free end swings by v₀/ω.
+    // The amplitude of the free end is v₀/ω.
     let swing = column(&record, "p.ux").iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     assert!((swing / (0.1 * 10.0 / std::f64::consts::TAU) - 1.0).abs() < 0.02, "{swing}");
 }
 
-/// Root mean square of the error in displacement of a manufactured motion.
+/// Returns the root mean square error in displacement of a manufactured motion.
 fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
     let text = "dimension = 2\nduration = 0.5\nreference_length = 1.0\n\
         manufactured = { axis-aligned = { amplitude = 0.05 } }\n\
@@ -111,7 +111,7 @@ fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
     (sum / volume).sqrt()
 }
 
-/// Second order for GIMP; hats stall, since points cross cells.
+/// GIMP converges at second order; hat functions stagnate because points cross cells.
 #[test]
 fn manufactured_motion_converges_at_second_order() {
     let order = |basis, points| {
@@ -126,7 +126,7 @@ fn manufactured_motion_converges_at_second_order() {
     assert!(splines > 1.55, "{splines}");
 }
 
-/// Hats with the stress updated last blow up whatever the step, and say so.
+/// Hat functions with the stress updated last fail at any step, with a typed error.
 #[test]
 fn hats_with_stress_last_break_typed() {
     let last = |setting: &mut grainbench_mpm::options::Setting| setting.stress_update = StressUpdate::Last;
@@ -144,7 +144,7 @@ fn hats_with_stress_last_break_typed() {
     assert!(typed && broken.step < 2000, "{broken}");
 }
 
-/// Scenes and resolutions that make no sense here are refused with their reason.
+/// Unsupported scenes and invalid resolutions are rejected with a reason.
 #[test]
 fn what_cannot_be_run_is_refused() {
     let bare = "dimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
@@ -156,8 +156,9 @@ fn what_cannot_be_run_is_refused() {
     assert!(matches!(refused(&incline, Resolution::grid(f64::NAN, 2)), RunError::Resolution { .. }));
 }
 
-/// A thin ring that is stretched and turned at the start: ½ρ(a² + ω²) π/2 (R⁴ − r⁴) of kinetic energy, and ρω π/2 (R⁴ − r⁴) of
-/// angular momentum. Stretched alone it breathes with ω² = E/ρR²: after an eighth of the period half of the energy is elastic.
+/// A thin ring with an initial stretch rate and spin. Its kinetic energy is ½ρ(a² + ω²) π/2 (R⁴ − r⁴), and its angular
+/// momentum ρω π/2 (R⁴ − r⁴). With stretch alone it vibrates with ω² = E/ρR²: after an eighth of the period half of the
+/// energy is elastic.
 #[test]
 fn a_ring_expands_and_turns_back() {
     let ring = |more: &str, duration: f64| {

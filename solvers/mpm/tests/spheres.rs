@@ -1,4 +1,4 @@
-//! Deformable against deformable in space: two spheres, a sphere and a block.
+//! Collisions of two deformable spheres.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -8,12 +8,12 @@ use support::{column, last, run};
 
 const SPEED: f64 = 0.042_426_406_871_192_85;
 
-/// Two equal spheres of radius 1 that approach at .01 c each from a gap (m), off centre by `offset` each.
+/// Two equal spheres of radius 1 that approach at .01 c each from a gap (m), with an offset of `offset` each.
 fn collision(gap: f64, friction: f64, offset: f64) -> String {
     impact(gap, friction, offset, SPEED, 5.0)
 }
 
-/// The same at a speed (m/s), for a time after they touch (s).
+/// Two equal spheres at a speed (m/s), for a time `rest` (s) after first contact.
 fn impact(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
     let duration = 0.5 * gap / speed + rest;
@@ -42,8 +42,8 @@ fn energy(record: &Record) -> f64 {
     energy[energy.len() - 1] / energy[0]
 }
 
-/// Head on without friction: momentum is kept to rounding, and nothing starts to turn. Springs give the energy back
-/// that they took; quadratic functions damp at four cells a radius.
+/// In a head-on collision without friction, momentum is conserved to rounding, and no rotation starts. Springs return
+/// their energy; quadratic functions have damping at four cells per radius.
 #[test]
 fn spheres_rebound() {
     for (solver, energies, restitutions) in [
@@ -60,14 +60,14 @@ fn spheres_rebound() {
     }
 }
 
-/// The criterion of 2001 along each body's own normal does not keep momentum.
+/// The 2001 criterion along each body's own normal does not conserve momentum.
 #[test]
 fn own_normals_do_not_keep_momentum_in_space() {
     let record = run("mpm:2001", &collision(0.1, 0.0, 0.0), 4.0, 2);
     assert!(momentum_drift(&record) > 1e-3, "{}", momentum_drift(&record));
 }
 
-/// Off centre: without friction spheres hardly start to turn, with it they turn alike.
+/// In an off-centre collision spheres hardly rotate without friction, and rotate alike with friction.
 #[test]
 fn friction_turns_spheres() {
     let smooth = run("mpm", &collision(0.1, 0.0, 0.5), 4.0, 2);
@@ -78,9 +78,9 @@ fn friction_turns_spheres() {
     assert!(momentum_drift(&rough) < 1e-12 && energy(&rough) < energy(&smooth));
 }
 
-/// Slow enough for waves to have passed many times, spheres part after Hertz' time, 2.94 δ/v, δ = (15 m v²/(16 E*
-/// √R))^(2/5) with m and R half of one's and E* = E/(2 (1 − ν²)) (Johnson, Contact Mechanics, §11.4): E = 15, ν = 1/4,
-/// v the speed of approach.
+/// In slow collisions waves cross the spheres many times. The contact time is then Hertz's, 2.94 δ/v, with
+/// δ = (15 m v²/(16 E* √R))^(2/5) (Johnson, Contact Mechanics, §11.4). Here m and R are half of a sphere's mass and
+/// radius, E* = E/(2 (1 − ν²)) with E = 15 and ν = 1/4, and v is the approach velocity.
 #[test]
 fn slow_spheres_touch_for_hertz_time() {
     let touch = |softer: f64| {

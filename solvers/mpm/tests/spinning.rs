@@ -1,4 +1,4 @@
-//! Bodies that spin freely: incremental laws keep their size, and their spin is read with the whole tensor of inertia.
+//! Tests of freely spinning bodies: incremental laws keep their size, and the full inertia tensor gives their spin.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -26,7 +26,7 @@ fn grain(dimension: u32, law: &str, spin: &str) -> String {
     )
 }
 
-/// Radius of gyration of the material points over that at the start, less one.
+/// Returns the relative growth of the radius of gyration of the material points.
 fn growth(snapshot: &Snapshot) -> f64 {
     let count = snapshot.points.len() as f64;
     let gyration = |place: &dyn Fn(usize) -> Vector3<f64>| {
@@ -43,19 +43,20 @@ fn growth_at_end(record: &Record) -> f64 {
     growth(record.snapshots.last().unwrap())
 }
 
-/// Static growth of the radius of gyration of a disc that spins, in plane strain (Timoshenko & Goodier 1970, article 32, with
-/// E' = E/(1 − ν²) and ν' = ν/(1 − ν)): u = A r ((3 + ν')R² − (1 + ν')r²), A = (1 − ν')ρΩ²/8E', and ⟨u r⟩/⟨r²⟩ over the disc
-/// is A R² ((3 + ν') − ⅔(1 + ν')).
+/// Returns the static growth of the radius of gyration of a spinning disc in plane strain.
+///
+/// Timoshenko & Goodier 1970, article 32, with E' = E/(1 − ν²) and ν' = ν/(1 − ν): u = A r ((3 + ν')R² − (1 + ν')r²),
+/// A = (1 − ν')ρΩ²/8E'. ⟨u r⟩/⟨r²⟩ over the disc is A R² ((3 + ν') − ⅔(1 + ν')).
 fn centrifugal_growth() -> f64 {
     let (young, poisson) = (YOUNG / (1.0 - POISSON * POISSON), POISSON / (1.0 - POISSON));
     let scale = (1.0 - poisson) * DENSITY * (SPIN * RADIUS).powi(2) / (8.0 * young);
     scale * ((3.0 + poisson) - 2.0 / 3.0 * (1.0 + poisson))
 }
 
-/// A body that is set spinning swings about its static growth, up to twice that. A law that takes the strain on the
-/// configuration at the start of a step lets a disc grow by πΩΔt in a turn, and a sphere, two axes of three, by 2πΩΔt/3: at
-/// four cells a radius 27 and 18 times the static growth. Allowed is the swing and as much again for the grid. The spin goes as
-/// the inverse square of the radius of gyration, beside what the lumped mass of the grid takes: .5 % at two cells a radius.
+/// A body that is set spinning vibrates about its static growth, up to twice that value. With the strain on the
+/// configuration at the start of a step, a disc would grow by πΩΔt per turn, and a sphere, on two axes of three, by
+/// 2πΩΔt/3. At four cells per radius that is 27 and 18 times the static growth. The limit is the vibration and the same
+/// amount for the grid. The spin varies as the inverse square of the radius of gyration, less the loss by lumped mass.
 #[test]
 fn an_incremental_law_keeps_the_size_of_what_spins() {
     for law in ["constitutive = 'hypoelastic'", "constitutive = 'von-mises', yield_stress = 1e9"] {
@@ -71,9 +72,9 @@ fn an_incremental_law_keeps_the_size_of_what_spins() {
     }
 }
 
-/// A box of 6 kg with the sides .3, .2 and .1 m: I = m/12 (b² + c², a² + c², a² + b²) = (.025, .05, .065) kg m². With the spin
-/// (.2, 10, 0) rad/s its angular momentum is (.005, .5, 0), which free flight keeps, and its energy of rotation ½ ω·L = 2.5005 J,
-/// which leaves a kinetic energy of what deforms alone: none at the start, and never a negative one.
+/// A box of 6 kg with the sides .3, .2 and .1 m: I = m/12 (b² + c², a² + c², a² + b²) = (.025, .05, .065) kg m². With
+/// the spin (.2, 10, 0) rad/s its angular momentum is (.005, .5, 0), which free flight conserves. Its rotational energy
+/// is ½ ω·L = 2.5005 J. The remaining kinetic energy is due to deformation: zero at the start and never negative.
 #[test]
 fn a_box_keeps_its_angular_momentum() {
     let text = "dimension = 3\nduration = 0.1\nreference_length = 0.1\n\
@@ -82,13 +83,15 @@ fn a_box_keeps_its_angular_momentum() {
         spin = [0.2, 10.0, 0.0]\n[output]\nevery = 0.01\n[probes]\nbox.body = 'box'\nall.system = true\n";
     let record = run("mpm", text, 4.0, 2);
     let momentum = ["x", "y", "z"].map(|axis| column(&record, &format!("all.angular_momentum_{axis}")));
-    // Points in the middles of n parts of a side have 1 − 1/n² of its second moment: spaced by an eighth of the shortest.
+    // Points at the centres of n parts of a side have 1 − 1/n² of its second moment; the spacing is an eighth of the
+    // shortest side.
     let [x, y, z] = [0.3_f64, 0.2, 0.1].map(|side| side * side - 0.0125 * 0.0125);
     let inertia = [y + z, x + z, x + y].map(|squares| 0.5 * squares);
     for (axis, spin) in [0.2, 10.0, 0.0].into_iter().enumerate() {
         let expected = inertia[axis] * spin;
         assert!((momentum[axis][0] - expected).abs() < 1e-12, "{:?} for {expected}", momentum[axis]);
-        // Lumped mass at nodes keeps angular momentum to the square of the cell over the body, of which four make its least side.
+        // Lumped mass conserves angular momentum to the square of the ratio of cell to body; the shortest side has four
+        // cells.
         let worst = momentum[axis].iter().map(|now| (now - momentum[axis][0]).abs()).fold(0.0, f64::max);
         assert!(worst < 0.5 / 64.0, "axis {axis}: {worst}");
     }

@@ -1,4 +1,4 @@
-//! What a viscous material loses.
+//! Tests of energy dissipation by viscosity.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -6,8 +6,8 @@ mod support;
 use grainbench_scene::solver::Resolution;
 use support::{collision, column, last, try_run};
 
-/// Two discs of a viscous material meet: what they lose to it stands under damping, and the budget closes to first order in the
-/// step. Without viscosity nothing stands there.
+/// Two viscous discs collide. Their viscous dissipation is part of the damping entry, and the budget closes to first
+/// order in the step. Without viscosity the entry is zero.
 #[test]
 fn the_budget_of_a_viscous_collision_closes() {
     let of = |viscosity: &str, courant: f64| {

@@ -1,4 +1,4 @@
-//! Scenes of the tests.
+//! Scenes and helpers of the tests.
 #![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use grainbench_mpm::options::Setting;
@@ -36,7 +36,7 @@ pub fn last(record: &Record, name: &str) -> f64 {
     *column(record, name).last().unwrap()
 }
 
-/// The disc on an incline of Bardenhagen, Brackbill & Sulsky (2000), set down at t = 0 or settled before.
+/// Returns the disc on an incline of Bardenhagen, Brackbill & Sulsky (2000), released at t = 0 or after relaxation.
 pub fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> String {
     let start = if settled {
         let pull = -9.8 * slope_deg.to_radians().cos();
@@ -54,7 +54,7 @@ pub fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> S
     )
 }
 
-/// Two equal elastic discs of radius 1 that approach at .01 c each from a gap (m), and what becomes of them.
+/// Returns two equal elastic discs of radius 1 that approach at .01 c each from a gap (m).
 pub fn collision(gap: f64, friction: f64, offset: f64) -> String {
     let speed = 0.01 * 18.0_f64.sqrt();
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
