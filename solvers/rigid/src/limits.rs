@@ -1,14 +1,14 @@
-//! What a rigid-body engine cannot express, each with its reason.
+//! Scenes that a rigid-body engine does not support, each with its reason.
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
 
-/// Overlap at the start over the smaller radius that is a contact, and not a mistake.
+/// Largest initial overlap, relative to the smaller radius; a larger overlap is treated as an error.
 const DEEPEST: f64 = 0.25;
 
-/// Why the scene cannot be run, if it cannot.
+/// Returns the reason why a scene is not supported, or `None`.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
         return Some(format!("it has {what}, which was written for `dem` alone"));

@@ -1,21 +1,21 @@
-//! Friction and restitution of every pair, from the scene's laws.
+//! Friction and restitution of every pair, from the contact laws of the scene.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-/// One side of a contact.
+/// One partner of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// A grain, by place in the scene.
+    /// Grain, by its index in the scene.
     Grain(usize),
-    /// A wall, by place in the scene.
+    /// Wall, by its index in the scene.
     Wall(usize),
 }
 
 const WALL: u128 = 1 << 64;
 
 impl Side {
-    /// As a number that an engine carries along with a shape.
+    /// Returns the number that an engine stores with a shape.
     pub(crate) const fn tag(self) -> u128 {
         match self {
             Self::Grain(at) => at as u128,
@@ -23,14 +23,14 @@ impl Side {
         }
     }
 
-    /// From that number.
+    /// Returns the partner of a stored number.
     pub(crate) const fn of_tag(tag: u128) -> Self {
         let at = tag as u64 as usize;
         if tag & WALL == 0 { Self::Grain(at) } else { Self::Wall(at) }
     }
 }
 
-/// What a rigid contact has of a law.
+/// Parameters of a contact law that a rigid contact uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients {
     /// Friction μ.
@@ -58,7 +58,7 @@ impl Pairs {
         }
     }
 
-    /// Material and inverse mass.
+    /// Returns material and inverse mass.
     fn side(&self, side: Side) -> (u16, f64) {
         match side {
             Side::Grain(at) => (self.grains[at].0, 1.0 / self.grains[at].1),
@@ -66,19 +66,19 @@ impl Pairs {
         }
     }
 
-    /// The coefficients of a pair, if the scene has a law for it.
+    /// Returns the coefficients of a pair, if the scene has a law for it.
     pub(crate) fn between(&self, one: Side, other: Side) -> Option<Coefficients> {
         let ((a, inverse_a), (b, inverse_b)) = (self.side(one), self.side(other));
         let law = self.laws[usize::from(a) * self.materials + usize::from(b)].as_ref()?;
         Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
     }
 
-    /// The coefficients that all pairs of the scene share; nothing where pairs differ.
+    /// Returns the coefficients if all pairs of the scene have the same, otherwise `None`.
     pub(crate) fn shared(&self) -> Option<Coefficients> {
         let mut kinds: Vec<(u16, f64)> = self.grains.clone();
         kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         kinds.dedup();
-        // Many sizes: some pair differs wherever there is damping, and asking each is quadratic.
+        // With many sizes and damping some pair differs, and comparing all pairs has quadratic cost.
         if kinds.len() > MOST_KINDS {
             return None;
         }
@@ -90,19 +90,21 @@ impl Pairs {
         });
         let walls = kinds.iter().flat_map(|&a| (0..self.walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
         let mut all = grain_pairs.chain(walls).map(|(one, other)| self.between(one, other));
-        // A scene without any pair never asks.
+        // A scene without pairs never uses the coefficients.
         let Some(first) = all.next() else { return Some(Coefficients { friction: 0.0, restitution: 0.0 }) };
         let first = first?;
         all.all(|next| next == Some(first)).then_some(first)
     }
 }
 
-/// Kinds of grains, by material and mass, up to which pairs are asked one by one.
+/// Maximum number of kinds of grains, by material and mass, for which pairs are compared.
 const MOST_KINDS: usize = 16;
 
-/// Coefficient of restitution of the spring and dashpot that a law stands for: e = exp(−πζ/√(1−ζ²)), with the law's own
-/// damping ratio ζ and, for linear springs, c/(2√(k_n m)), c = β k_n + γ_n m for the effective mass m of the pair (the
-/// dashpot may pull until the overlap is gone); 1 without damping, 0 from critical damping on.
+/// Returns the coefficient of restitution of the spring and dashpot of a law: e = exp(−πζ/√(1−ζ²)).
+///
+/// ζ is the law's own damping ratio plus, for linear springs, c/(2√(k_n m)) with c = β k_n + γ_n m and the effective
+/// mass m of the pair. The dashpot may pull until the overlap is zero. The result is 1 without damping, and 0 from
+/// critical damping on.
 fn restitution(law: &ContactLaw, mass: f64) -> f64 {
     let viscosity = law.stiffness_damping * law.normal_stiffness() + law.normal_damping * mass;
     let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()) };
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn restitution_of_a_damping_ratio() {
-        // k m* = 1, so that ζ = c/2.
+        // With k m* = 1, ζ = c/2.
         let springs = Springs::Linear { normal: 2.0, tangential: 0.0 };
         let law = ContactLaw { springs, normal_damping: 0.4, ..ContactLaw::default() };
         let expected = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();

@@ -1,4 +1,4 @@
-// What rapier2d has in its own way.
+// Parts that are specific to rapier2d.
 
 use grainbench_scene::scene::WallShape;
 use nalgebra::Vector3;
@@ -37,13 +37,13 @@ fn mass_properties(mass: f64, inertia: f64) -> MassProperties {
     MassProperties::new(Vector::ZERO, mass, inertia)
 }
 
-/// The friction impulse on the first body, from its component in the solver's basis.
+/// Returns the friction impulse on the first body from its component in the solver's basis.
 fn shear(normal: Vector, component: rapier::math::TangentImpulse<f64>) -> Vector3<f64> {
     let push = -normal;
     embedded(Vector::new(-push.y, push.x)) * component.x
 }
 
-/// A finite wall about its origin: rapier finds where a ball touches it by its nearest point, from either side.
+/// Returns a finite wall about its origin. The contact point of a ball is the wall's nearest point, on either side.
 fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     match shape {
         WallShape::Segment { ends } => {
@@ -53,5 +53,5 @@ fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     }
 }
 
-/// Two dimensions have one friction model.
+/// Does nothing, because there is only one friction model in two dimensions.
 fn choose_friction(_parameters: &mut IntegrationParameters) {}

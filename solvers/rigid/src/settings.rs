@@ -1,16 +1,17 @@
-//! What rapier lets one set and a scene does not say.
+//! Settings of rapier that a scene does not define.
 
-/// Settings of the method, at rapier's own values unless a test asks what one of them does.
+/// Settings of the method, with the defaults of rapier; tests change them to study their influence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Whether a contact that has moved little keeps its points from an earlier step. rapier does so by default, but
-    /// never for pairs whose coefficients a hook sets.
+    /// True if a contact that has moved little keeps its contact points from an earlier step.
+    ///
+    /// This is rapier's default, but it never applies to pairs whose coefficients are set by a hook.
     pub recycling: bool,
-    /// Natural frequency (Hz) of the pull towards zero overlap between two grains.
+    /// Natural frequency (Hz) of the correction towards zero overlap between two grains.
     pub frequency: f64,
-    /// The same between a grain and a wall that does not move.
+    /// Natural frequency (Hz) of the correction between a grain and a fixed wall.
     pub wall_frequency: f64,
-    /// Damping ratio of that pull.
+    /// Damping ratio of the correction.
     pub damping_ratio: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Steps an engine, moves walls, finds out when a run breaks, and shows the state at a step.
+//! Simulation: steps an engine, moves walls, detects failures and observes the state.
 
 use crate::engine::{Engine, Moving, Placement, Stepping, Touch};
 use crate::pairs::{Pairs, Side};
@@ -8,27 +8,29 @@ use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
 use grainbench_scene::solver::{Broken, Cause, Subject};
 use nalgebra::Vector3;
 
-/// A friction impulse of at least this part of Coulomb's limit slips.
+/// Fraction of the Coulomb limit from which a friction impulse counts as slipping.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 
-/// Turn in a substep (rad) beyond which a grain that spins in place on another loses its friction, for the engine turns
-/// the points at which they touch along with it: of a disc on a floor, at 100 to 31,600 rad/s, rapier gave half of μ g
-/// t at .066 rad and more, and all of it to 1 % at .02 rad and less.
+/// Largest rotation in a step (rad) of a grain that spins in place on a contact.
+///
+/// The engine rotates the contact points with the grain, and beyond this angle friction is lost. For a disc on a floor
+/// at 100 to 31,600 rad/s, rapier gave half of μ g t at .066 rad and more. It gave all of μ g t within 1 % at .02 rad
+/// and less.
 const LARGEST_TURN: f64 = 0.05;
-/// A grain spins in place where its surface is this many times as fast as its centre.
+/// Ratio of surface speed to speed of the centre above which a grain counts as spinning in place.
 const IN_PLACE: f64 = 10.0;
 
-/// A run.
+/// A running simulation.
 pub(crate) struct Simulation<'a> {
     scene: &'a Scene,
     stepping: Stepping,
     engine: Box<dyn Engine>,
     moving: Vec<usize>,
     state: Vec<Moving>,
-    /// Rotation in the plane since the start, whole turns included (rad).
+    /// Rotation in the plane since the start, including full turns (rad).
     angles: Vec<f64>,
     step: u64,
-    /// What it has cost so far, wall-clock time aside.
+    /// Cost so far, without wall time.
     pub(crate) cost: Counts,
 }
 
@@ -59,7 +61,7 @@ impl<'a> Simulation<'a> {
     /// Takes a step.
     ///
     /// # Errors
-    /// When a grain is nowhere, has moved so far that contacts may have been missed, or turns too fast for friction.
+    /// When the state of a grain is not finite, it has moved so far that contacts may be missed, or it spins too fast.
     pub(crate) fn advance(&mut self) -> Result<(), Box<Broken>> {
         self.step += 1;
         let time = self.time();
@@ -97,7 +99,8 @@ impl<'a> Simulation<'a> {
         let cause = if !finite {
             Cause::NotFinite
         } else if moved > radius {
-            // Contacts are looked for once a step and only a little ahead: farther than this they may be missed.
+            // Contacts are detected once a step within a small margin, so contacts may be missed after a longer
+            // displacement.
             Cause::Runaway { moved, radius }
         } else if turned > LARGEST_TURN && in_place && touches() {
             Cause::Spun { turned }
@@ -111,7 +114,7 @@ impl<'a> Simulation<'a> {
             position: self.state[at].position,
             cause,
             time_step: self.stepping.time_step,
-            // Rigid contacts have no period.
+            // Rigid contacts have no critical time step.
             critical: f64::INFINITY,
             advice: match cause {
                 Cause::Runaway { .. } => format!("{:.0} times as many substeps would do", (moved / radius).ceil()),
@@ -123,7 +126,7 @@ impl<'a> Simulation<'a> {
         }))
     }
 
-    /// The state now: forces are impulses of the last step divided by its length.
+    /// Returns the current observation. Forces are impulses of the last step divided by its length.
     pub(crate) fn look(&self) -> Look {
         let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
         let mut contacts: Vec<ContactState> =
@@ -177,7 +180,7 @@ impl<'a> Simulation<'a> {
         wall.shape.moved(motion, &displacement)
     }
 
-    /// A grain with the sums of the forces (N) and torques (N m) that act on it.
+    /// Returns a grain with the resultant force (N) and torque (N m) on it.
     fn grain(&self, at: usize, (force, torque): (Vector3<f64>, Vector3<f64>)) -> GrainState {
         let (start, now) = (&self.scene.grains[at], &self.state[at]);
         GrainState {
@@ -191,7 +194,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// A contact as seen from its grain, or from the grain that comes first; overlap is that of the present positions.
+    /// Returns a contact as seen from its grain, or from the grain with the lower index, with the current overlap.
     fn contact(&self, touch: &Touch, walls: &[WallShape]) -> Option<ContactState> {
         let (grain, other, sign) = match touch.sides {
             [Side::Grain(a), Side::Grain(b)] if a > b => (b, Side::Grain(a), -1.0),
@@ -223,7 +226,7 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// The turn that differs from `wrapped` by whole turns and is nearest to `expected`.
+/// Returns the angle nearest to `expected` that differs from `wrapped` by full turns (rad).
 fn unwrapped(wrapped: f64, expected: f64) -> f64 {
     wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }

@@ -1,4 +1,4 @@
-// What rapier3d has in its own way.
+// Parts that are specific to rapier3d.
 
 use grainbench_scene::scene::WallShape;
 use nalgebra::Vector3;
@@ -40,8 +40,9 @@ fn mass_properties(mass: f64, inertia: f64) -> MassProperties {
     MassProperties::new(Vector::ZERO, mass, Vector::splat(inertia))
 }
 
-/// The friction impulse on the first body, from its components in the solver's basis: the basis that rapier makes of
-/// the direction of the push (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
+/// Returns the friction impulse on the first body from its components in the solver's basis.
+///
+/// rapier builds this basis from the normal direction (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
 fn shear(normal: Vector, components: rapier::math::TangentImpulse<f64>) -> Vector3<f64> {
     let push = -embedded(normal);
     let sign = 1.0_f64.copysign(push.z);
@@ -50,9 +51,10 @@ fn shear(normal: Vector, components: rapier::math::TangentImpulse<f64>) -> Vecto
     first * components.x + push.cross(&first) * components.y
 }
 
-/// A finite wall about its origin. rapier finds where a ball touches a cuboid by the cuboid's nearest point, which is
-/// that of the rectangle when the cuboid has no thickness. Two triangles would give two contacts on their common edge;
-/// a thickness would move the surface or the edges.
+/// Returns a finite wall about its origin, as a cuboid of zero thickness.
+///
+/// The contact point of a ball is the nearest point of the cuboid, and thus of the rectangle. Two triangles would give
+/// two contacts on their common edge; a finite thickness would move the surface or the edges.
 fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     match shape {
         WallShape::Rectangle { corner, edges: [u, v] } => {
@@ -66,7 +68,7 @@ fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     }
 }
 
-/// Coulomb friction at every contact point, which is the scene's law. rapier's default adds a resistance to twisting.
+/// Selects Coulomb friction at every contact point, as in the scene's law. rapier's default adds torsional resistance.
 const fn choose_friction(parameters: &mut IntegrationParameters) {
     parameters.friction_model = FrictionModel::Coulomb;
 }

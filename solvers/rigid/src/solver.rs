@@ -1,4 +1,4 @@
-//! rapier as a solver: what it is given, what it refuses, and the record of a run.
+//! rapier as a solver: its input, unsupported scenes, and the record of a run.
 
 use crate::engine::Stepping;
 use crate::limits;
@@ -10,13 +10,13 @@ use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
 use grainbench_scene::terms::{Less, Terms};
 
-/// The release of rapier that is built in.
+/// Version of rapier.
 const RAPIER: &str = "rapier 0.36, f64";
 
-/// Steps after which a watcher hears of progress at the latest.
+/// Maximum number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 1000;
 
-/// Why a grain between walls that press on it does not follow them.
+/// Reason why a grain between walls that press on it does not follow them.
 const PRESSED: &str = "walls that press on a rigid grain from both sides overlap it, and nothing shares the load: impulses push \
                        the overlap out on one side and then on the other, and friction turns the grain with them";
 
@@ -28,7 +28,7 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    /// What it claims of itself.
+    /// Conformance properties, with the weaker limits of the engine.
     pub const TERMS: Terms = Terms::at(Resolution::substeps(8)).owing_less(&[
         Less {
             property: "momentum",
@@ -66,13 +66,13 @@ impl Rigid {
         Less { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
     ]);
 
-    /// rapier as it comes.
+    /// Returns rapier with its default settings.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// rapier with other settings, to find out what they do.
+    /// Returns rapier with other settings, to study their influence.
     #[must_use]
     pub const fn with(settings: Settings) -> Self {
         Self { settings }
@@ -82,7 +82,7 @@ impl Rigid {
         RunError::Unsupported { solver: self.name(), reason }
     }
 
-    /// Time step (s), number of steps, and iterations in each.
+    /// Returns the time step (s), the number of steps, and the iterations in each step.
     fn steps(&self, scene: &Scene, resolution: &Resolution) -> Result<(f64, u64, usize), RunError> {
         let error = |reason: String| RunError::Resolution { solver: self.name(), reason };
         let Resolution::Rigid { step, substeps, iterations } = *resolution else {
@@ -96,7 +96,7 @@ impl Rigid {
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.unsupported("its duration is a number of calculation cycles".to_owned()));
         };
-        // A whole number of steps; the slack keeps a ratio that is whole but for rounding from gaining one.
+        // The number of steps is whole; the tolerance prevents rounding from adding a step.
         let steps = (time / step * (1.0 - 1e-12)).ceil().max(1.0) * f64::from(substeps);
         if let Some(refusal) = beyond_steps(steps) {
             return Err(error(refusal));
@@ -104,7 +104,7 @@ impl Rigid {
         Ok((time / steps, steps as u64, iterations as usize))
     }
 
-    /// What was set, in words.
+    /// Returns a description of the settings.
     fn words(&self, scene: &Scene, stepping: &Stepping) -> Vec<String> {
         let Settings { recycling, frequency, wall_frequency, damping_ratio } = self.settings;
         let shared = crate::pairs::Pairs::of(scene).shared();
@@ -157,7 +157,7 @@ impl Solver for Rigid {
     }
 }
 
-/// A simulation under way.
+/// A running simulation.
 struct Running<'a> {
     simulation: Simulation<'a>,
     step: u64,

@@ -1,4 +1,5 @@
-// A scene in rapier's hands. Compiled once for each dimension, with that dimension's engine and types in `super`.
+// A scene in rapier. The file is compiled once for each dimension, with the engine and types of that dimension in
+// `super`.
 
 use super::rapier::prelude::{
     ActiveHooks, CoefficientCombineRule, ColliderBuilder, ContactModificationContext, IntegrationParameters,
@@ -12,7 +13,7 @@ use crate::pairs::{Pairs, Side};
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::Vector3;
 
-/// Sets the coefficients of every pair from the scene.
+/// Hook that sets the coefficients of every pair from the scene.
 struct FromScene(Pairs);
 
 impl PhysicsHooks for FromScene {
@@ -25,13 +26,13 @@ impl PhysicsHooks for FromScene {
                 *contact.friction = coefficients.friction;
                 *contact.restitution = coefficients.restitution;
             }
-            // Without a law the two pass through each other.
+            // Grains and walls without a contact law pass through each other.
             None => contact.solver_contacts.clear(),
         }
     }
 }
 
-/// rapier with a scene in it.
+/// rapier with the bodies of a scene.
 pub(crate) struct World {
     world: PhysicsWorld,
     hooks: FromScene,
@@ -44,8 +45,8 @@ pub(crate) struct World {
 impl World {
     pub(crate) fn new(scene: &Scene, pairs: Pairs, stepping: &Stepping) -> Self {
         let shared = pairs.shared();
-        // Coefficients that all pairs share go to the shapes, as rapier's users set them: both sides have the same, and
-        // the larger of the two is taken. Others are set pair by pair.
+        // Coefficients that all pairs share are set on the shapes, as is usual for rapier; both partners have the same
+        // value, of which the larger is used. Other coefficients are set pair by pair.
         let with_coefficients = |builder: ColliderBuilder, side: Side| {
             let builder = builder.density(0.0).user_data(side.tag());
             match shared {
@@ -67,12 +68,12 @@ impl World {
                 .translation(vector(grain.position))
                 .linvel(vector(grain.velocity))
                 .angvel(spin(grain.spin))
-                // rapier takes masses above 1e20 for infinite ones.
+                // rapier treats masses above 1e20 as infinite.
                 .additional_mass_properties(mass_properties(grain.mass / stepping.mass, grain.inertia / stepping.mass))
                 .linear_damping(scene.global_damping)
                 .angular_damping(scene.global_damping)
                 .can_sleep(false)
-                // rapier would otherwise cut spins off at a quarter turn a step.
+                // rapier would otherwise limit spins to a quarter turn per step.
                 .allow_fast_rotation(true);
             world.insert(body, with_coefficients(ColliderBuilder::ball(grain.radius), Side::Grain(at))).0
         });
@@ -101,7 +102,7 @@ impl World {
     }
 }
 
-/// rapier's own values but for what makes results depend on units, cuts velocities off, or belongs to the scene.
+/// Returns rapier's defaults, except for values that depend on units, limit velocities, or belong to the scene.
 fn parameters(stepping: &Stepping) -> IntegrationParameters {
     let settings = &stepping.settings;
     let softness =
@@ -132,7 +133,7 @@ impl Engine for World {
     }
 
     fn grain(&self, at: usize) -> Moving {
-        // A body that is gone, which rapier never lets happen by itself, shows as not finite.
+        // A missing body, which rapier itself never causes, is reported as not finite.
         let gone = Vector3::repeat(f64::NAN);
         self.world.bodies.get(self.grains[at]).map_or(
             Moving { position: gone, velocity: gone, spin: gone, orientation: 0.0 },

@@ -1,4 +1,4 @@
-//! What every solver owes, and what an engine for rigid bodies owes less.
+//! Conformance properties, with the weaker limits of a rigid-body engine.
 
 use grainbench_harness::conformance::failures;
 use grainbench_rigid::solver::Rigid;

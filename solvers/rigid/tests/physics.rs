@@ -1,4 +1,4 @@
-//! What rapier makes of scenes whose answer is known, and what its errors are made of.
+//! Tests of rapier with known solutions, and of the causes of its errors.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -44,13 +44,13 @@ g = { grain = "g" }
 all = { system = true }
 "#;
 
-/// A disc at rest on a plane, under gravity that is tilted by an angle.
+/// Returns a disc at rest on a plane, with gravity tilted by an angle.
 fn slope(angle_deg: f64, friction: f64) -> Scene {
     let plane = "[walls.plane]\nmaterial = \"m\"\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
     let mut scene = scene(&format!("{GRAIN}{plane}"));
     let (sine, cosine) = angle_deg.to_radians().sin_cos();
     scene.gravity = Vector3::new(9.8 * sine, -9.8 * cosine, 0.0);
-    // Damped as real contacts are: e = .16.
+    // Damping of real contacts: e = .16.
     let damping = (1e6 / scene.grains[0].mass).sqrt();
     scene.change_laws(|law| (law.friction, law.normal_damping) = (friction, damping));
     scene.duration = grainbench_scene::scene::Duration::Seconds(1.0);
@@ -68,7 +68,7 @@ fn free_flight_is_symplectic_euler() {
         let record = run(&scene, substeps);
         assert!((last(&record, "g.vy") - (2.0 - 4.9)).abs() < 1e-12);
         assert_eq!(last(&record, "g.omega"), 3.0);
-        // rapier turns by atan(Ωh) in a small step h.
+        // In a small step h rapier rotates by atan(Ωh).
         assert!((last(&record, "g.angle") - 1.5).abs() < 1e-4);
         assert!((last(&record, "g.x") - 0.5).abs() < 1e-12);
         let small = record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS);
@@ -134,7 +134,7 @@ fn elastic_impact_exchanges_velocities() {
 
 #[test]
 fn restitution_is_that_of_each_pair() {
-    // Masses differ, so that no value is shared: each pair's own must act.
+    // The masses differ, so that the pairs have no common value and each pair must use its own.
     let mut scene = scene(PAIR);
     scene.grains[1].mass *= 3.0;
     scene.change_laws(|law| law.normal_damping = 20.0);
@@ -145,7 +145,7 @@ fn restitution_is_that_of_each_pair() {
     scene.walls.clear();
     let record = run(&scene, 4);
     assert!(((last(&record, "b.vx") - last(&record, "a.vx")) / 3.0 - expected).abs() < 1e-12);
-    // A third grain, of another mass, far away: now pairs differ.
+    // A distant third grain of another mass makes the pairs differ.
     let mut third = scene.grains[0];
     third.position = Vector3::new(0.0, 50.0, 0.0);
     third.mass *= 2.0;
@@ -157,7 +157,7 @@ fn restitution_is_that_of_each_pair() {
 
 #[test]
 fn two_impacts_in_one_step_do_not_keep_energy() {
-    // Alone, elastic impacts keep energy to rounding; here a disc meets two others at once.
+    // Single elastic impacts conserve energy to rounding; here a disc collides with two others at once.
     let mut scene = scene(PAIR);
     let mut third = scene.grains[1];
     scene.grains[1].position = Vector3::new(1.0, 1.001, 0.0);
@@ -192,14 +192,14 @@ fn contact_forces_are_those_of_the_slope() {
     let weight = snapshot.grains[0].mass * 9.8;
     assert_eq!((contact.grain, contact.partner, contact.slipping), (1, Partner::Wall(0), false));
     assert!((contact.normal_force / (weight * 30_f64.to_radians().cos()) - 1.0).abs() < 1e-9);
-    // Up the slope, F = m g_t/3.
+    // The friction force points up the slope, F = m g_t/3.
     assert!((contact.shear_force.x / (-weight * 30_f64.to_radians().sin() / 3.0) - 1.0).abs() < 1e-3);
     assert!((contact.normal - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
     assert!((snapshot.walls[0].force.unwrap() + snapshot.grains[0].force.unwrap()).norm() < 1e-9);
     assert!(run(&slope(60.0, 0.3), 16).snapshots.last().unwrap().told_contacts()[0].slipping);
 }
 
-/// The overlap at rest is that of a spring of the wall's frequency, whatever the step, and shifts the arm of friction.
+/// The overlap at rest is that of a spring with the wall's frequency, for any step.
 #[test]
 fn overlap_at_rest_is_a_setting_of_the_method() {
     let overlap = |frequency: f64, substeps| {
@@ -214,14 +214,15 @@ fn overlap_at_rest_is_a_setting_of_the_method() {
     }
 }
 
-/// The contact point is fixed on the grain for a step: many iterations do not help a grain that turns fast, steps do.
+/// The contact point is fixed on the grain for a step: for a fast rotating grain, smaller steps help and more
+/// iterations do not.
 #[test]
 fn lift_off_depends_on_the_step_and_not_on_the_iterations() {
     let fall = |substeps, iterations| {
         let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps, iterations };
         let record = Rigid::new().run(&slope(60.0, 0.3), &resolution, &mut ()).unwrap();
         let exact = 9.8 * (60_f64.to_radians().sin() - 0.3 * 60_f64.to_radians().cos());
-        // What friction lacks is μ m |v_n|.
+        // The missing friction impulse is μ m |v_n|.
         let (v, fall) = (last(&record, "g.vx"), last(&record, "g.vy"));
         assert!((v - exact + 0.3 * fall).abs() < 1e-9, "{substeps} {iterations}: {v} {exact} {fall}");
         -fall
@@ -230,7 +231,7 @@ fn lift_off_depends_on_the_step_and_not_on_the_iterations() {
     assert!(fall(16, 4).abs() < 1e-9);
 }
 
-/// An elastic contact never comes to rest: what lifts off bounces, and friction then lacks more.
+/// An elastic contact never comes to rest: a grain that lifts off bounces, and more friction is missing.
 #[test]
 fn elastic_contacts_bounce_where_others_lift_off() {
     let error = |damping: f64| {
@@ -252,7 +253,7 @@ fn backspin_ends_in_rolling() {
     assert!((last(&record, "g.omega") / (-10.0 / 3.0) - 1.0).abs() < 2e-4);
 }
 
-/// A belt: a plane that moves along itself drags a disc until it moves along.
+/// A plane that moves tangentially, like a belt, drags a disc until both have the same velocity.
 #[test]
 fn a_moving_wall_drags_a_disc() {
     let mut scene = slope(0.0, 0.5);
@@ -263,9 +264,9 @@ fn a_moving_wall_drags_a_disc() {
         stop: grainbench_scene::motion::Moment::Never,
     };
     scene.walls[0].motion.phases.push(phase);
-    // Slip ends when v − ΩR has reached the belt's speed: v = iV/(1 + i) = V/3.
+    // Slip ends when v − ΩR equals the belt speed: v = iV/(1 + i) = V/3.
     assert!((last(&run(&scene, 16), "g.vx") - 1.0 / 3.0).abs() < 1e-3);
-    // A lift: it ends where it should.
+    // A plane that moves along its normal, like a lift, ends at the exact position.
     scene.walls[0].motion.phases[0].velocity = Vector3::new(0.0, 0.5, 0.0);
     let record = run(&scene, 16);
     assert_eq!(record.snapshots.last().unwrap().walls[0].corners[0].y, 0.5);
@@ -375,9 +376,9 @@ fn a_rerun_gives_the_same_bits() {
     }
 }
 
-/// A plane that moves along its normal from where it touches a grain at rest pushes it on without a rebound: after n steps
-/// the grain has gone V n Δt, less what it stood still within the first of the small steps that rapier takes a step in, at
-/// most V Δt/4. A plane that came a step late, or a hundredth slower, would be off by more.
+/// A plane in contact with a grain at rest moves along its normal and pushes the grain without a rebound. After n steps
+/// the displacement of the grain is V n Δt, less at most V Δt/4 because it rests during the first of the small steps. A
+/// plane that started a step late, or was 1 % slower, would cause a larger difference.
 #[test]
 fn a_pushed_grain_goes_as_far_as_its_wall() {
     for (dimension, position, along) in
@@ -392,7 +393,7 @@ fn a_pushed_grain_goes_as_far_as_its_wall() {
         let text = GRAIN.replace("dimension = 2", &format!("dimension = {dimension}")).replace("[0.0, 0.5]", position);
         let mut scene = scene(&format!("{text}{wall}"));
         let mass = scene.grains[0].mass;
-        // Critically damped, so that nothing rebounds.
+        // Critical damping prevents a rebound.
         scene.change_laws(|law| law.normal_damping = 2.0 * (1e6 / mass).sqrt());
         let record = run(&scene, 4);
         let allowed = 0.3 * record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS);
