@@ -1,21 +1,23 @@
-//! Means over frames, with the interval that their scatter leaves.
+//! Means over frames, with confidence intervals.
 
 use grainbench_harness::statistics::interval;
 
-/// A mean and how well it is known.
+/// A mean with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Mean {
     /// The mean.
     pub value: f64,
-    /// Half the interval that holds it with [`grainbench_harness::statistics::CONFIDENCE`]; none of fewer than two blocks.
+    /// Half width of the interval at the confidence [`grainbench_harness::statistics::CONFIDENCE`]; `None` below two
+    /// blocks.
     pub half_width: Option<f64>,
-    /// Blocks that it was found from.
+    /// Number of blocks.
     pub blocks: usize,
 }
 
-/// The mean of numbers in order of time, with its interval from the means of `blocks` equal blocks of them: neighbouring
-/// frames are not independent, blocks longer than their memory are. What is left over at the start is in the mean alone. None
-/// of no numbers.
+/// Returns the mean of a time series, with its confidence interval from the means of `blocks` equal blocks.
+///
+/// Blocks are used because neighbouring frames are correlated; blocks longer than the correlation time are independent.
+/// Values that do not fill a block, at the start, count only for the mean. Returns `None` for an empty series.
 #[must_use]
 pub fn mean(values: &[f64], blocks: usize) -> Option<Mean> {
     let of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -34,7 +36,7 @@ mod tests {
 
     #[test]
     fn the_interval_is_that_of_the_blocks() {
-        // Blocks of means 1, 2, 3, 4: s = √(5/3); Student's t of 3 degrees at 99 % is 5.840909.
+        // The blocks have means 1, 2, 3, 4: s = √(5/3); Student's t for 3 degrees of freedom at 99 % is 5.840909.
         let values = [0.5, 1.5, 2.0, 2.0, 3.0, 3.0, 4.5, 3.5];
         let found = mean(&values, 4).unwrap();
         assert!((found.value - 2.5).abs() < 1e-15 && found.blocks == 4);

@@ -1,25 +1,25 @@
-//! What is told of an element, column by column: one list for tables, image data, means and pictures.
+//! Quantities of an element as columns: one list for tables, image data, means and figures.
 
 use crate::element::Element;
 
-/// What quantities need to know beside the element.
+/// Parameters that some quantities need besides the element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grains {
-    /// Mean diameter d (m) and density ρ (kg/m³; kg/m² of discs), where they are known.
+    /// Mean diameter d (m) and density ρ (kg/m³; kg/m² for discs), if known.
     pub mean: Option<(f64, f64)>,
-    /// Plane in which the turn from the stress's axes to those of D is told: two axes, 0 is x.
+    /// Plane of the rotation from the axes of the stress to those of D: two axes, with 0 for x.
     pub plane: [usize; 2],
 }
 
 /// A quantity of an element.
 pub struct Column {
-    /// Its name, as a table calls it.
+    /// Name in tables.
     pub name: &'static str,
-    /// What it is, in words.
+    /// Description.
     pub words: &'static str,
-    /// Its SI unit in space, `1` for a pure number.
+    /// SI unit in three dimensions; `1` for a pure number.
     pub unit: &'static str,
-    /// Its value; none where it is not known.
+    /// Computes the value, or `None` if it is unknown.
     pub of: fn(&Element, &Grains) -> Option<f64>,
 }
 
@@ -53,7 +53,7 @@ const fn column(
     Column { name, words, unit, of }
 }
 
-/// Every quantity of an element.
+/// All quantities of an element.
 pub const COLUMNS: [Column; 30] = [
     column("packing_fraction", "packing fraction φ", "1", |element, _| Some(element.packing_fraction)),
     column("sine_of_friction", "sin φ of friction", "1", |element, _| element.sine_of_friction()),

@@ -1,31 +1,31 @@
-//! Stress of a cell from the contacts of its grains, from what was told of each, or from its material points.
+//! Stress of a cell from contacts, from the virial of each grain, or from material points.
 //!
 //! ```text
 //! T = (1/V) Σ Δx⊗F over the contacts of grains whose centre is in the cell       | (1/V) Σ V_p σ_p
 //! ```
 //!
-//! Δx goes from the centre of a grain to its contact and F acts on it there, so compression is negative; contacts with walls
-//! count as all others do. The two are one: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by Gauss' theorem. A grain counts as a
-//! whole to the cell of its centre, so that T of a single cell scatters by as much as grains stick out of it; summed over
-//! cells nothing is lost. Momentum flux is left out. Where V σ is told of each grain, its cell is that of its centre at the
-//! time of the snapshot.
+//! Δx is the vector from the centre of a grain to its contact, and F the force on the grain, so compression is
+//! negative. Contacts with walls are included. Both sums are consistent: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by
+//! Gauss' theorem. A grain belongs as a whole to the cell of its centre. T of a single cell therefore scatters with the
+//! grains that intersect its boundary, but sums over cells are exact. Momentum flux is not included. If V σ of each
+//! grain is given, it belongs to the cell of the centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
 use grainbench_scene::record::{GrainState, Partner, Snapshot};
 use nalgebra::Matrix3;
 
-/// Which stress of grains is read.
+/// Kind of stress of grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stress {
-    /// That of the instant: of the contacts of a snapshot, or else of the V σ of its grains.
+    /// Stress at an instant: from the contacts of a snapshot, or else from V σ of its grains.
     #[default]
     Instant,
-    /// Its mean over the time since the snapshot before, which runs that were asked for it tell grain by grain.
+    /// Time average since the previous snapshot, which a run writes for each grain on request.
     Interval,
 }
 
 impl Stress {
-    /// In words.
+    /// Returns a description.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -35,13 +35,13 @@ impl Stress {
     }
 }
 
-/// Whether a snapshot tells the mean of the stress over the time before it.
+/// Returns true if a snapshot has time averages of the stress.
 #[must_use]
 pub fn tells_interval(snapshot: &Snapshot) -> bool {
     snapshot.points.is_empty() && snapshot.grains.iter().any(|grain| grain.mean_virial.is_some())
 }
 
-/// V σ of all grains (J) by what is told of each; none where it is not told of all.
+/// Sums V σ of grains by cell (J), or returns `None` if a grain has no value.
 fn of_grains(
     snapshot: &Snapshot,
     grid: &Grid,
@@ -61,8 +61,9 @@ const fn symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
-/// T of every cell (Pa; N/m in the plane); none where it was not told, for that is not zero. Of material points there is the
-/// stress of the instant alone.
+/// Returns T of every cell (Pa; N/m in the plane), or `None` if it is unknown, because unknown stress is not zero.
+///
+/// Material points have only the stress at an instant.
 #[must_use]
 pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which: Stress) -> Option<Vec<Matrix3<f64>>> {
     let mut stress = vec![Matrix3::zeros(); grid.cells()];
@@ -100,7 +101,7 @@ pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which:
     for stress in &mut stress {
         *stress /= grid.volume();
         if dimension == 2 {
-            // Contacts of discs know nothing of the stress along z, and pressure is that of the plane.
+            // Contacts of discs do not determine the stress along z, and pressure is defined in the plane.
             stress.set_row(2, &nalgebra::RowVector3::zeros());
             stress.set_column(2, &nalgebra::Vector3::zeros());
         }

@@ -1,4 +1,4 @@
-//! A course of snapshots as granular elements on one grid, and means over it.
+//! Series of snapshots as granular elements on one grid, and means over it.
 
 use crate::average::{Mean, mean};
 use crate::column::{COLUMNS, Column, Grains};
@@ -17,48 +17,48 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Frame {
     /// Step.
     pub step: u64,
-    /// Time (s); not a number where nobody told it.
+    /// Time (s); NaN if unknown.
     pub time: f64,
-    /// The elements, in the order of [`Grid::place`].
+    /// Elements in the order of [`Grid::place`].
     pub elements: Vec<Element>,
-    /// Why each of them is left out of means, if it is.
+    /// For each element, the reasons for its exclusion from means, if any.
     pub masked: Vec<Masked>,
-    /// Grains or points whose centre is in no cell.
+    /// Number of grains or points whose centre is in no cell.
     pub outside: usize,
 }
 
 impl Frame {
-    /// Where it stands on the clock: its time (s), or its step where nobody told that.
+    /// Returns the time (s), or the step if the time is unknown.
     #[must_use]
     pub fn clock(&self) -> f64 {
         if self.time.is_finite() { self.time } else { self.step as f64 }
     }
 }
 
-/// A course of snapshots as granular elements.
+/// A series of snapshots as granular elements.
 #[derive(Clone, Debug)]
 pub struct Course {
-    /// The cells.
+    /// Grid of cells.
     pub grid: Grid,
-    /// The plane, where grains are discs to whoever looks, or space.
+    /// Dimension of space; in the plane grains are treated as discs.
     pub space: Dimension,
-    /// What quantities are found with.
+    /// Parameters of quantities.
     pub grains: Grains,
-    /// What is left out of means.
+    /// Masks that exclude elements from means.
     pub masks: Masks,
-    /// The frames, in order of time.
+    /// Frames in order of time.
     pub frames: Vec<Frame>,
-    /// Whether velocities are those between a snapshot and the one before it, rather than those of the instant.
+    /// True if velocities are computed from displacements between snapshots, instead of instantaneous velocities.
     pub between: bool,
-    /// Tracers, where they are asked for.
+    /// Tracers, if requested.
     pub trails: Option<Trails>,
-    /// Which stress elements have; where nobody asks, the mean over the time between frames if it is told.
+    /// Kind of stress of elements; by default the time average between frames, if available.
     pub stress: Option<Stress>,
     before: Option<Snapshot>,
 }
 
 impl Course {
-    /// Of no snapshots yet.
+    /// Returns an empty series.
     #[must_use]
     pub fn new(grid: Grid, space: Dimension, plane: [usize; 2], masks: Masks, between: bool) -> Self {
         Self {
@@ -74,12 +74,12 @@ impl Course {
         }
     }
 
-    /// Adds a snapshot. Between snapshots there are velocities from the second on: the first then adds no frame.
+    /// Adds a snapshot. With velocities between snapshots, the first snapshot adds no frame.
     pub fn add(&mut self, snapshot: Snapshot) {
         self.grains.mean = self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|of| of.1.is_finite());
         if self.stress.is_none() && tells_interval(&snapshot) {
             self.stress = Some(Stress::Interval);
-            // One stress or the other: of frames before it the mean is not known.
+            // All frames must have the same kind of stress: the time average of earlier frames is unknown.
             self.frames.iter_mut().flat_map(|frame| &mut frame.elements).for_each(|element| element.stress = None);
         }
         let movers = match &self.before {
@@ -105,27 +105,28 @@ impl Course {
         }
     }
 
-    /// The value of a quantity in a cell of a frame.
+    /// Returns the value of a quantity in a cell of a frame.
     #[must_use]
     pub fn value(&self, column: &Column, frame: &Frame, cell: usize) -> Option<f64> {
         (column.of)(&frame.elements[cell], &self.grains).filter(|value| value.is_finite())
     }
 
-    /// A quantity at a place of a frame, linear between the middles of the cells around that have it.
+    /// Returns a quantity at a position in a frame, interpolated linearly between the centres of cells with a value.
     #[must_use]
     pub fn value_at(&self, column: &Column, frame: &Frame, place: Vector3<f64>) -> Option<f64> {
         interpolated(&self.grid, self.masks.periodic, place, |cell| self.value(column, frame, cell))
     }
 
-    /// Mean of a quantity over time in a cell, of frames that have it, with its interval.
+    /// Returns the time average of a quantity in a cell over the frames with a value, with its confidence interval.
     #[must_use]
     pub fn mean_in(&self, column: &Column, cell: usize, blocks: usize) -> Option<Mean> {
         let values: Vec<f64> = self.frames.iter().filter_map(|frame| self.value(column, frame, cell)).collect();
         mean(&values, blocks)
     }
 
-    /// Mean of a quantity over the elements that no mask leaves out, with its interval from blocks of frames; and how many
-    /// elements it is of.
+    /// Returns the mean of a quantity over unmasked elements, and the number of these elements.
+    ///
+    /// The confidence interval is computed from blocks of frames.
     #[must_use]
     pub fn mean_over(&self, column: &Column, blocks: usize) -> Option<(Mean, usize)> {
         let (mut means, mut sum, mut count) = (Vec::new(), 0.0, 0);
@@ -138,12 +139,12 @@ impl Course {
                 (sum, count) = (sum + total, count + values.len());
             }
         }
-        // Every element counts as much as any other; frames of few elements do not weigh more.
+        // Every element has the same weight, also in frames with few elements.
         mean(&means, blocks).map(|found| (Mean { value: sum / count as f64, ..found }, count))
     }
 
-    /// The element of the mean tensors of a cell: stress, velocity and its gradient are averaged before anything is found from
-    /// them. None of a cell in which nothing ever was.
+    /// Returns the element with the mean tensors of a cell: stress, velocity and velocity gradient are averaged before
+    /// other quantities are computed. Returns `None` if the cell was always empty.
     #[must_use]
     pub fn element_of_means(&self, cell: usize) -> Option<Element> {
         let all = || self.frames.iter().map(|frame| frame.elements[cell]);
@@ -166,7 +167,7 @@ impl Course {
     }
 }
 
-/// Quantities that are not linear in what is averaged: they are told of the mean tensors too.
+/// Returns the quantities that are nonlinear in the averaged tensors; these are also reported for mean tensors.
 pub fn of_means() -> impl Iterator<Item = &'static Column> {
     const NAMES: [&str; 7] = [
         "sine_of_friction",

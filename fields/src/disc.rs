@@ -1,4 +1,4 @@
-//! The elastic stress inside a disc that forces press on at points of its rim.
+//! Elastic stress inside a disc under point forces at its rim.
 //!
 //! A force F on the edge of a half-plane makes a purely radial stress about its point (Flamant 1892; Timoshenko and
 //! Goodier, Theory of Elasticity, art. 36):
@@ -9,24 +9,22 @@
 //!
 //! On a circle through a, e·n = r/(2R) at the rim point with outward normal n, so the traction there is −(F·e) e/(πR).
 //! Doubling the angle of the chord and summing over all forces F_i at normals n_i (as art. 41 does for two opposite
-//! forces) leaves
-//!
+//! forces) gives
 //! ```text
 //! t = −ΣF/(2πR) + n ΣF·n_i/(2πR) − τ M/(2πR²) ,     M = R Σ n_i×F_i,  τ the tangent, counter-clockwise
 //! ```
 //!
-//! and three fields take that away, so that the rim between the forces is free:
+//! and three fields cancel this traction, so that the rim between the forces is free:
 //!
 //! ```text
 //! uniform       −1 ΣF_i·n_i/(2πR)
 //! resultant F   (F⊗x + x⊗F − (F·x) 1)/(2πR²)     in balance with the body force −F/(πR²) of a disc that accelerates at F/m
-//! torque M      σ_rθ = M r²/(2πR⁴)               in balance with the body force of one whose spin grows by M/I, I = mR²/2
-//! ```
+//! torque M      σ_rθ = M r²/(2πR⁴)               in balance with the body force of angular acceleration M/I, I = mR²/2
 //!
-//! Each has harmonic σ_xx + σ_yy or is torsion, hence is compatible: the sum is exact for plane elasticity, whatever
-//! the moduli, for a disc in equilibrium and for one that speeds up as a rigid body does. Gravity is part of it, for it
-//! changes body force and acceleration alike; the centrifugal field, ρω²R² at most, is left out. At a point force
-//! stress grows without bound as 1/r; a real contact has a width.
+//! Each field has harmonic σ_xx + σ_yy or is torsion, and is therefore compatible. The sum is exact in plane elasticity
+//! for any moduli, both for a disc in equilibrium and for a disc with rigid-body acceleration. Gravity is included,
+//! because it changes body force and acceleration alike. The centrifugal field, at most ρω²R², is not included. Stress
+//! diverges as 1/r at a point force; a real contact has a finite width.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, Vector2};
@@ -55,7 +53,7 @@ pub struct LoadedDisc {
 }
 
 impl LoadedDisc {
-    /// A disc of a radius (m) under loads.
+    /// Creates a disc of a radius (m) under loads.
     #[must_use]
     pub fn new(radius: f64, loads: Vec<Load>) -> Self {
         let normal_sum: f64 = loads.iter().map(|load| load.force.dot(&load.normal)).sum();
@@ -65,7 +63,7 @@ impl LoadedDisc {
         Self { radius, loads, uniform, resultant, twist: torque / (2.0 * PI * radius.powi(4)) }
     }
 
-    /// Every grain of a plane snapshot under the forces of its contacts, in the order of the grains.
+    /// Returns all grains of a plane snapshot under their contact forces, in the order of the grains.
     #[must_use]
     pub fn of_snapshot(snapshot: &Snapshot) -> Vec<Self> {
         let mut loads: Vec<Vec<Load>> = vec![Vec::new(); snapshot.grains.len()];
@@ -85,14 +83,14 @@ impl LoadedDisc {
         snapshot.grains.iter().zip(loads).map(|(grain, loads)| Self::new(grain.radius, loads)).collect()
     }
 
-    /// Stress (Pa, tension positive) at a place counted from the centre (m).
+    /// Returns the stress (Pa, tension positive) at a position relative to the centre (m).
     #[must_use]
     pub fn stress(&self, place: Vector2<f64>) -> Matrix2<f64> {
         let radius = self.radius;
         let mut stress = Matrix2::from_diagonal_element(self.uniform);
         for load in &self.loads {
             let chord = place - load.normal * radius;
-            // Within a billionth of the radius the point force is as good as infinite.
+            // The singularity is cut off at a billionth of the radius.
             let square = chord.norm_squared().max((1e-9 * radius).powi(2));
             stress -= chord * chord.transpose() * (2.0 / PI * load.force.dot(&chord) / (square * square));
         }
@@ -113,7 +111,7 @@ mod tests {
         Load { normal: Vector2::new(angle.cos(), angle.sin()), force: Vector2::new(force.0, force.1) }
     }
 
-    /// Largest traction on the rim away from the loads, over the mean stress of the loads.
+    /// Returns the largest traction on the rim away from the loads, relative to the mean stress of the loads.
     fn rim_traction(disc: &LoadedDisc) -> f64 {
         let scale: f64 = disc.loads.iter().map(|load| load.force.norm()).sum::<f64>() / (2.0 * PI * disc.radius);
         (0..720)
@@ -124,7 +122,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    /// Divergence of the stress by central differences (Pa/m).
+    /// Returns the divergence of the stress by central differences (Pa/m).
     fn divergence(disc: &LoadedDisc, place: Vector2<f64>) -> Vector2<f64> {
         let step = 1e-4 * disc.radius;
         let slope = |along: Vector2<f64>| {
@@ -142,8 +140,8 @@ mod tests {
         let centre = disc.stress(Vector2::zeros());
         assert!((centre.m11 / unit - 1.0).abs() < 1e-12, "σ_x = 2P/(πD)");
         assert!(((centre.m11 - centre.m22) / (4.0 * unit) - 1.0).abs() < 1e-12, "σ_x − σ_y = 8P/(πD)");
-        // Along the loaded diameter σ_x stays 2P/(πD); across it, at x = R/2, Timoshenko and Goodier's eq. (g) of art.
-        // 41.
+        // Along the loaded diameter σ_x = 2P/(πD). Across it, at x = R/2, the stress is given by Timoshenko and Goodier's
+        // eq. (g) of art. 41.
         assert!((disc.stress(Vector2::new(0.0, 0.6 * radius)).m11 / unit - 1.0).abs() < 1e-12);
         let side = disc.stress(Vector2::new(0.5 * radius, 0.0));
         let (d, x) = (2.0 * radius, 0.5 * radius);
@@ -156,7 +154,7 @@ mod tests {
     fn any_forces_leave_the_rim_free_and_the_inside_in_balance() {
         let radius = 0.7;
         let balanced = {
-            // Oblique forces along chords: in balance of force and moment.
+            // Oblique forces along chords are in equilibrium of force and moment.
             let (a, b, c) = (0.3_f64, 2.0_f64, 4.1_f64);
             let chord = |from: f64, to: f64| (to.cos() - from.cos(), to.sin() - from.sin());
             let pair = |from: f64, to: f64, size: f64| {

@@ -1,5 +1,5 @@
-//! Granular elements: what the cells of a grid hold, the same for grains and for material points (Rycroft, Kamrin and Bazant
-//! 2009, §3).
+//! Granular elements: contents of the cells of a grid, with the same definition for grains and for material points
+//! (Rycroft, Kamrin and Bazant 2009, §3).
 
 use crate::contact_stress::{Stress, contact_stress};
 use crate::grid::Grid;
@@ -11,12 +11,12 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
-/// What a cell holds.
+/// Contents of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
-    /// Part of the cell that is filled.
+    /// Filled fraction of the cell.
     pub packing_fraction: f64,
-    /// T (Pa), compression negative; none where contacts were not told.
+    /// T (Pa), compression negative; `None` if contacts are unknown.
     pub stress: Option<Matrix3<f64>>,
     /// Mean velocity and its gradient.
     pub motion: Motion,
@@ -25,19 +25,19 @@ pub struct Element {
 }
 
 impl Element {
-    /// p (Pa).
+    /// Returns p (Pa).
     #[must_use]
     pub fn pressure(&self) -> Option<f64> {
         self.stress.map(|stress| tensor::pressure(&stress, self.dimension))
     }
 
-    /// sin φ of Mohr and Coulomb; none without pressure.
+    /// Returns the Mohr–Coulomb sin φ, or `None` without pressure.
     #[must_use]
     pub fn sine_of_friction(&self) -> Option<f64> {
         self.under_pressure().map(|stress| tensor::sine_of_friction(&stress, self.dimension))
     }
 
-    /// Drucker and Prager's ratio; none without pressure.
+    /// Returns the Drucker–Prager ratio, or `None` without pressure.
     #[must_use]
     pub fn drucker_prager(&self) -> Option<f64> {
         self.under_pressure().map(|stress| tensor::drucker_prager(&stress, self.dimension))
@@ -47,36 +47,37 @@ impl Element {
         self.stress.filter(|stress| tensor::pressure(stress, self.dimension) > 0.0)
     }
 
-    /// |D₀| (1/s): Frobenius' norm of the deviator of D = (L + Lᵀ)/2.
+    /// Returns |D₀| (1/s): the Frobenius norm of the deviator of D = (L + Lᵀ)/2.
     #[must_use]
     pub fn shear_rate(&self) -> Option<f64> {
         let rate = self.motion.gradient?.symmetric_part();
         Some(tensor::deviator(&rate, self.dimension).norm())
     }
 
-    /// |I₀| = |D₀| d √(ρ/p) for grains of a diameter d (m) and density ρ (kg/m³); none without pressure. (With the rate γ̇ of a
-    /// simple shear |D₀| = γ̇/√2, so that the usual I is √2 |I₀|.)
+    /// Returns |I₀| = |D₀| d √(ρ/p) for grains of diameter d (m) and density ρ (kg/m³), or `None` without pressure.
+    ///
+    /// For a simple shear of rate γ̇, |D₀| = γ̇/√2, so that the usual I is √2 |I₀|.
     #[must_use]
     pub fn inertial_number(&self, diameter: f64, density: f64) -> Option<f64> {
         let pressure = self.pressure().filter(|&pressure| pressure > 0.0)?;
         Some(self.shear_rate()? * diameter * (density / pressure).sqrt())
     }
 
-    /// How the axes of the stress and of D lie to one another, with the turn in the plane of two axes.
+    /// Returns the angles between the axes of the stress and of D, with the rotation in the plane of two axes.
     #[must_use]
     pub fn coaxiality(&self, plane: [usize; 2]) -> Option<tensor::Coaxiality> {
         tensor::coaxiality(&self.stress?, &self.motion.gradient?.symmetric_part(), self.dimension, plane)
     }
 }
 
-/// The cells of a grid over a snapshot, in the order of [`Grid::place`]: of material points where there are some, else of
+/// Computes the cells of a snapshot in the order of [`Grid::place`], from material points if there are any, else from
 /// grains.
 #[must_use]
 pub fn elements(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<Element> {
     elements_moving(snapshot, motion(&movers(snapshot), space.count(), grid), Stress::Instant, space, grid)
 }
 
-/// The same with a motion that was found otherwise, such as between two snapshots, and one stress or the other.
+/// Computes the cells from a given motion, such as one between two snapshots, and a given kind of stress.
 #[must_use]
 pub fn elements_moving(
     snapshot: &Snapshot,
@@ -97,8 +98,8 @@ pub fn elements_moving(
     motion.into_iter().zip(filled).enumerate().map(element).collect()
 }
 
-/// Mean diameter (m) and mean density (kg/m³; kg/m² of discs) of the grains of a snapshot, each grain as much as any other;
-/// none of a snapshot without grains.
+/// Returns the mean diameter (m) and mean density (kg/m³; kg/m² for discs) of the grains of a snapshot, with equal
+/// weights, or `None` if there are no grains.
 #[must_use]
 pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     let grains = &snapshot.grains;
@@ -113,14 +114,14 @@ pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     (count > 0.0).then_some((diameter / count, density / count))
 }
 
-/// The sum of x⊗F over all cells, ΣV T (J): what no choice of the grid changes, so long as it holds all centres.
+/// Returns the sum of x⊗F over all cells, ΣV T (J). It is equal for all grids that contain all centres.
 #[must_use]
 pub fn whole_stress(elements: &[Element], grid: &Grid) -> Option<Matrix3<f64>> {
     let of = |element: &Element| element.stress.map(|stress| stress * grid.volume());
     elements.iter().map(of).sum()
 }
 
-/// Mean velocity at a place (m/s), linear between the middles of cells that hold something.
+/// Returns the mean velocity at a position (m/s), interpolated linearly between the centres of non-empty cells.
 #[must_use]
 pub fn velocity_at(
     elements: &[Element],
@@ -131,7 +132,7 @@ pub fn velocity_at(
     interpolated(grid, periodic, place, |cell| elements[cell].motion.velocity)
 }
 
-/// A quantity of cells at a place, linear between their middles; of the cells around that have it.
+/// Interpolates a quantity linearly between the centres of the surrounding cells with a value.
 #[must_use]
 pub fn interpolated<T>(
     grid: &Grid,
@@ -156,7 +157,7 @@ where
             weight *= if upper { part[axis] } else { 1.0 - part[axis] };
             let count = grid.count[axis] as i64;
             let number = lower[axis] + i64::from(upper);
-            // Beyond the outermost middles the outermost cell counts.
+            // Beyond the outermost centres the outermost cell is used.
             at[axis] = if periodic[axis] { number.rem_euclid(count) } else { number.clamp(0, count - 1) } as usize;
         }
         let Some(value) = of(grid.place(at)).filter(|_| weight > 0.0) else { continue };

@@ -1,4 +1,5 @@
-//! Granular elements as pictures: the same definition for grains and for material points, side by side or as a film.
+//! Figures of granular elements, side by side or as a film, with the same definition for grains and for material
+//! points.
 
 use crate::column::{COLUMNS, Column, Grains};
 use crate::course::{Course, Frame};
@@ -11,18 +12,19 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;
 use nalgebra::Vector3;
 
-/// Pixels across a cell of a picture.
+/// Pixels per cell of a figure.
 const PIXELS: u32 = 24;
-/// Pixels along the longer side of a panel of a film.
+/// Pixels along the longer side of a film panel.
 const LONGEST: u32 = 320;
-/// A film has at most this many frames.
+/// Maximum number of frames of a film.
 const FRAMES: usize = 60;
 
-/// A panel: its title, what it shows, and the scene that this is a snapshot of.
+/// A panel: title, snapshot, and the scene of the snapshot.
 pub type Shot<'a> = (String, &'a Snapshot, &'a Scene);
 
-/// Panels of a quantity, by its column's name, over cells of about `size` (m) of plane scenes, on one scale from `range` of
-/// values.
+/// Returns panels of the quantity with the column name `name`, in plane scenes with cells of about `size` (m).
+///
+/// All panels have the same scale, with the `range` of values.
 #[must_use]
 pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) -> Field {
     let column = named(name);
@@ -40,12 +42,12 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
     field(column, Units::SI, range, pixel, panels, (String::new(), vec![0.0]))
 }
 
-/// What lengths and times are counted in.
+/// Units of lengths and times.
 #[derive(Clone, Copy)]
 pub struct Units {
-    /// Lengths.
+    /// Unit of length.
     pub length: &'static str,
-    /// Times.
+    /// Unit of time.
     pub time: &'static str,
 }
 
@@ -53,7 +55,7 @@ impl Units {
     /// Metres and seconds.
     pub const SI: Self = Self { length: "m", time: "s" };
 
-    /// The unit of a kinematic column in these.
+    /// Converts the SI unit of a kinematic column to these units.
     fn of(self, si: &str) -> String {
         match si {
             "m/s" => format!("{}/{}", self.length, self.time),
@@ -63,22 +65,24 @@ impl Units {
     }
 }
 
-/// Quantities over a sheet of cells, one cell deep, at some times.
+/// Quantities over a sheet of cells, one cell deep, at several times.
 pub struct Sheet {
-    /// The cells.
+    /// Grid of cells.
     pub grid: Grid,
-    /// What its lengths and times are counted in.
+    /// Units of lengths and times.
     pub units: Units,
-    /// What tells the times apart, such as `time t (s)`.
+    /// Label of the times, such as `time t (s)`.
     pub clock: String,
-    /// The times.
+    /// Times of the frames.
     pub times: Vec<f64>,
-    /// What is shown, each in every cell at every time: the name of its column, and values; no number where nothing is shown.
+    /// Plotted quantities: the column name, and values by time and cell; NaN for blank cells.
     pub shown: Vec<(&'static str, Vec<Vec<f64>>)>,
 }
 
-/// A film of quantities over the sheet of cells of a course, or a picture where it has one frame. None where the grid is no
-/// sheet of one cell's depth, or no element has any of the quantities. Cells that hold too little are left blank.
+/// Returns a film of quantities over a series of snapshots, or a single figure for one frame.
+///
+/// Returns `None` if the grid is not one cell deep, or no element has any of the quantities. Cells with too few members
+/// are blank.
 #[must_use]
 pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     let count = course.frames.len().min(FRAMES);
@@ -98,8 +102,9 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
 }
 
 impl Sheet {
-    /// The quantities side by side, each on a scale of its own, which runs from zero, that of packing fractions from what a
-    /// fiftieth of the elements is below, to what a fiftieth is above.
+    /// Returns the quantities side by side, each with its own scale, from zero to the 98th percentile.
+    ///
+    /// The scale of packing fractions starts at the 2nd percentile.
     #[must_use]
     pub fn film(&self) -> Option<Field> {
         let [across, up] = sheet(&self.grid)?;
@@ -125,17 +130,18 @@ impl Sheet {
     }
 }
 
-/// Where the range of a quantity begins whose lowest fiftieth ends at a value: packing fractions of a bulk differ by little.
+/// Returns the lower end of the range from the 2nd percentile. Packing fractions of a bulk vary little, so they do not
+/// start at zero.
 fn lowest(name: &str, value: f64) -> f64 {
     if name == "packing_fraction" { ((value * 20.0).floor() / 20.0).max(0.0) } else { 0.0 }
 }
 
-/// The two axes along which a sheet of cells lies, one cell deep along the third; x or y first.
+/// Returns the two axes of a sheet of cells that is one cell deep along the third axis.
 fn sheet(grid: &Grid) -> Option<[usize; 2]> {
     [[0, 1], [0, 2], [1, 2]].into_iter().find(|axes| grid.count[3 - axes[0] - axes[1]] == 1)
 }
 
-/// The column of a name, the first where there is none.
+/// Returns the column with a name, or the first column if there is none.
 fn named(name: &str) -> &'static Column {
     COLUMNS.iter().find(|column| column.name == name).unwrap_or(&COLUMNS[0])
 }
@@ -152,7 +158,7 @@ fn field(
     Field { label, unit, range, shades: Shades::Amount, pixel, length, panels, clock, times }
 }
 
-/// Cells of a sheet as rectangles, rows from the top, so many pixels across.
+/// Draws the cells of a sheet as rectangles with a width of `pixels`, rows from the top.
 fn raster(grid: &Grid, [across, up]: [usize; 2], pixels: u32, level: impl Fn(usize) -> u8) -> Raster {
     let tall = (f64::from(pixels) * grid.cell[up] / grid.cell[across]).round().clamp(1.0, 4096.0) as u32;
     let (columns, rows) = (grid.count[across] as u32, grid.count[up] as u32);
@@ -177,7 +183,7 @@ mod tests {
         let at = |column: u32, row: u32| all.levels[(row * all.width + column) as usize];
         assert_eq!((all.width, all.height, sheet(&grid)), (2 * PIXELS, 3 * PIXELS, Some([0, 1])));
         assert_eq!([at(0, 0), at(2 * PIXELS - 1, 0), at(0, 3 * PIXELS - 1), at(PIXELS, 3 * PIXELS - 1)], [5, 6, 1, 2]);
-        // Lying in x and z, with cells twice as high as wide.
+        // A sheet in x and z, with cells twice as high as wide.
         let grid = Grid { count: [2, 1, 3], ..grid };
         let all = raster(&grid, [0, 2], PIXELS, |place| 1 + place as u8);
         assert_eq!((all.width, all.height, sheet(&grid)), (2 * PIXELS, 6 * PIXELS, Some([0, 2])));

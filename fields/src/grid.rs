@@ -1,21 +1,21 @@
-//! Equal cells that fill a box.
+//! A regular grid of cells.
 
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
-/// Equal cells that fill a box; in the plane one cell deep, from −½ to ½.
+/// Equal cells that fill a box; in the plane they are one cell deep, from −½ to ½.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Lower corner (m).
     pub low: Vector3<f64>,
     /// Size of a cell (m).
     pub cell: Vector3<f64>,
-    /// Cells along each axis.
+    /// Number of cells along each axis.
     pub count: [usize; 3],
 }
 
 impl Grid {
-    /// Cells of about `size` (m) that fill the box from `low` to `high` (m).
+    /// Returns cells of about `size` (m) that fill the box from `low` to `high` (m).
     #[must_use]
     pub fn filling((low, high): (Vector3<f64>, Vector3<f64>), size: Vector3<f64>) -> Self {
         let count = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / size[axis]).round().max(1.0) as usize);
@@ -23,44 +23,44 @@ impl Grid {
         Self { low, cell, count }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.count.iter().product()
     }
 
-    /// Volume of a cell (m³; m² in the plane).
+    /// Returns the volume of a cell (m³; m² in the plane).
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.cell.product()
     }
 
-    /// Corner of the cell at a place along each axis (m).
+    /// Returns the lower corner of the cell with the given index along each axis (m).
     #[must_use]
     pub fn corner(&self, at: [usize; 3]) -> Vector3<f64> {
         self.low + Vector3::from_fn(|axis, _| at[axis] as f64 * self.cell[axis])
     }
 
-    /// Middle of a cell (m).
+    /// Returns the centre of a cell (m).
     #[must_use]
     pub fn middle(&self, place: usize) -> Vector3<f64> {
         self.corner(self.at(place)) + self.cell * 0.5
     }
 
-    /// Place of a cell in the list of all: x runs fastest.
+    /// Returns the index of a cell in the list of all cells; x varies fastest.
     #[must_use]
     pub const fn place(&self, at: [usize; 3]) -> usize {
         at[0] + self.count[0] * (at[1] + self.count[1] * at[2])
     }
 
-    /// Place along each axis of a cell in the list of all.
+    /// Returns the index along each axis of a cell in the list of all cells.
     #[must_use]
     pub const fn at(&self, place: usize) -> [usize; 3] {
         let [across, deep, _] = self.count;
         [place % across, place / across % deep, place / (across * deep)]
     }
 
-    /// The cell that a point (m) is in.
+    /// Returns the cell that contains a point (m).
     #[must_use]
     pub fn find(&self, point: Vector3<f64>) -> Option<usize> {
         let mut at = [0; 3];
@@ -75,7 +75,7 @@ impl Grid {
     }
 }
 
-/// Where a place (m) is within the domain along periodic axes.
+/// Wraps a position (m) into the domain along periodic axes.
 pub(crate) fn inside(snapshot: &Snapshot, mut place: Vector3<f64>) -> Vector3<f64> {
     let (low, high) = snapshot.bounds;
     for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {

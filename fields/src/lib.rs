@@ -1,7 +1,7 @@
-//! Fields over what a run leaves behind: the stress inside discs, pictures of it, and means over the cells of a grid.
+//! Fields from the results of runs: stress inside discs, figures of it, and means over the cells of a grid.
 //!
-//! Material points carry fields and grains carry contact forces; here both become the same quantities at the same
-//! places.
+//! Material points carry fields, and grains carry contact forces. This crate converts both to the same quantities at
+//! the same positions.
 
 pub mod average;
 pub mod column;

@@ -1,32 +1,32 @@
-//! Masks: which cells are left out of a mean, and why. Every number over cells says which of them were.
+//! Masks: cells that are excluded from means, with the reasons.
 
 use crate::element::Element;
 use crate::grid::Grid;
 use nalgebra::Vector3;
 
-/// Why a cell is left out.
+/// Reasons for the exclusion of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Masked {
-    /// Too few grains are in it.
+    /// The cell has too few members.
     pub few: bool,
-    /// It is at the free surface: it, or the cell above it, is filled less than a bulk is.
+    /// The cell is at the free surface: the packing fraction of it or of the cell above is below that of the bulk.
     pub surface: bool,
-    /// It is at a side of the grid that is not periodic.
+    /// The cell is at a non-periodic side of the grid.
     pub wall: bool,
-    /// It is near an orifice.
+    /// The cell is near an orifice.
     pub orifice: bool,
-    /// It shears less than what counts as flowing.
+    /// The shear rate of the cell is below the limit for flow.
     pub still: bool,
 }
 
 impl Masked {
-    /// Whether it is left out at all.
+    /// Returns true if the cell is excluded for any reason.
     #[must_use]
     pub const fn any(self) -> bool {
         self.few || self.surface || self.wall || self.orifice || self.still
     }
 
-    /// The reasons in words, joined by `+`; empty where there is none.
+    /// Returns the reasons, joined by `+`; empty if there are none.
     #[must_use]
     pub fn words(self) -> String {
         let reasons = [
@@ -41,36 +41,36 @@ impl Masked {
     }
 }
 
-/// What is left out.
+/// Parameters of the masks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Masks {
-    /// Fewest grains or points in a cell.
+    /// Minimum number of grains or points in a cell.
     pub fewest: usize,
-    /// Packing fraction below which a cell is not of the bulk.
+    /// Packing fraction below which a cell is not part of the bulk.
     pub surface: f64,
-    /// The axis along which up is, and whether up is towards its high end.
+    /// Vertical axis, and true if its high end is up.
     pub up: (usize, bool),
-    /// Which axes are periodic.
+    /// Periodic axes.
     pub periodic: [bool; 3],
     /// Number of axes.
     pub dimension: usize,
-    /// An orifice.
+    /// Orifice, if any.
     pub orifice: Option<Orifice>,
-    /// |D₀| (1/s) from which on a cell flows, where only those that do are wanted.
+    /// Minimum |D₀| (1/s) of a flowing cell; `None` to include cells at rest.
     pub flowing: Option<f64>,
 }
 
-/// Where an orifice is, and how far around it cells are left out.
+/// Position of an orifice, and the radius around it in which cells are excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orifice {
-    /// Its middle along each axis (m); along an axis without one it is long, as a slit is.
+    /// Centre along each axis (m); `None` along the length of a slit.
     pub middle: [Option<f64>; 3],
-    /// Distance from it to the middle of a cell within which cells are left out (m).
+    /// Distance from the orifice to a cell centre within which the cell is excluded (m).
     pub reach: f64,
 }
 
 impl Orifice {
-    /// Distance from a place (m).
+    /// Returns the distance from a position (m).
     fn distance(&self, place: Vector3<f64>) -> f64 {
         let along = |axis: usize| self.middle[axis].map_or(0.0, |middle| place[axis] - middle);
         Vector3::from_fn(|axis, _| along(axis)).norm()
@@ -78,7 +78,7 @@ impl Orifice {
 }
 
 impl Masks {
-    /// Which of the cells of a snapshot are left out.
+    /// Returns the masks of all cells of a snapshot.
     #[must_use]
     pub fn of(&self, elements: &[Element], grid: &Grid) -> Vec<Masked> {
         let (up, high) = self.up;
@@ -95,7 +95,7 @@ impl Masks {
             Masked {
                 few: elements[cell].motion.members < self.fewest,
                 surface: !bulk(cell) || above(at).is_some_and(|over| !bulk(over)),
-                // The upper end of the grid is no wall: what ends there is a surface, or a lid that presses.
+                // The upper end of the grid is not a wall: it is a free surface, or a lid that applies pressure.
                 wall: (0..self.dimension).any(|axis| !self.periodic[axis] && at_side(axis) && !(axis == up && top)),
                 still: self.flowing.is_some_and(|least| elements[cell].shear_rate().is_none_or(|rate| rate < least)),
                 orifice: self.orifice.is_some_and(|orifice| orifice.distance(grid.middle(cell)) < orifice.reach),
@@ -104,7 +104,7 @@ impl Masks {
         (0..grid.cells()).map(of).collect()
     }
 
-    /// The masks in words.
+    /// Returns a description of the masks.
     #[must_use]
     pub fn words(&self) -> String {
         let mut words = format!(
@@ -151,10 +151,10 @@ mod tests {
         assert_eq!(words(1, 2), "");
         assert_eq!([words(2, 2), words(1, 3), words(0, 2)], ["few", "surface", "wall"]);
         assert_eq!([words(2, 0), words(2, 1), words(2, 4)], ["wall+orifice", "orifice", "surface"]);
-        // What does not shear is still, and what has no rate of shear is too.
+        // A cell without shear is at rest, and so is a cell without a known shear rate.
         let still = Masks { flowing: Some(0.1), ..masks.clone() }.of(&elements, &grid);
         assert_eq!(still[grid.place([1, 0, 2])].words(), "still");
-        // Upside down the other end is the surface.
+        // With the opposite vertical direction the surface is at the other end.
         let masks = Masks { up: (2, false), orifice: None, ..masks };
         let masked = masks.of(&elements, &grid);
         assert_eq!(masked[grid.place([2, 0, 0])].words(), "");

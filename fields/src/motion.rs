@@ -1,7 +1,7 @@
-//! Motion of a cell: mean velocity, its gradient, and what is left of the velocities of single grains beside these.
+//! Motion of a cell: mean velocity, velocity gradient, and residual velocities of single grains.
 //!
 //! ```text
-//! v = v⁰ + L (x − x̄)      least squares over the centres of the grains in the cell; over material points by volume
+//! v = v⁰ + L (x − x̄)      least squares over the centres of grains in the cell; material points are weighted by volume
 //! |v′|² = (1/n) Σ |v_i − v⁰ − L (x_i − x̄)|²
 //! ```
 
@@ -9,31 +9,31 @@ use crate::grid::{Grid, inside};
 use grainbench_scene::record::{GrainState, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
-/// Where something is, how fast, and what it counts.
+/// Position, velocity and weight of a grain or material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mover {
     /// Position (m).
     pub position: Vector3<f64>,
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
-    /// One for a grain, its volume for a material point.
+    /// Weight: one for a grain, the volume for a material point.
     pub weight: f64,
 }
 
 /// Motion of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// Grains or material points whose centre is in the cell.
+    /// Number of grains or material points whose centre is in the cell.
     pub members: usize,
-    /// Mean velocity v⁰ (m/s); none of an empty cell.
+    /// Mean velocity v⁰ (m/s); `None` for an empty cell.
     pub velocity: Option<Vector3<f64>>,
-    /// L (1/s), L_ij = ∂v_i/∂x_j; none where too few centres are in the cell, or all in one line.
+    /// L (1/s), L_ij = ∂v_i/∂x_j; `None` with too few centres in the cell, or if they are collinear or coplanar.
     pub gradient: Option<Matrix3<f64>>,
-    /// |v′| (m/s), the root of the mean square of what the fit leaves; none where L is.
+    /// |v′| (m/s), the root mean square residual of the fit; `None` without L.
     pub residual: Option<f64>,
 }
 
-/// Grains, or material points where there are some, with the velocities that they have.
+/// Returns the grains, or the material points if there are any, with their instantaneous velocities.
 #[must_use]
 pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
     if snapshot.points.is_empty() {
@@ -49,8 +49,10 @@ pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
     }
 }
 
-/// Grains at their places in the later of two snapshots, with their mean velocities in between, (x − x′)/Δt, the short way
-/// round across periodic sides: no grain may pass half the domain between two. Grains that one of them has not are left out.
+/// Returns the grains at the later of two snapshots, with their mean velocities in between, (x − x′)/Δt.
+///
+/// The displacement is the shortest across periodic sides, so no grain may move by more than half the domain between
+/// snapshots. Grains that are in only one of the snapshots are skipped.
 #[must_use]
 pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     let elapsed = after.time - before.time;
@@ -65,14 +67,14 @@ pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     after.grains.iter().filter_map(mover).collect()
 }
 
-/// Sums over a cell, about its middle.
+/// Sums over a cell, relative to its centre.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     members: usize,
     weight: f64,
     place: Vector3<f64>,
     velocity: Vector3<f64>,
-    /// Σ w x⊗x and Σ w v⊗x.
+    /// Σ w x⊗x; the next field is Σ w v⊗x.
     spread: Matrix3<f64>,
     carried: Matrix3<f64>,
 }
@@ -96,7 +98,7 @@ impl Sums {
         if dimension == 2 {
             spread.m33 = self.weight;
         }
-        // Centres in a line (a plane) leave one direction open: rounding must not choose.
+        // Collinear (or coplanar) centres leave one direction undetermined, which rounding errors must not determine.
         let size: f64 = (0..dimension).map(|axis| self.weight * cell[axis] * cell[axis]).product();
         let size = if dimension == 2 { size * self.weight } else { size };
         if spread.determinant() < 1e-12 * size {
@@ -106,7 +108,7 @@ impl Sums {
     }
 }
 
-/// The motion of every cell.
+/// Computes the motion of every cell.
 #[must_use]
 pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
     let mut sums = vec![Sums::default(); grid.cells()];
@@ -116,7 +118,7 @@ pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
             sums[cell].add(mover.weight, mover.position - grid.middle(cell), mover.velocity);
         }
     }
-    // Velocities that nobody told are no numbers, and nothing is known of what they would make.
+    // Unknown velocities are NaN, and so are gradients computed from them.
     let told = |gradient: &Matrix3<f64>| gradient.iter().all(|number| number.is_finite());
     let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell).filter(told)).collect();
     let mut left = vec![0.0; grid.cells()];

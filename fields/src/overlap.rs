@@ -1,7 +1,8 @@
-//! How much of a disc or a sphere lies in a box: closed forms.
+//! Exact overlap of a disc or a sphere with a box.
 //!
-//! A box is cut out by inclusion and exclusion of its corners: what of the unit ball lies in x > a, y > b, z > c is, for
-//! a, b, c ≥ 0, by Gauss' theorem a third of its part of the sphere less what the cut faces take,
+//! The overlap with a box is computed from its corners by inclusion and exclusion. For a, b, c ≥ 0, the volume of the
+//! unit ball in x > a, y > b, z > c follows from Gauss' theorem. It is a third of the spherical area less the terms of
+//! the cut faces:
 //!
 //! ```text
 //! Q₁ = π(1−a)²(2+a)/3
@@ -13,11 +14,11 @@
 //!      A₃ = ½[r² φ_a − c(√(r²−c²) − b) − b(√(r²−b²) − c)]
 //! ```
 //!
-//! with S by Gauss and Bonnet; a negative side is the rest of what there is without it.
+//! with S by Gauss and Bonnet. For a negative side, the volume is the one without this side less the complement.
 
 use std::f64::consts::PI;
 
-/// Area of a disc about the origin within the box from `low` to `high` (m²): exact.
+/// Returns the exact area of a disc about the origin within the box from `low` to `high` (m²).
 #[must_use]
 pub fn disc_in_box(radius: f64, low: [f64; 2], high: [f64; 2]) -> f64 {
     if radius <= 0.0 {
@@ -28,7 +29,7 @@ pub fn disc_in_box(radius: f64, low: [f64; 2], high: [f64; 2]) -> f64 {
     (unit * radius * radius).max(0.0)
 }
 
-/// Area of the unit disc where both coordinates are below x and y: the integral over u < x of its height there.
+/// Returns the area of the unit disc where the coordinates are below x and y: the integral of its height over u < x.
 fn below_left(x: f64, y: f64) -> f64 {
     // ∫√(1 − u²) du
     let half_disc = |u: f64| 0.5 * (u * (1.0 - u * u).max(0.0).sqrt() + u.asin());
@@ -41,11 +42,11 @@ fn below_left(x: f64, y: f64) -> f64 {
     if y < 0.0 {
         return middle;
     }
-    // Beside the chord at y > 0 the whole height of the disc is below it.
+    // Beside the chord at y > 0 the disc is entirely below y.
     whole(-1.0, x.min(-reach)) + middle + whole(reach, x.max(reach))
 }
 
-/// Volume of a sphere about the origin within the box from `low` to `high` (m³): exact.
+/// Returns the exact volume of a sphere about the origin within the box from `low` to `high` (m³).
 #[must_use]
 pub fn sphere_in_box(radius: f64, low: [f64; 3], high: [f64; 3]) -> f64 {
     if radius <= 0.0 || (0..3).any(|axis| low[axis] >= high[axis]) {
@@ -60,7 +61,7 @@ pub fn sphere_in_box(radius: f64, low: [f64; 3], high: [f64; 3]) -> f64 {
     (unit * radius.powi(3)).clamp(0.0, 4.0 / 3.0 * PI * radius.powi(3))
 }
 
-/// Volume of the unit ball beyond these sides; along an axis without one nothing is cut.
+/// Returns the volume of the unit ball beyond the given sides; `None` means no side along an axis.
 fn ball_beyond(sides: [Option<f64>; 3]) -> f64 {
     if sides.iter().flatten().any(|&side| side >= 1.0) {
         return 0.0;
@@ -84,17 +85,17 @@ fn ball_beyond(sides: [Option<f64>; 3]) -> f64 {
     }
 }
 
-/// acos of a number that rounding may have put beyond one.
+/// Returns acos of a cosine, which is clamped to [−1, 1] against rounding.
 fn acos(cosine: f64) -> f64 {
     cosine.clamp(-1.0, 1.0).acos()
 }
 
-/// The angle on the sphere between two faces, at the point where they meet it.
+/// Returns the angle on the sphere between two faces at their intersection.
 fn between(a: f64, b: f64) -> f64 {
     acos(-a * b / ((1.0 - a * a) * (1.0 - b * b)).sqrt())
 }
 
-/// Q₂(a, b).
+/// Returns Q₂(a, b).
 fn edge(a: f64, b: f64) -> f64 {
     if a * a + b * b >= 1.0 {
         return 0.0;
@@ -108,7 +109,7 @@ fn edge(a: f64, b: f64) -> f64 {
     (sphere - a * face(a, b) - b * face(b, a)) / 3.0
 }
 
-/// Q₃(a, b, c).
+/// Returns Q₃(a, b, c).
 fn corner([a, b, c]: [f64; 3]) -> f64 {
     if a * a + b * b + c * c >= 1.0 {
         return 0.0;
@@ -135,22 +136,22 @@ mod tests {
         assert!((disc_in_box(2.0, [-far; 2], [far; 2]) / (4.0 * PI) - 1.0).abs() < 1e-14);
         assert!((disc_in_box(2.0, [0.0; 2], [far; 2]) / PI - 1.0).abs() < 1e-14);
         assert!((disc_in_box(2.0, [-0.1, 0.2], [0.3, 0.9]) - 0.4 * 0.7).abs() < 1e-14);
-        // A segment of height R/2: R² (π/3 − √3/4).
+        // The circular segment of height R/2 has the area R² (π/3 − √3/4).
         let segment = PI / 3.0 - 3_f64.sqrt() / 4.0;
         assert!((disc_in_box(1.0, [0.5, -far], [far, far]) / segment - 1.0).abs() < 1e-14);
-        // A corner at (½, ½): ∫ (√(1−u²) − ½) du from ½ to √¾.
+        // The corner at (½, ½) has the area ∫ (√(1−u²) − ½) du from ½ to √¾.
         let corner = PI / 12.0 + 0.25 - 0.5 * 0.75_f64.sqrt();
         assert!((disc_in_box(1.0, [0.5, 0.5], [far, far]) / corner - 1.0).abs() < 1e-13);
         assert_eq!(disc_in_box(1.0, [1.5, 0.0], [2.0, 1.0]), 0.0);
         assert_eq!(disc_in_box(0.0, [-1.0; 2], [1.0; 2]), 0.0);
     }
 
-    /// What of the unit ball is beyond these sides.
+    /// Returns the volume of the unit ball beyond the given sides.
     fn beyond(sides: [f64; 3]) -> f64 {
         sphere_in_box(1.0, sides, [9.0; 3])
     }
 
-    /// Printed digits of integrals that were found by quadrature in thirty digits.
+    /// Reference integrals from quadrature with thirty digits.
     #[test]
     fn caps_edges_and_corners_have_their_volumes() {
         let none = -9.0;
@@ -165,7 +166,7 @@ mod tests {
             ([-0.4, -0.3, 0.5], 0.417_740_454_338_939_74),
         ];
         for (sides, volume) in known {
-            // Whatever the order of the axes.
+            // The result must not depend on the order of the axes.
             for turn in 0..3 {
                 let mut sides = sides;
                 sides.rotate_left(turn);
@@ -185,12 +186,12 @@ mod tests {
             sum += sphere_in_box(radius, at.map(|at| sides[at]), at.map(|at| sides[at + 1]));
         }
         assert!((sum / volume - 1.0).abs() < 1e-13, "{}", sum / volume - 1.0);
-        // A cube inside, and one far away.
+        // One cube is inside the sphere, and one is far away.
         assert!((sphere_in_box(1.0, [-0.2; 3], [0.3; 3]) / 0.125 - 1.0).abs() < 1e-13);
         assert_eq!((sphere_in_box(1.0, [2.0; 3], [3.0; 3]), sphere_in_box(0.0, [-1.0; 3], [1.0; 3])), (0.0, 0.0));
     }
 
-    /// By slices, whose areas have a closed form of their own.
+    /// The reference is a sum over slices, whose areas have a closed form of their own.
     #[test]
     fn boxes_anywhere_agree_with_their_slices() {
         let mut odd = 0.5_f64;

@@ -1,4 +1,4 @@
-//! Packing fraction: the part of each cell that grains fill, to their exact volumes.
+//! Packing fraction: the fraction of each cell that is filled by grains, from their exact volumes.
 
 use crate::grid::{Grid, inside};
 use crate::overlap::{disc_in_box, sphere_in_box};
@@ -6,8 +6,9 @@ use grainbench_scene::record::{GrainState, Snapshot};
 use grainbench_scene::scene::Dimension;
 use nalgebra::Vector3;
 
-/// φ = (1/V) Σ volume of grain within the cell, of images across periodic sides too; where grains overlap they count twice.
-/// Of material points φ = (1/V) Σ V_p.
+/// Computes φ = (1/V) Σ volume of grains within the cell, including periodic images. Overlaps count twice.
+///
+/// For material points φ = (1/V) Σ V_p.
 #[must_use]
 pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<f64> {
     let mut filled = vec![0.0; grid.cells()];
@@ -24,7 +25,7 @@ pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> V
     filled
 }
 
-/// Gives every cell what is in it of a grain and its images.
+/// Adds the volumes of a grain and its periodic images to the cells.
 fn of_grain(snapshot: &Snapshot, grain: &GrainState, space: Dimension, grid: &Grid, filled: &mut [f64]) {
     let (low, high) = snapshot.bounds;
     let shifts = |axis: usize| -> &[f64] {

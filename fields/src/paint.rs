@@ -1,4 +1,4 @@
-//! Grains of a plane snapshot as pixels: which body each belongs to, and a quantity of its material there.
+//! Rasters of plane snapshots: the body at each pixel, and a quantity of its material.
 
 use crate::disc::LoadedDisc;
 use crate::points::{self, Material};
@@ -8,7 +8,7 @@ use grainbench_scene::record::{GrainState, Owner, Snapshot};
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 
-/// The part of the plane that is seen, in square pixels.
+/// Visible part of the plane, in square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Lower left corner (m).
@@ -22,7 +22,7 @@ pub struct View {
 }
 
 impl View {
-    /// How many grains of a snapshot have their centre outside.
+    /// Returns the number of grains whose centre is outside the view.
     #[must_use]
     pub fn outside(&self, snapshot: &Snapshot) -> usize {
         let high = self.high();
@@ -31,7 +31,7 @@ impl View {
         snapshot.grains.len() - snapshot.grains.iter().filter(inside).count()
     }
 
-    /// From corner to corner, `longest` pixels along the longer side.
+    /// Returns a view between two corners, with `longest` pixels along the longer side.
     #[must_use]
     pub fn new(low: [f64; 2], high: [f64; 2], longest: u32) -> Self {
         let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
@@ -40,8 +40,8 @@ impl View {
         Self { low, pixel, width, height }
     }
 
-    /// A snapshot: its domain along periodic axes, else the box around its grains and material points but for a few that
-    /// have strayed far from all others.
+    /// Returns a view of a snapshot: its domain along periodic axes, otherwise the bounding box of grains and material
+    /// points without a few distant outliers.
     #[must_use]
     pub fn of(snapshot: &Snapshot, longest: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -66,13 +66,13 @@ impl View {
         Self::new(low, high, longest)
     }
 
-    /// Upper right corner (m).
+    /// Returns the upper right corner (m).
     #[must_use]
     pub fn high(&self) -> [f64; 2] {
         [self.low[0] + f64::from(self.width) * self.pixel, self.low[1] + f64::from(self.height) * self.pixel]
     }
 
-    /// Columns and rows of the pixels in view of the square around a place (m) that reaches so far (m).
+    /// Returns the visible columns and rows of the square around a position (m) with a half width `reach` (m).
     pub(crate) fn pixels_around(&self, place: [f64; 2], reach: f64) -> (Range<u32>, Range<u32>) {
         let range = |axis: usize, count: u32| {
             let at = |place: f64| ((place - self.low[axis]) / self.pixel).floor().clamp(0.0, f64::from(count)) as u32;
@@ -82,7 +82,7 @@ impl View {
         (columns, self.height - up.end..self.height - up.start)
     }
 
-    /// Centre of a pixel (m), rows counted from the top.
+    /// Returns the centre of a pixel (m), with rows from the top.
     pub(crate) fn centre(&self, column: u32, row: u32) -> [f64; 2] {
         [
             self.low[0] + (f64::from(column) + 0.5) * self.pixel,
@@ -91,17 +91,17 @@ impl View {
     }
 }
 
-/// Pixels with the body and the value of each.
+/// Pixels with their body and value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Painting {
     view: View,
-    /// Zero where nothing is.
+    /// Body at each pixel; zero for empty pixels.
     owners: Vec<u32>,
     values: Vec<f64>,
 }
 
 impl Painting {
-    /// Of the material points of a snapshot, or of its discs where it has none.
+    /// Draws the material points of a snapshot, or its discs if it has none.
     #[must_use]
     pub fn new(snapshot: &Snapshot, quantity: Quantity, view: View) -> Self {
         let pixels = view.width as usize * view.height as usize;
@@ -131,7 +131,7 @@ impl Painting {
             Quantity::StressDifference | Quantity::Fringes(_) => LoadedDisc::of_snapshot(snapshot),
             Quantity::PlasticStrain | Quantity::Rotation | Quantity::Speed => Vec::new(),
         };
-        // Where two discs overlap, the one is seen that the pixel is deeper in.
+        // If two discs overlap, the one in which the pixel is deeper is visible.
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
         let length = snapshot.bounds.1 - snapshot.bounds.0;
         let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };
@@ -165,7 +165,7 @@ impl Painting {
         }
     }
 
-    /// The value below which a part of all pixels with a value lies; zero where there are none.
+    /// Returns the value below which a fraction `part` of the pixel values lies; zero if there are no values.
     #[must_use]
     pub fn quantile(&self, part: f64) -> f64 {
         let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -173,7 +173,7 @@ impl Painting {
         if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
     }
 
-    /// Levels within a range of values, with a rim around every body.
+    /// Returns grey levels within a range of values, with a rim around every body.
     #[must_use]
     pub fn raster(&self, range: (f64, f64)) -> Raster {
         let View { width, height, .. } = self.view;
@@ -194,8 +194,10 @@ impl Painting {
     }
 }
 
-/// From where to where (m) to look along an axis at what reaches from here to there: at all, but not farther from what
-/// all but a hundredth on either side spans than half as much again.
+/// Returns the visible range (m) along an axis for a set of intervals.
+///
+/// The range covers all intervals, but exceeds the range without the outer hundredth on each side by at most half of
+/// its length.
 fn window(spans: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
     let (mut lows, mut highs): (Vec<f64>, Vec<f64>) = spans.unzip();
     lows.sort_by(f64::total_cmp);
@@ -225,7 +227,7 @@ mod tests {
         many.grains[7].position.x = 100.0;
         let view = View::of(&many, 200);
         assert!(view.high()[0] < 3.5 && view.outside(&many) == 1, "{view:?}");
-        // What has only begun to spread is seen whole.
+        // A grain at a moderate distance is still visible.
         many.grains[7].position.x = 2.5;
         assert_eq!(View::of(&many, 200).outside(&many), 0);
     }
@@ -259,7 +261,7 @@ mod tests {
         }
     }
 
-    /// A square lattice of points, `width` apart, that fills the unit square around (0, ½), sheared by nothing.
+    /// Returns a square lattice of points at a spacing `width` that fills the unit square around (0, ½).
     fn points(width: f64) -> Vec<PointState> {
         let count = (1.0 / width).round() as i32;
         let point = |i: i32, j: i32| {
@@ -288,7 +290,7 @@ mod tests {
         let middle = |column: usize| raster.levels[50 * 200 + column];
         assert_eq!([middle(5), middle(100), middle(195)], [HIGH, VOID, HIGH]);
         assert!((39..=40).any(|column| middle(column) == RIM));
-        // |ω| r, at most at the rim.
+        // |ω| r is largest at the rim.
         let speed = Painting::new(&snapshot(Vec::new()), Quantity::Speed, view);
         assert!((speed.quantile(1.0) - 0.8).abs() < 0.02);
     }
@@ -299,16 +301,16 @@ mod tests {
         let painting = Painting::new(&snapshot(points(0.05)), Quantity::StressDifference, view);
         let of =
             |owner: u32| painting.owners.iter().filter(|&&found| found == owner).count() as f64 * view.pixel.powi(2);
-        // Half a square each, and a seam of (.85 − .5) widths around it.
+        // Each body covers half a square, with a margin of (.85 − .5) widths around it.
         for owner in [1, 2] {
             assert!((0.5..0.56).contains(&of(owner)), "{}", of(owner));
         }
-        // |σ_xx − σ_yy| = 2|x|: linear, so that blurring changes nothing inside.
+        // |σ_xx − σ_yy| = 2|x| is linear, so averaging changes nothing inside.
         let at = |column: usize, row: usize| painting.values[row * 200 + column];
         let x = 25.5 * view.pixel;
         assert!((at(25, 70) - 2.0 * x).abs() < 0.01, "{}", at(25, 70));
         assert!((at(174, 70) - 2.0 * x).abs() < 0.01, "{}", at(174, 70));
-        // Beside the contact the other body has no say.
+        // Near the contact the other body has no influence.
         assert!((at(0, 70) - 2.0 * 0.025).abs() < 0.03 && at(0, 70) > 0.0);
         let strain = Painting::new(&snapshot(points(0.05)), Quantity::PlasticStrain, view);
         assert!((strain.quantile(0.0) - 0.5).abs() < 1e-12 && (strain.quantile(1.0) - 0.5).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Snapshots as pictures of a field: panels beside one another on one scale, or films.
+//! Figures of a field from snapshots: panels with a common scale, or films.
 
 use crate::paint::{Painting, View};
 use crate::quantity::Quantity;
@@ -6,30 +6,31 @@ use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{HIGH, LOW, Raster};
 use grainbench_scene::record::Snapshot;
 
-/// What one panel shows: its title, and a snapshot for every frame.
+/// A panel: its title, and a snapshot for each frame.
 pub struct Shot<'a> {
-    /// What stands above it.
+    /// Title above the panel.
     pub title: String,
-    /// One for a picture.
+    /// Snapshots, one for each frame; a single one for a still figure.
     pub frames: Vec<&'a Snapshot>,
 }
 
 impl<'a> Shot<'a> {
-    /// A picture.
+    /// Creates a panel with one frame.
     #[must_use]
     pub fn new(title: impl Into<String>, snapshot: &'a Snapshot) -> Self {
         Self { title: title.into(), frames: vec![snapshot] }
     }
 }
 
-/// Panels of a quantity, `longest` pixels along the longer side of what all of them show. The range is that of the
-/// values but for the highest fiftieth, unless it is given.
+/// Returns panels of a quantity, with `longest` pixels along the longer side of the common view.
+///
+/// Unless given, the range covers the values up to the 98th percentile.
 #[must_use]
 pub fn pictures(quantity: Quantity, shots: &[Shot<'_>], longest: u32, range: Option<(f64, f64)>) -> Field {
     film(quantity, shots, ("", &[0.0]), longest, range)
 }
 
-/// The same as a film: `clock` says what its frames are told apart by, and where each stands.
+/// Returns a film: `clock` is the label of the frames, with the time of each frame.
 #[must_use]
 pub fn film(
     quantity: Quantity,
@@ -68,8 +69,9 @@ pub fn film(
     }
 }
 
-/// The fringe constant c (Pa) for which the stress that only a fiftieth of the material is above, in any of the
-/// snapshots, is so many fringes from none.
+/// Returns the fringe constant c (Pa) for a number of fringes.
+///
+/// The 98th percentile of the stress, the largest of all snapshots, is then `fringes` fringes away from zero stress.
 #[must_use]
 pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
     let quantity = Quantity::StressDifference;
@@ -77,7 +79,7 @@ pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fr
     snapshots.into_iter().map(high).fold(0.0, f64::max) / (fringes * std::f64::consts::TAU)
 }
 
-/// The title of a shot, with the grains of its last frame that are not to be seen.
+/// Returns the title of a panel, with the number of grains outside the view in its last frame.
 fn title(shot: &Shot<'_>, view: View) -> String {
     match shot.frames.last().map_or(0, |last| view.outside(last)) {
         0 => shot.title.clone(),
@@ -86,7 +88,7 @@ fn title(shot: &Shot<'_>, view: View) -> String {
     }
 }
 
-/// The frames of a film have a quarter of the levels: nobody sees the difference, and a page can hold it.
+/// Reduces the grey levels of film frames to a quarter, which is not visible but saves space in a page.
 fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     if frames > 1 {
         let values = raster.levels.iter_mut().filter(|level| (LOW..=HIGH).contains(level));
@@ -95,7 +97,7 @@ fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     raster
 }
 
-/// What holds all that is to be seen.
+/// Returns the common view of all snapshots.
 fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
     let mut corners: Option<([f64; 2], [f64; 2])> = None;
     for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
@@ -122,7 +124,7 @@ fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Paintin
     }
 }
 
-/// A number of two digits that is not below `value`; one where there is nothing to show.
+/// Rounds a value up to two digits; returns one if the value is not positive.
 pub(crate) fn two_digits(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;

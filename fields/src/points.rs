@@ -4,16 +4,17 @@ use crate::grid::inside;
 use crate::paint::View;
 use grainbench_scene::record::{Owner, PointState, Snapshot};
 
-/// A place belongs to the material of a point that is nearer than this, in widths √V of the point's square: half a
-/// diagonal, and a little for squares that have sheared.
+/// Largest distance of a pixel from its nearest point, in widths √V of the point's square.
+///
+/// It is half a diagonal with a margin for sheared squares.
 const REACH: f64 = 0.85;
-/// Points within this many of their widths share in the value at a place.
+/// Radius, in widths of a point, within which points contribute to the mean at a pixel.
 const BLUR: f64 = 1.3;
 
-/// The point that is nearest to a pixel.
+/// Point that is nearest to a pixel.
 #[derive(Clone, Copy)]
 struct Nearest {
-    /// Square of its distance, in widths of the point.
+    /// Squared distance, in widths of the point.
     distance: f64,
     point: u32,
 }
@@ -21,14 +22,16 @@ struct Nearest {
 /// Material at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Material {
-    /// The body that it belongs to.
+    /// Body of the material.
     pub(crate) owner: Owner,
-    /// The mean over the body's points around, the nearest counting most.
+    /// Weighted mean over the surrounding points of the body; the nearest has the largest weight.
     pub(crate) mean: [f64; 3],
 }
 
-/// The material at every pixel of a view, with the mean there of three numbers of a point. Each point is laid over the pixels
-/// around it: once to find whose they are, and once to share in the mean of its own body's.
+/// Returns the material at every pixel of a view, with the mean of three numbers of a point.
+///
+/// The pixels around each point are visited twice: once to find the body of each pixel, and once to average over the
+/// points of this body.
 pub(crate) fn at_pixels(
     snapshot: &Snapshot,
     view: View,
@@ -59,7 +62,7 @@ pub(crate) fn at_pixels(
     owners.into_iter().zip(sums).map(material).collect()
 }
 
-/// Shows every pixel near each point, around periodic sides too, with the square of their distance in widths of the point.
+/// Visits the pixels near each point, including periodic images, with the squared distance in widths of the point.
 fn lay(snapshot: &Snapshot, view: View, mut show: impl FnMut(usize, f64, u32)) {
     let length = snapshot.bounds.1 - snapshot.bounds.0;
     let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };

@@ -1,4 +1,4 @@
-//! Profiles: means over slices of a plane scene, as experiments on shear bands draw them.
+//! Profiles: means over slices of a plane scene, as used for experiments on shear bands.
 
 use crate::grid::inside;
 use crate::overlap::disc_in_box;
@@ -6,7 +6,7 @@ use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// What a profile is of.
+/// Quantity of a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// Displacement since the first snapshot (m).
@@ -15,9 +15,11 @@ pub enum Motion {
     Velocity,
 }
 
-/// The mean of one component of displacement or velocity over slices across `axis`, weighted by the material in each:
-/// points (middle of the slice, mean), of the last of `snapshots`. Displacements of discs are those of their centres,
-/// followed from one snapshot to the next across periodic sides: no grain may pass half the domain between two.
+/// Returns the mean of one component of displacement or velocity in slices across `axis`, weighted by material.
+///
+/// The result is a list of slice centre and mean, for the last of `snapshots`. Displacements of discs are those of
+/// their centres, summed from snapshot to snapshot across periodic sides. No grain may therefore move by more than half
+/// the domain between snapshots.
 #[must_use]
 pub fn profile(
     snapshots: &[Snapshot],
@@ -62,7 +64,7 @@ pub fn profile(
     sums.iter().enumerate().filter(|(_, sum)| sum.0 > 0.0).map(|(slice, sum)| (middle(slice), sum.1 / sum.0)).collect()
 }
 
-/// How far every grain of the last snapshot has come since the first that it is in (m).
+/// Returns the displacement of each grain of the last snapshot since the first snapshot that contains it (m).
 fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
     let mut moved: BTreeMap<u32, Vector3<f64>> = BTreeMap::new();
     for pair in snapshots.windows(2) {
@@ -124,17 +126,17 @@ mod tests {
             assert!((moved - 4.0 * x).abs() < 1e-12, "{x} {moved}");
         }
         for (x, velocity) in profile(&snapshots, Motion::Velocity, 0, 1, 8) {
-            // A slice holds half of one disc: its velocity.
+            // A slice covers half of one disc and has its velocity.
             assert!((velocity - (x.floor() + 0.5)).abs() < 1e-12, "{x} {velocity}");
         }
-        // One that leaves on the way takes nothing from the others.
+        // A grain that leaves on the way does not change the others.
         let mut fewer = snapshots.clone();
         for snapshot in &mut fewer[5..] {
             snapshot.grains.remove(0);
         }
         let all = profile(&snapshots, Motion::Displacement, 0, 1, 4);
         assert_eq!(profile(&fewer, Motion::Displacement, 0, 1, 4), all[1..]);
-        // Passing more than half the domain between two snapshots cannot be followed.
+        // A displacement of more than half the domain between two snapshots cannot be followed.
         let rare = [snapshots[0].clone(), snapshots[8].clone()];
         assert!(profile(&rare, Motion::Displacement, 0, 1, 4).iter().any(|(x, moved)| (moved - 4.0 * x).abs() > 1.0));
     }

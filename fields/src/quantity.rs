@@ -1,16 +1,16 @@
-//! What a picture of the inside of grains shows.
+//! Quantities inside grains that figures show.
 
 use grainbench_scene::record::PointState;
 use nalgebra::{Matrix2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A quantity at every place of the material.
+/// A quantity at every position in the material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Quantity {
     /// Difference of the principal stresses in the plane, σ₁ − σ₂ (Pa).
     StressDifference,
-    /// cos((σ₁ − σ₂)/c) of a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001). Bright where
-    /// there is no stress.
+    /// cos((σ₁ − σ₂)/c) for a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001), bright at zero
+    /// stress.
     Fringes(f64),
     /// Equivalent plastic strain.
     PlasticStrain,
@@ -21,7 +21,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Words and unit.
+    /// Returns label and unit.
     #[must_use]
     pub const fn label(self) -> (&'static str, &'static str) {
         match self {
@@ -33,7 +33,7 @@ impl Quantity {
         }
     }
 
-    /// What it is found from at a material point, and what a mean over several of them is taken of.
+    /// Returns the values of a material point from which the quantity is computed; means are taken over these.
     pub(crate) fn parts(self, point: &PointState) -> [f64; 3] {
         let [xx, yy, _, xy, ..] = point.stress;
         match self {
@@ -44,7 +44,7 @@ impl Quantity {
         }
     }
 
-    /// Its value by what it is found from.
+    /// Computes the quantity from these values.
     pub(crate) fn of_parts(self, parts: [f64; 3]) -> f64 {
         let [first, second, third] = parts;
         match self {
@@ -54,7 +54,7 @@ impl Quantity {
         }
     }
 
-    /// Its value where the stress in the plane is known (Pa); not a number for those that do not depend on stress.
+    /// Computes the quantity from the stress in the plane (Pa); NaN for quantities that do not depend on stress.
     #[must_use]
     pub fn of_stress(self, stress: &Matrix2<f64>) -> f64 {
         let difference = (stress.m11 - stress.m22).hypot(2.0 * stress.m12);

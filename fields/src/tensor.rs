@@ -1,19 +1,19 @@
-//! What a stress and a rate of deformation say of a material: friction, pressure, shear, and whether their axes agree.
+//! Invariants of stress and rate of deformation: friction, pressure, shear, and the angles between their axes.
 //!
-//! In the plane tensors have two axes, and what stands along z is left out.
+//! In the plane tensors have two axes, and components along z are ignored.
 
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen, Vector3};
 
-/// Principal values, in order, and the axes that they belong to.
+/// Principal values in ascending order, with their axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principal {
-    /// Smallest first.
+    /// Principal values, smallest first.
     pub values: Vec<f64>,
-    /// Unit vectors, in the order of the values.
+    /// Unit vectors in the order of the values.
     pub axes: Vec<Vector3<f64>>,
 }
 
-/// Principal values and axes of the symmetric part of a tensor along the first `dimension` axes.
+/// Computes principal values and axes of the symmetric part of a tensor along the first `dimension` axes.
 #[must_use]
 pub fn principal(tensor: &Matrix3<f64>, dimension: usize) -> Principal {
     let symmetric = tensor.symmetric_part();
@@ -30,14 +30,15 @@ pub fn principal(tensor: &Matrix3<f64>, dimension: usize) -> Principal {
     }
 }
 
-/// Pressure p = −tr T/d (Pa) of a stress T, compression negative.
+/// Returns the pressure p = −tr T/d (Pa) of a stress T, compression negative.
 #[must_use]
 pub fn pressure(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     -(0..dimension).map(|axis| stress[(axis, axis)]).sum::<f64>() / dimension as f64
 }
 
-/// The deviator A − (tr A/d) 1. (Of a stress it is T + p·1; Rycroft, Kamrin and Bazant 2009 print p/3 there, which leaves a
-/// trace.)
+/// Returns the deviator A − (tr A/d) 1.
+///
+/// For a stress it is T + p·1; Rycroft, Kamrin and Bazant 2009 print p/3 there, which does not remove the trace.
 #[must_use]
 pub fn deviator(tensor: &Matrix3<f64>, dimension: usize) -> Matrix3<f64> {
     let mut deviator = *tensor;
@@ -46,8 +47,9 @@ pub fn deviator(tensor: &Matrix3<f64>, dimension: usize) -> Matrix3<f64> {
     deviator
 }
 
-/// sin φ of Mohr and Coulomb: |(λ_max − λ_min)/(λ_max + λ_min)| of the principal stresses. The largest ratio of shear to
-/// normal stress on any plane is tan φ of the same φ.
+/// Returns the Mohr–Coulomb sin φ: |(λ_max − λ_min)/(λ_max + λ_min)| of the principal stresses.
+///
+/// The largest ratio of shear to normal stress on any plane is tan φ.
 #[must_use]
 pub fn sine_of_friction(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     let values = principal(stress, dimension).values;
@@ -55,25 +57,27 @@ pub fn sine_of_friction(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     ((high - low) / (high + low)).abs()
 }
 
-/// Drucker and Prager's ratio |T₀|/(√2 p) of a stress with its deviator T₀.
+/// Returns the Drucker–Prager ratio |T₀|/(√2 p) of a stress with deviator T₀.
 #[must_use]
 pub fn drucker_prager(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     deviator(stress, dimension).norm() / (2.0_f64.sqrt() * pressure(stress, dimension))
 }
 
-/// How the principal axes of a stress and of a rate of deformation lie to one another (degrees).
+/// Angles between the principal axes of a stress and of a rate of deformation (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coaxiality {
     /// Angle between the axes of the largest values, 0° to 90°.
     pub largest: f64,
     /// Angle between the axes of the smallest values, 0° to 90°.
     pub smallest: f64,
-    /// Turn in a plane of two axes, from stress to rate, −90° to 90°; none where one of them has no axis there.
+    /// Rotation in a plane of two axes, from stress to rate, −90° to 90°; `None` if one of them has no axis in the
+    /// plane.
     pub in_plane: Option<f64>,
 }
 
-/// Of a stress and a rate of deformation, with the turn in the plane of two axes (0 is x). None where either has two equal
-/// principal values at an end, and so no axis there.
+/// Returns the angles for a stress and a rate of deformation, with the rotation in the plane of two axes (0 is x).
+///
+/// Returns `None` if either has two equal principal values, because their axes are then undefined.
 #[must_use]
 pub fn coaxiality(
     stress: &Matrix3<f64>,
@@ -90,7 +94,7 @@ pub fn coaxiality(
     }
     let angle = |number: usize| {
         let (a, b) = (of_stress.axes[number], of_rate.axes[number]);
-        // Of directions, not of arrows; by the tangent, for a cosine near one says little.
+        // The angle is between directions without sign. The tangent is used because a cosine near one is inaccurate.
         a.cross(&b).norm().atan2(a.dot(&b).abs()).to_degrees()
     };
     let in_plane = direction(stress, plane).zip(direction(rate, plane)).map(|(from, to)| {
@@ -100,10 +104,10 @@ pub fn coaxiality(
     Some(Coaxiality { largest: angle(dimension - 1), smallest: angle(0), in_plane })
 }
 
-/// Principal values nearer to each other than this part of the largest are equal.
+/// Relative difference below which principal values count as equal.
 const DISTINCT: f64 = 1e-9;
 
-/// Direction of the larger principal value in the plane of two axes (rad), from the first to the second.
+/// Returns the direction of the larger principal value in the plane of two axes (rad), from the first to the second.
 fn direction(tensor: &Matrix3<f64>, [i, j]: [usize; 2]) -> Option<f64> {
     let (difference, twice) = (tensor[(i, i)] - tensor[(j, j)], tensor[(i, j)] + tensor[(j, i)]);
     let size = tensor[(i, i)].abs().max(tensor[(j, j)].abs()).max(twice.abs());
@@ -125,7 +129,7 @@ mod tests {
 
     #[test]
     fn friction_by_two_definitions() {
-        // (1.6 − .4)/(1.6 + .4), and with λ₂ in the middle √((.6² + .6²)/2)/1.
+        // (1.6 − .4)/(1.6 + .4), and √((.6² + .6²)/2)/1 with λ₂ in the middle.
         assert!((sine_of_friction(&stress(), 3) - 0.6).abs() < 1e-15);
         assert!((drucker_prager(&stress(), 3) - 0.6).abs() < 1e-15);
         for (middle, ratio) in [(-0.7, 0.693_889), (-1.3, 0.567_727)] {
@@ -133,11 +137,11 @@ mod tests {
             assert!((sine_of_friction(&stress, 3) - 0.6).abs() < 1e-15);
             assert!((drucker_prager(&stress, 3) - ratio).abs() < 5e-7);
         }
-        // With the p/3 that is printed it would not be free of a trace.
+        // With the printed p/3 the deviator would have a trace.
         let stress = Matrix3::from_diagonal(&Vector3::new(-1.6, -0.9, -0.4));
         assert!((drucker_prager(&stress, 3) - 0.624).abs() < 5e-4);
         assert!(deviator(&stress, 3).trace().abs() < 1e-15);
-        // In the plane: (3 − 1)/(3 + 1) whatever stands along z.
+        // In the plane (3 − 1)/(3 + 1), for any value along z.
         let stress = Matrix3::from_diagonal(&Vector3::new(-3.0, -1.0, 7.0));
         assert_eq!((sine_of_friction(&stress, 2), pressure(&stress, 2)), (0.5, 2.0));
     }
@@ -151,11 +155,11 @@ mod tests {
             assert!((found.largest - degrees.abs()).abs() < 1e-10, "{angle}: {found:?}");
             assert!((found.smallest - degrees.abs()).abs() < 1e-10, "{angle}: {found:?}");
             assert!((found.in_plane.unwrap() - degrees).abs() < 1e-10, "{angle}: {found:?}");
-            // A direction is the same from behind.
+            // A direction rotated by π is the same direction.
             let other = coaxiality(&stress(), &turned(angle + std::f64::consts::PI, &stress()), 3, [0, 2]).unwrap();
             assert!((other.in_plane.unwrap() - degrees).abs() < 1e-9);
         }
-        // The other way round: at right angles.
+        // The axes of the opposite tensor are at right angles.
         let against = coaxiality(&stress(), &-stress(), 3, [0, 2]).unwrap();
         assert!((against.largest - 90.0).abs() < 1e-9 && (against.smallest - 90.0).abs() < 1e-9);
     }

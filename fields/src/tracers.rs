@@ -1,10 +1,10 @@
 //! Tracers: elements that deform and move with the flow (Rycroft, Kamrin and Bazant 2009, §5).
 //!
-//! A tracer stands at the middle of a box of grains that are labelled at the start. It is carried by the mean velocity of the
-//! grains, and its deformation is what best takes the labelled grains from where they were to where they are:
+//! A tracer starts at the centre of a box of labelled grains. It is moved by the mean velocity of the grains. Its
+//! deformation is the best affine map from the initial to the current positions of the labelled grains:
 //!
 //! ```text
-//! x = F x₀ + a                        least squares over the labelled grains that are still there
+//! x = F x₀ + a                        least squares over the labelled grains that still exist
 //! F = R U,   E = ln U,   |E| = √(E:E)  polar decomposition and Hencky's strain
 //! ```
 
@@ -13,17 +13,17 @@ use crate::grid::Grid;
 use grainbench_scene::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// One tracer.
+/// A tracer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracer {
-    /// Where it is (m).
+    /// Current position (m).
     pub position: Vector3<f64>,
-    /// Ids of its grains, in order, with where each was at the start (m).
+    /// Ids of its grains with their initial positions (m).
     labelled: Vec<(u32, Vector3<f64>)>,
     lost: bool,
 }
 
-/// Tracers in the middles of the cells of a grid, with the grains that are in these cells.
+/// Creates tracers at the centres of the cells of a grid, with the grains in these cells.
 #[must_use]
 pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
     let mut labelled = vec![Vec::new(); grid.cells()];
@@ -37,19 +37,21 @@ pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
 }
 
 impl Tracer {
-    /// Number of grains that were labelled.
+    /// Returns the number of labelled grains.
     #[must_use]
     pub fn members(&self) -> usize {
         self.labelled.len()
     }
 
-    /// Whether nothing was around to move it.
+    /// Returns true if there were no grains around the tracer to move it.
     #[must_use]
     pub const fn is_lost(&self) -> bool {
         self.lost
     }
 
-    /// Carries it for a time (s) by the mean velocity of elements, by the midpoint rule. Where nothing moves it, it is lost.
+    /// Moves the tracer for a time (s) with the mean velocity of elements, by the midpoint rule.
+    ///
+    /// The tracer is lost if there is no velocity at its position.
     pub fn carry(&mut self, elements: &[Element], grid: &Grid, periodic: [bool; 3], time: f64) {
         let at = |place: Vector3<f64>| velocity_at(elements, grid, periodic, place);
         let velocity = at(self.position).and_then(|first| at(self.position + first * (0.5 * time)));
@@ -59,8 +61,9 @@ impl Tracer {
         }
     }
 
-    /// F, from the labelled grains that are still there; none where they are too few or in one plane. Across periodic sides
-    /// every grain is taken where it is nearest to where it began, beside the tracer's first grain.
+    /// Returns F from the labelled grains that still exist, or `None` if they are too few or coplanar.
+    ///
+    /// Across periodic sides, the image of each grain nearest to its own initial position is used.
     #[must_use]
     pub fn deformation(&self, snapshot: &Snapshot, dimension: usize) -> Option<Matrix3<f64>> {
         let length = snapshot.bounds.1 - snapshot.bounds.0;
@@ -95,7 +98,7 @@ impl Tracer {
     }
 }
 
-/// Hencky's strain E = ln U of F = R U; none of a deformation that turns space inside out.
+/// Returns Hencky's strain E = ln U of F = R U, or `None` if det F is not positive.
 #[must_use]
 pub fn hencky(deformation: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     if deformation.determinant() <= 0.0 {

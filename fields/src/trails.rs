@@ -1,4 +1,5 @@
-//! Trails of tracers through a course: what an element goes through on its way, in place of what goes through a cell.
+//! Tracer trajectories through a series of snapshots: quantities along the path of an element instead of in a fixed
+//! cell.
 
 use crate::course::Frame;
 use crate::grid::Grid;
@@ -6,38 +7,39 @@ use crate::tracers::{Tracer, hencky, tracers};
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
-/// Tracers on their way, and where they have been.
+/// Tracers with their past positions.
 #[derive(Clone, Debug)]
 pub struct Trails {
-    /// Cells in whose middles tracers begin, and whose grains are labelled.
+    /// Cells in whose centres tracers start, and whose grains are labelled.
     pub boxes: Grid,
     tracers: Vec<Tracer>,
-    /// Where they were, frame after frame.
+    /// Past positions, frame by frame.
     pub stops: Vec<Stop>,
 }
 
 /// A tracer at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// Number of the tracer, from 0.
+    /// Index of the tracer, from 0.
     pub tracer: usize,
-    /// Place of the frame in the course.
+    /// Index of the frame in the series.
     pub frame: usize,
-    /// Where it is (m).
+    /// Position (m).
     pub position: Vector3<f64>,
-    /// |E| of Hencky's strain since the start; none where too few of the labelled grains are left.
+    /// |E| of Hencky's strain since the start; `None` if too few labelled grains are left.
     pub strain: Option<f64>,
 }
 
 impl Trails {
-    /// Of tracers that begin in the middles of these cells.
+    /// Creates trajectories of tracers that start at the centres of these cells.
     #[must_use]
     pub const fn new(boxes: Grid) -> Self {
         Self { boxes, tracers: Vec::new(), stops: Vec::new() }
     }
 
-    /// Goes on from the frames so far to a snapshot, by the mean velocities of the last of them. A tracer that nothing moves any
-    /// more, for no grains are around it, ends there.
+    /// Continues the trajectories to a snapshot, with the mean velocities of the last frame.
+    ///
+    /// The trajectory of a tracer ends if there are no grains around it.
     pub(crate) fn go_on(&mut self, frames: &[Frame], snapshot: &Snapshot, grid: &Grid, dimension: usize) {
         match frames.last() {
             None => self.tracers = tracers(snapshot, &self.boxes),

@@ -1,5 +1,5 @@
-//! Granular elements against closed forms: lattices under known strain, fields of known gradient, noise of known size, and
-//! what no choice of cells may change.
+//! Tests of granular elements against closed forms: lattices under known strain, linear velocity fields, noise, and
+//! sums that do not depend on the grid.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -44,16 +44,18 @@ fn snapshot(grains: Vec<GrainState>, high: Vector3<f64>, periodic: [bool; 3]) ->
     }
 }
 
-/// A face-centred cubic lattice of spheres of diameter one under a deformation F with one entry off the diagonal at most, in
-/// a block of `count` cells each way, with the forces k δ of its contacts. It is not periodic: the stress is taken over the
-/// one cell in the middle, to which every contact of its grains belongs.
+/// Returns a face-centred cubic lattice of spheres of diameter one under a deformation F, with the forces k δ of its
+/// contacts, and the undeformed positions.
+///
+/// F has at most one off-diagonal entry, and the block has 5 cells along each axis. The block is not periodic. The
+/// stress is evaluated in the cell in the middle, whose grains have all their contacts.
 fn lattice(deformation: &Matrix3<f64>, stiffness: f64) -> (Snapshot, Vec<Vector3<f64>>) {
     let root = 2.0_f64.sqrt();
     let bases = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]].map(Vector3::from);
     let mut first = Vec::new();
     for cell in 0..125 {
         let at = Vector3::new(f64::from(cell % 5), f64::from(cell / 5 % 5), f64::from(cell / 25));
-        // A quarter of a cell away from the sides of the cells.
+        // The grains are at least a quarter of a cell away from the sides of the cells.
         first.extend(bases.map(|base| (at + base + Vector3::repeat(0.25)) * root));
     }
     let grains: Vec<GrainState> = (1..).zip(&first).map(|(id, &at)| grain(id, deformation * at)).collect();
@@ -81,14 +83,14 @@ fn lattice(deformation: &Matrix3<f64>, stiffness: f64) -> (Snapshot, Vec<Vector3
     (snapshot, first)
 }
 
-/// The mean over the cell in the middle of a block: its grains have all their contacts.
+/// Returns the mean stress over the cell in the middle of a block, whose grains have all their contacts.
 fn middle_cell(snapshot: &Snapshot, first: &[Vector3<f64>], deformation: &Matrix3<f64>) -> Matrix3<f64> {
     let root = 2.0_f64.sqrt();
     let inside = |id: u32| {
         let at = first[id as usize - 1] / root;
         at.iter().all(|along| (2.0..3.0).contains(along))
     };
-    // Grains of the other cells count to nobody: their contacts are told as those of grains that are far away.
+    // Grains of other cells are moved far away, so that their part of the contacts is not counted.
     let mut alone = snapshot.clone();
     alone.grains.iter_mut().filter(|grain| !inside(grain.id)).for_each(|grain| grain.position.x = 1e6);
     let volume = (root.powi(3)) * deformation.determinant();
@@ -126,10 +128,10 @@ fn a_lattice_under_strain_has_its_stress() {
         (tensor::drucker_prager(&stress, 3), 0.198_586_97),
     ];
     for (found, exact) in known {
-        // As many digits as are told.
+        // The tolerance corresponds to the digits of the reference values.
         close(found, exact, 5e-8);
     }
-    // The same by the sum over twelve neighbours, to the digits of the machine.
+    // The sum over twelve neighbours gives the same result to machine precision.
     let (mut exact, root) = (Matrix3::zeros(), 0.5_f64.sqrt());
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
         for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
@@ -141,7 +143,7 @@ fn a_lattice_under_strain_has_its_stress() {
     }
     exact *= 0.5 * 2.0_f64.sqrt() / strained.determinant();
     assert!((stress - exact).norm() < 1e-10 * exact.norm(), "{stress} {exact}");
-    // A contact that is forgotten is seen.
+    // A missing contact changes the result.
     let mut less = shot.clone();
     let place = less
         .contacts
@@ -153,7 +155,7 @@ fn a_lattice_under_strain_has_its_stress() {
     assert!((middle_cell(&less, &first, &strained) - exact).norm() > 1e-2 * exact.norm());
 }
 
-/// Numbers that look like chance, from −.5 to .5, and normal ones.
+/// Generator of pseudo-random numbers, uniform from 0 to 1 and normal.
 struct Odd(u64);
 
 impl Odd {
@@ -190,8 +192,8 @@ fn a_field_that_is_linear_has_its_gradient_and_leaves_nothing() {
     }
 }
 
-/// rms |D₀| = σ √((10/3 a + 5/3 b) N/(N−5)) with a = 12/(Nℓ²), b = 12/(Nm²), for velocities of σ a component in a cell of
-/// ℓ × m × ℓ with N grains; and |v′| = σ √(3 (N−4)/N).
+/// rms |D₀| = σ √((10/3 a + 5/3 b) N/(N−5)) with a = 12/(Nℓ²), b = 12/(Nm²), for velocity components with standard
+/// deviation σ of N grains in a cell of ℓ × m × ℓ; and |v′| = σ √(3 (N−4)/N).
 #[test]
 fn noise_gives_the_rate_of_shear_that_it_must() {
     for (count, size, known) in [(60.0, [2.5, 8.0, 2.5], 0.3494), (240.0, [5.0, 8.0, 5.0], 0.0902)] {
@@ -211,13 +213,13 @@ fn noise_gives_the_rate_of_shear_that_it_must() {
             square += element.shear_rate().unwrap().powi(2);
             residual += motion.residual.unwrap().powi(2);
         }
-        // 4000 draws of five degrees of freedom leave 1.1 % of the root.
+        // 4000 samples with five degrees of freedom have an error of 1.1 % of the root.
         close((square / f64::from(TIMES)).sqrt(), exact, 0.03);
         close((residual / f64::from(TIMES)).sqrt(), (3.0 * (count - 4.0) / count).sqrt(), 0.005);
     }
 }
 
-/// Σ φ V = N π/6, Σ n = N, Σ V T = Σ over grains: whatever the grid and wherever it begins.
+/// Σ φ V = N π/6, Σ n = N, Σ V T = Σ over grains, for any grid and origin.
 #[test]
 fn no_choice_of_cells_gains_or_loses_anything() {
     let mut odd = Odd(3);
@@ -258,7 +260,7 @@ fn no_choice_of_cells_gains_or_loses_anything() {
     }
 }
 
-/// Stress that nobody told is none, never zero.
+/// Unknown stress is `None`, never zero.
 #[test]
 fn without_contacts_there_is_no_stress() {
     let shot =
@@ -269,7 +271,8 @@ fn without_contacts_there_is_no_stress() {
     close(element.packing_fraction, std::f64::consts::PI / 6.0 / 8.0, 1e-13);
 }
 
-/// Grains carried by v = L x: what they did between two snapshots is L, and the labelled grains of a tracer tell F = exp(L t).
+/// For grains that move with v = L x, the motion between two snapshots gives L, and a tracer's labelled grains give
+/// F = exp(L t).
 #[test]
 fn tracers_move_and_deform_with_the_flow() {
     let mut odd = Odd(5);
@@ -291,7 +294,7 @@ fn tracers_move_and_deform_with_the_flow() {
     let grid = Grid::filling(first.bounds, Vector3::new(2.5, 8.0, 2.5));
     let mut all = tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0)));
     assert_eq!(all.len(), 4);
-    // The middle of a cell is only as near to where its field is told as its grains are to it.
+    // The position of the fitted velocity is only as near to the centre of a cell as its grains are.
     let before = elements(&first, Dimension::Three, &grid);
     let found = velocity_at(&before, &grid, first.periodic, Vector3::new(5.0, 4.0, 5.0)).unwrap();
     assert!((found - Vector3::new(0.4, 0.0, -0.4)).norm() < 0.02, "{found}");
@@ -313,7 +316,7 @@ fn tracers_move_and_deform_with_the_flow() {
     let between =
         motion(&movers_between(&shot(0), &shot(1)), 3, &Grid::filling(first.bounds, Vector3::new(10.0, 8.0, 10.0)))[0];
     let mut exact = Matrix3::zeros();
-    // (x − x e^{−rΔ})/Δ at the later place.
+    // (x − x e^{−rΔ})/Δ at the later position.
     (exact.m11, exact.m33) = ((1.0 - (-rate * step).exp()) / step, (1.0 - (rate * step).exp()) / step);
     assert!((between.gradient.unwrap() - exact).norm() < 1e-12);
 }
