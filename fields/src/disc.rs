@@ -10,6 +10,7 @@
 //! On a circle through a, e·n = r/(2R) at the rim point with outward normal n, so the traction there is −(F·e) e/(πR).
 //! Doubling the angle of the chord and summing over all forces F_i at normals n_i (as art. 41 does for two opposite
 //! forces) gives
+//!
 //! ```text
 //! t = −ΣF/(2πR) + n ΣF·n_i/(2πR) − τ M/(2πR²) ,     M = R Σ n_i×F_i,  τ the tangent, counter-clockwise
 //! ```
@@ -20,6 +21,7 @@
 //! uniform       −1 ΣF_i·n_i/(2πR)
 //! resultant F   (F⊗x + x⊗F − (F·x) 1)/(2πR²)     in balance with the body force −F/(πR²) of a disc that accelerates at F/m
 //! torque M      σ_rθ = M r²/(2πR⁴)               in balance with the body force of angular acceleration M/I, I = mR²/2
+//! ```
 //!
 //! Each field has harmonic σ_xx + σ_yy or is torsion, and is therefore compatible. The sum is exact in plane elasticity
 //! for any moduli, both for a disc in equilibrium and for a disc with rigid-body acceleration. Gravity is included,

@@ -1,4 +1,4 @@
-//! Figures of granular elements, side by side or as a film, with the same definition for grains and for material
+//! Figures of granular elements, side by side or as a film, with one definition for grains and for material
 //! points.
 
 use crate::column::{COLUMNS, Column, Grains};

@@ -1,5 +1,4 @@
-//! Tracer trajectories through a series of snapshots: quantities along the path of an element instead of in a fixed
-//! cell.
+//! Tracer trajectories through a series of snapshots: quantities along the path of an element, not in a fixed cell.
 
 use crate::course::Frame;
 use crate::grid::Grid;

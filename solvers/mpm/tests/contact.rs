@@ -102,8 +102,7 @@ fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     for friction in [0.3, 0.1] {
         for (speed, sign) in [(10.0, 1.0), (-10.0, -1.0)] {
             let found = force(friction, speed);
-            // The direction of friction at a tracer turns by s/R from the middle of the contact to its ends, at most
-            // δ/R.
+            // The direction of friction at a tracer turns by s/R from the middle of the contact, at most by δ/R.
             assert!((found / (sign * friction) - 1.0).abs() < 0.02, "{found} for {}", sign * friction);
         }
     }
@@ -133,8 +132,8 @@ fn a_belt_drags_a_disc_by_what_presses_it() {
 
 /// The incline in a moving frame: plane and disc also move at V, and after a time t they are V t farther. The remaining
 /// difference is caused by crossing nodes. It is within the discretisation error of the disc at this resolution (.7 %
-/// of the rigid displacement). If the plane moved 1 % faster, the rolling disc would be a third of .01 V t farther, 4.7
-/// %.
+/// of the rigid displacement). If the plane moved 1 % faster, the rolling disc would be a third of .01 V t farther,
+/// which is 4.7 %.
 #[test]
 fn an_incline_in_a_moving_frame_is_an_incline() {
     let (speed, time) = (4.0, 0.1);

@@ -60,8 +60,7 @@ impl<S: Space> Shear<S> {
         }
     }
 
-    /// Returns the frictional work in the step (J): the mean force of the spring times the sliding displacement of its
-    /// end.
+    /// Returns the frictional work in the step (J): the mean spring force times the sliding displacement of its end.
     ///
     /// The sliding displacement is the slip less the change of the spring displacement.
     #[inline(always)]
