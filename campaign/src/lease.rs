@@ -206,8 +206,8 @@ impl Lock {
 
 /// Returns true if a lock is abandoned.
 ///
-/// A lock is abandoned if it is old. It is also abandoned if this machine wrote it and this process holds the system
-/// lock, because then no other process of this machine can hold the lock file.
+/// An old lock is abandoned. A lock of this machine is also abandoned if this process holds the system lock, because
+/// the process that wrote the file has then ended.
 fn is_left(path: &Path, is_our_turn: bool, now: SystemTime) -> bool {
     let is_of_this_machine = || fs::read_to_string(path).is_ok_and(|host| host == machine::name());
     age(path, now).is_some_and(|age| age > LEFT) || is_our_turn && is_of_this_machine()

@@ -48,8 +48,8 @@ pub struct Asked<'a> {
 /// Submits the chunks with unfinished tasks; returns `None` if there are none.
 ///
 /// # Errors
-/// When Slurm does not answer or rejects the job, when an option would change the job array, or when the plan was
-/// submitted before and `again` is not set.
+/// When Slurm does not answer or rejects the job, or when an option would change the job array. A plan that was
+/// submitted before is an error too, unless `again` is set.
 pub fn submit(plan: &Plan, asked: &Asked<'_>) -> Result<Option<Job>, Fault> {
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected(

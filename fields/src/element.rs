@@ -98,8 +98,9 @@ pub fn elements_moving(
     motion.into_iter().zip(filled).enumerate().map(element).collect()
 }
 
-/// Returns the mean diameter (m) and mean density (kg/m³; kg/m² for discs) of the grains of a snapshot, with equal
-/// weights, or `None` if there are no grains.
+/// Returns the mean diameter (m) and mean density (kg/m³; kg/m² for discs) of the grains of a snapshot.
+///
+/// All grains have equal weights. Returns `None` if there are no grains.
 #[must_use]
 pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     let grains = &snapshot.grains;

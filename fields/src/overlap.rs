@@ -14,7 +14,8 @@
 //!      A₃ = ½[r² φ_a − c(√(r²−c²) − b) − b(√(r²−b²) − c)]
 //! ```
 //!
-//! with S by Gauss and Bonnet. For a negative side, the volume is the one without this side less the complement.
+//! with S by Gauss and Bonnet. For a negative side, it is the volume without this side less the volume beyond the
+//! opposite side.
 
 use std::f64::consts::PI;
 

@@ -24,7 +24,7 @@ const SHORTEST: f64 = 0.05;
 /// Benchmark scene with its resolution and step counts.
 #[derive(Clone, Debug)]
 pub struct Track {
-    /// Its name.
+    /// Name of the benchmark scene.
     pub name: String,
     /// The scene.
     pub scene: Scene,
@@ -49,9 +49,9 @@ pub struct Racer {
 /// Results of all solvers for one scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Heat {
-    /// Name of the track.
+    /// Name of the benchmark scene.
     pub track: String,
-    /// Grains.
+    /// Number of grains.
     pub grains: usize,
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],

@@ -11,12 +11,12 @@
 //!   impulses times the velocity of the nodes. Surfaces follow the mean of the velocities that points transfer to the
 //!   nodes before and after the step. (A force may give a node of tiny mass beside a surface a large velocity, which no
 //!   point or surface follows.)
-//! - transfer: the kinetic energy that nodes gain in a step and points do not take over, less two terms. The first is
-//!   the work that impulses do on the part of node velocities that points do not transfer back and neither stresses
-//!   nor surfaces follow. (Points that keep their own velocity and transfer it back lose nothing in sum, because the
-//!   energy not taken over equals this work.) The second is half of a difference: energy that stresses take from the
-//!   velocities that they follow, less the energy that the same stresses take from the nodes after points have moved
-//!   across cells.
+//! - transfer: the kinetic energy that nodes gain in a step and points do not take over, less two terms. The first term
+//!   is the work of impulses on a part of the node velocities: points do not transfer this part back, and neither
+//!   stresses nor surfaces follow it. (Points that keep their own velocity lose nothing in sum, because the energy not
+//!   taken over equals this work.) The second term is half of a difference of two energies. Stresses take the first
+//!   energy from the velocities that they follow. The same stresses take the second from the nodes after points have
+//!   moved across cells.
 //!
 //! No entry is computed as a remainder. The entries therefore check the method when they add up to the work of driven
 //! grains and walls. Impulses must be equal and opposite, internal forces must take from nodes what stresses take from

@@ -1,5 +1,5 @@
-//! Tests of runs that stop because the step became too long, energy was created or bodies overlapped at the start, and
-//! of a bar under tension at rest.
+//! Tests of runs that stop because of a step that became too long, created energy or an initial overlap. A bar under
+//! tension at rest must not stop.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod support;

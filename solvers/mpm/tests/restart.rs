@@ -79,7 +79,8 @@ fn a_continued_run_leaves_the_same_bits() {
     }
 }
 
-/// Another scene, setting, resolution or solver is rejected with its name, and a truncated file is rejected too.
+/// A restart with another scene, setting, resolution or solver is rejected, and the message names the difference. A
+/// truncated file is rejected too.
 #[test]
 fn another_run_and_half_a_file_are_refused() {
     let (text, at) = (collision(0.1, 0.9, 0.5), Resolution::grid(4.0, 2));

@@ -22,9 +22,9 @@
 //! - the correction towards zero overlap acts as a soft spring: at rest the overlap is g/(2πf)², f = 60 Hz at fixed
 //!   walls, for any Δt, and friction acts at the middle of the overlap.
 //!
-//! A static overlap at the start, as in scenes for spring contacts, is corrected or reduced to the overlap at rest
-//! within tenths of a second, at no more than 3 mean radii per second. The tolerances of rapier are lengths in units of
-//! the mean radius.
+//! Scenes for spring contacts start with a static overlap. rapier reduces it to zero or to the overlap at rest within
+//! tenths of a second, at no more than 3 mean radii per second. The tolerances of rapier are lengths in units of the
+//! mean radius.
 
 mod engine;
 mod limits;

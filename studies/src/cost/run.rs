@@ -54,7 +54,7 @@ pub struct Wanted {
     pub counts: bool,
 }
 
-/// Point that is not measured yet.
+/// Description of a point before its measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// Name in the result cache.
