@@ -1,5 +1,6 @@
-//! What is kept with a case of runs that take minutes or hours: what was read of their snapshots, their series, and where both
-//! come from. The main job judges it without the run; the sets that a run belongs to do it anew.
+//! Stored results of runs that take minutes or hours, in the folder of their case: the tables read from snapshots, the
+//! time series and their provenance. The main CI job evaluates claims on them without the run. The run tiers that
+//! contain a run repeat it.
 
 use crate::registry::CASES;
 use crate::solvers::is_program;
@@ -24,65 +25,65 @@ use std::path::{Path, PathBuf};
 const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series";
 const ENDING: &str = ".csv.gz";
-/// Digits of the numbers of tables: they are read off many grains, and rounding a millionth is nothing to them.
+/// Significant digits of numbers in tables. Tables average many grains, so a rounding error of 1e-6 is negligible.
 const DIGITS: usize = 6;
 
-/// Where what is kept comes from.
+/// Provenance of a stored result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// The program that made it, with its version.
+    /// Name and version of the program that made it.
     pub program: String,
-    /// The commit that it was built from.
+    /// Commit that the program was built from.
     pub commit: String,
-    /// The day (YYYY-MM-DD).
+    /// Date (YYYY-MM-DD).
     pub date: String,
-    /// What was run, in words.
+    /// Description of the run.
     pub title: String,
-    /// How its snapshots were read.
+    /// Description of the reading of its snapshots.
     pub reading: String,
-    /// BLAKE3 hash of everything in the scene that the run depends on, by [`scene_hash_by_bits`] or, of runs of before, by the
-    /// digits of its grains.
+    /// BLAKE3 hash of everything in the scene that the run depends on, by [`scene_hash_by_bits`]. Older results have a
+    /// hash over the decimal digits of the grains.
     pub scene: String,
-    /// What makes it again.
+    /// Command that makes the result again.
     pub command: String,
-    /// BLAKE3 hash of every file, by name.
+    /// BLAKE3 hash of each file, by file name.
     pub blake3: BTreeMap<String, String>,
-    /// The run.
+    /// Summary of the run.
     pub run: OfRecord,
-    /// What it cost.
+    /// Cost of the run.
     pub cost: Cost,
 }
 
-/// A run of a claim, as it stands or under the claim's wrong physics, whose tables are kept.
+/// A run of a claim whose tables are stored: the run itself or its negative control.
 #[derive(Clone)]
 pub struct Wanted {
-    /// The case.
+    /// Case of the claim.
     pub case: &'static Case,
-    /// A claim that reads it.
+    /// Claim that reads the run.
     pub claim: Claim,
-    /// The run.
+    /// Run.
     pub run: Run,
-    /// Whether it is the run under the claim's control.
+    /// True for the run of the negative control.
     pub wrong: bool,
-    /// Name of its folder.
+    /// Name of the folder of the stored result.
     pub id: String,
 }
 
 impl Wanted {
-    /// The set in which it is done.
+    /// Returns the lowest run tier that does this run.
     #[must_use]
     pub fn set(&self) -> Set {
         if self.wrong { self.run.set.max(self.claim.control.set) } else { self.run.set }
     }
 
-    /// Where it is kept.
+    /// Returns the folder of the stored result.
     #[must_use]
     pub fn folder(&self) -> PathBuf {
         folder(self.case, &self.id)
     }
 
-    /// Whether what is kept is of the scene as it is now.
+    /// Returns true if the stored result belongs to the present scene.
     #[must_use]
     pub fn is_there(&self, given: &Scene) -> bool {
         let control = self.wrong.then_some(self.claim.control.name);
@@ -90,7 +91,7 @@ impl Wanted {
     }
 }
 
-/// All that claims of a case read, each once.
+/// Returns all stored runs that claims of a case read, each once.
 #[must_use]
 pub fn all(case: &'static Case) -> Vec<Wanted> {
     let mut all: Vec<Wanted> = Vec::new();
@@ -113,7 +114,7 @@ pub fn all(case: &'static Case) -> Vec<Wanted> {
     all
 }
 
-/// The cases that keep something.
+/// Returns the cases that have stored results.
 #[must_use]
 pub fn cases() -> Vec<&'static Case> {
     CASES
@@ -123,7 +124,8 @@ pub fn cases() -> Vec<&'static Case> {
         .collect()
 }
 
-/// Name of the folder of a run, under a control of this name: scene, solver, resolution and control in letters, digits and `-`.
+/// Returns the folder name of a run under a control of this name: scene, solver, resolution and control in letters,
+/// digits, `.` and `-`.
 fn id(run: &Run, control: Option<&str>) -> String {
     let words = format!("{} {} {} {}", run.scene_words(), run.solver, run.resolution, control.unwrap_or_default());
     let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
@@ -135,7 +137,7 @@ fn folder(case: &Case, id: &str) -> PathBuf {
     case.directory().join("kept").join(id)
 }
 
-/// What is kept of a run of a scene, under a control of this name; none where nothing is.
+/// Reads the stored result of a run of a scene, under a control of this name; `None` if there is none.
 #[must_use]
 pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
     let folder = folder(case, &id(run, control));
@@ -153,9 +155,9 @@ pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>)
     }))
 }
 
-/// Why what is kept cannot be used.
+/// Reason why a stored result cannot be used.
 enum Unusable {
-    /// It is of another scene or reading.
+    /// It belongs to another scene or another reading.
     Stale(String),
     /// A file is missing, damaged or changed.
     Broken(String),
@@ -186,7 +188,7 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
     })
 }
 
-/// A table of a file, which must be the one that was kept. A field without a number is no number.
+/// Reads a table from a file with the expected hash. An empty field becomes NaN.
 fn table(folder: &Path, file: &str, expected: &str) -> Result<Table, String> {
     let name = file.strip_suffix(ENDING).filter(|name| name.bytes().all(|byte| byte.is_ascii_alphanumeric()));
     let name = name.ok_or_else(|| format!("expected the name of a table, found `{file}`"))?;
@@ -209,7 +211,7 @@ fn table(folder: &Path, file: &str, expected: &str) -> Result<Table, String> {
     Ok(Table { name: name.to_owned(), columns, values })
 }
 
-/// The series of a record from its table.
+/// Returns the time series of a record from its table.
 fn series(scene: &Scene, table: &Table) -> Series {
     let values = |name: &str| table.column(name).map(<[f64]>::to_vec).unwrap_or_default();
     let mut series = Series {
@@ -226,10 +228,10 @@ fn series(scene: &Scene, table: &Table) -> Series {
     series
 }
 
-/// The files that keep a run that was done: name and bytes of each.
+/// Returns name and bytes of each file that stores a finished run.
 ///
 /// # Errors
-/// When the provenance cannot be written down, in words.
+/// When the provenance cannot be serialised. The error is a message.
 pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let record = &done.record;
     let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&text_of_series(&record.series)))];
@@ -258,7 +260,7 @@ pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result
     Ok(files)
 }
 
-/// A series with all digits.
+/// Returns a time series as text with all digits.
 fn text_of_series(series: &Series) -> String {
     let mut lines =
         format!("step,time{}\n", series.columns.iter().map(|column| format!(",{}", column.name)).collect::<String>());
@@ -269,7 +271,7 @@ fn text_of_series(series: &Series) -> String {
     lines
 }
 
-/// A table with the digits that are kept; nothing where there is no number.
+/// Returns a table as text with [`DIGITS`] digits. NaN becomes an empty field.
 fn text(columns: &[String], values: &[Vec<f64>]) -> String {
     let rows = values.first().map_or(0, Vec::len);
     let mut lines = columns.join(",") + "\n";

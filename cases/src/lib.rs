@@ -1,7 +1,7 @@
 //! Benchmark cases: scenes, levels of resolution, claims and their negative controls.
 //!
-//! A case is a folder beside `src`: `scene.toml`, `case.rs` with claims and figures, and `derivation.md`. A folder that
-//! has a `scene.toml` is in the registry.
+//! A case is a folder beside `src` with `scene.toml`, `case.rs` (claims and figures) and `derivation.md`. The registry
+//! contains every folder that has a `scene.toml`.
 
 pub mod exact;
 pub mod folder;

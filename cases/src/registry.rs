@@ -11,28 +11,28 @@ use nalgebra::Vector3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a case says itself of what accuracy is measured by: its name, and its subjects.
+/// Name of a case and the function that returns its target quantities of accuracy.
 type Own = (&'static str, fn() -> Vec<Subject>);
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
-/// Where the folders of the cases are.
+/// Folders of the cases and their reader of grains.
 pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains, made: Some(&MADE) };
 static MADE: Made = Made::new(Vec::new());
 
-/// The case of a name.
+/// Returns the case of a name.
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static Case> {
     CASES.iter().copied().find(|case| case.name == name)
 }
 
-/// A runner of a case with the solvers of the registry.
+/// Returns a runner of a case with the solvers of the registry.
 #[must_use]
 pub fn runner(case: &'static Case) -> Runner {
     Runner::new(case, Arc::new(crate::solvers::Registry))
 }
 
-/// What accuracy is measured by in a case: what it says itself, or what its claims say.
+/// Returns the target quantities that measure accuracy in a case: its own list, or the quantities of its claims.
 #[must_use]
 pub fn subjects(case: &'static Case) -> Vec<Subject> {
     match COSTS.iter().find(|(name, _)| *name == case.name) {
@@ -44,15 +44,15 @@ pub fn subjects(case: &'static Case) -> Vec<Subject> {
 /// Reads grains for a scene from a LAMMPS data file.
 ///
 /// # Errors
-/// Says file, line, what was expected and what was found.
+/// The message names the file, the line, the expected text and the found text.
 pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
     Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
 }
 
-/// The scene of a source whose grains stand in data files of LAMMPS: name and text of each.
+/// Returns the scene of a source whose grains are in LAMMPS data files, given as name and text.
 ///
 /// # Errors
-/// Says what is wrong with the scene, or with a file where.
+/// When the scene or a data file is wrong. The message gives the place in the file.
 pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<Scene, String> {
     let read = |path: &Path| {
         let named = files.iter().find(|(name, _)| path.ends_with(name));
@@ -62,7 +62,7 @@ pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<
     source.scene(&read).map_err(|error| error.to_string())
 }
 
-/// The grains of a data file.
+/// Returns the grains of a data file.
 fn grains_of(data: &DataFile) -> Vec<FileGrain> {
     let grain = |atom: &grainbench_reference::Atom| FileGrain {
         type_number: atom.type_,

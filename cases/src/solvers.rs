@@ -1,4 +1,4 @@
-//! The registry of solvers: a line each.
+//! The registry of solvers.
 
 use crate::{kept, stored, uncertainty, varied};
 use grainbench_dem::convention::Convention;
@@ -18,7 +18,7 @@ use grainbench_scene::terms::Terms;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Every solver of ours.
+/// Returns all our solvers.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Solver>> {
     let dem = Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>);
@@ -26,36 +26,36 @@ pub fn all() -> Vec<Box<dyn Solver>> {
     dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).chain(mpm).collect()
 }
 
-/// Other people's programs, whether or not they are installed.
+/// Returns all external solvers, installed or not.
 #[must_use]
 pub fn programs() -> Vec<Box<dyn Solver>> {
     Program::ALL.into_iter().map(|program| Box::new(Live::find(program)) as Box<dyn Solver>).collect()
 }
 
-/// The names of all of them.
+/// Returns the names of our solvers and of the external solvers.
 #[must_use]
 pub fn names() -> Vec<String> {
     all().iter().chain(&programs()).map(|solver| solver.name()).collect()
 }
 
-/// Names of earlier versions that are still accepted, and the solvers that they name now.
+/// Former names that are still accepted, each with the present name.
 const EARLIER_NAMES: [(&str, &str); 1] = [("dem:no-tension", "dem")];
 
-/// The name now of a solver that had another one in earlier versions.
+/// Returns the present name of a renamed solver.
 #[must_use]
 pub fn renamed(name: &str) -> Option<&'static str> {
     EARLIER_NAMES.into_iter().find(|(earlier, _)| *earlier == name).map(|(_, now)| now)
 }
 
-/// The solver of a name, or of an earlier one. The material point method may be given words that change its setting, such as
-/// `mpm+quadratic+apic`.
+/// Returns the solver of a present or former name. Words after the name change the setting of the material point
+/// method, for example `mpm+quadratic+apic`.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     let name = renamed(name).unwrap_or(name);
     all().into_iter().chain(programs()).find(|solver| solver.name() == name).or_else(|| varied::by_name(name))
 }
 
-/// Every solver of ours with what it claims of itself, in scenes that take a moment.
+/// Returns each of our solvers with its conformance properties, in scenes that take less than a second.
 #[must_use]
 pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
     let dem = Convention::ALL.into_iter().map(|convention| {
@@ -66,7 +66,7 @@ pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
     dem.chain([(Box::new(Rigid::new()) as Box<dyn Solver>, Rigid::TERMS)]).chain(mpm).collect()
 }
 
-/// The solvers and stored runs that the harness is handed.
+/// Solvers and stored runs for the harness.
 #[derive(Clone, Copy, Debug)]
 pub struct Registry;
 
@@ -108,7 +108,7 @@ impl Solvers for Registry {
     }
 }
 
-/// Whether a name is that of another program.
+/// Returns true if a name belongs to an external solver.
 #[must_use]
 pub fn is_program(name: &str) -> bool {
     Program::by_name(name).is_some()

@@ -1,4 +1,4 @@
-//! The works that expected values come from: a handle for each folder with provenance among the references.
+//! Works that expected values come from: one handle for each folder of references with a provenance.
 
 #![allow(clippy::excessive_precision, reason = "numbers stand as the works give them")]
 

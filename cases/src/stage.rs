@@ -1,35 +1,34 @@
-//! A packing between walls at one moment: what the walls carry, how deep contacts are, and how near it is to
-//! equilibrium.
+//! State of a packing between walls at one moment: wall forces, overlaps, and distance from equilibrium.
 
 use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
-/// How near the search for the motion of the walls of `photoelastic-packing` ends: of F_H/F_V at stage A.
+/// Convergence limit of F_H/F_V at stage A, for the search for the wall motion of `photoelastic-packing`.
 pub const NEAR_IN_RATIO: f64 = 0.004;
-/// The same of the mean overlap over the mean radius at stage A.
+/// Convergence limit of the mean overlap over the mean radius at stage A.
 pub const NEAR_IN_OVERLAP: f64 = 8e-6;
-/// The same of F_V at stage B over that at stage A.
+/// Convergence limit of F_V at stage B over F_V at stage A.
 pub const NEAR_IN_GROWTH: f64 = 1e-4;
 
-/// Sums over walls and contacts of one snapshot. Walls are planes along the axes.
+/// Sums over walls and contacts of one snapshot. The walls are planes normal to the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
-    /// F_H: half of what the walls across x carry along their normals (N; N/m for discs).
+    /// F_H: half of the sum of the normal forces on the walls across x (N; N/m for discs).
     pub horizontal: f64,
-    /// F_V: half of what the walls across y carry along their normals (N; N/m for discs).
+    /// F_V: half of the sum of the normal forces on the walls across y (N; N/m for discs).
     pub vertical: f64,
-    /// Mean over all contacts, those at walls among them, of how much nearer centres are than where undeformed grains
-    /// touch, over the mean radius: the overlap of rigid grains on springs, and what flattens grains that deform.
+    /// Mean approach over the mean radius. The mean is over all contacts, including contacts at walls. The approach is
+    /// the decrease of the distance of centres below the distance of undeformed grains in contact: the overlap of rigid
+    /// grains on springs, the flattening of deformable grains.
     pub overlap: f64,
-    /// The largest sum of forces on a grain over the largest contact force.
+    /// Largest resultant force on a grain over the largest contact force.
     pub unbalanced: f64,
-    /// The larger component of the forces added up over all walls, friction among them, over the largest force on a
-    /// wall.
+    /// Larger component of the sum of the forces on all walls, with friction, over the largest force on a wall.
     pub residual: f64,
 }
 
 impl Stage {
-    /// Of a snapshot.
+    /// Evaluates a snapshot.
     #[must_use]
     pub fn of(snapshot: &Snapshot) -> Self {
         let (grains, contacts, walls) = (&snapshot.grains, snapshot.told_contacts(), &snapshot.walls);
@@ -61,8 +60,8 @@ impl Stage {
     }
 }
 
-/// How much nearer the centre of a grain is to that of its partner, or to a plane, than where they touch undeformed
-/// (m).
+/// Returns the approach at a contact (m): how much closer the centre is to the partner's centre, or to a plane, than in
+/// undeformed contact.
 fn approach(snapshot: &Snapshot, contact: &ContactState) -> f64 {
     let grain = &snapshot.grains[contact.grain as usize - 1];
     match contact.partner {

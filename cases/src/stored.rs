@@ -1,4 +1,4 @@
-//! Which runs of other programs are kept with the sources: those that claims read, by the names of their folders.
+//! Stored runs of external solvers that claims read, by the names of their folders.
 
 use crate::registry::CASES;
 use grainbench_harness::case::{Case, PLAIN};
@@ -10,25 +10,25 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
 
-/// One of them, whether or not it has been made.
+/// A run of an external solver that a claim reads, stored or not.
 #[derive(Clone)]
 pub struct Reference {
-    /// The case whose claims read it.
+    /// Case of the claims that read the run.
     pub case: &'static Case,
-    /// The run.
+    /// Run.
     pub run: Run,
-    /// The program that does it.
+    /// External solver of the run.
     pub program: Program,
-    /// Name of its folder.
+    /// Name of the folder of the stored run.
     pub id: String,
 }
 
-/// All that claims read, in the order of the registry; each once.
+/// Returns all runs of external solvers that claims read, in the order of the registry, each once.
 #[must_use]
 pub fn all() -> Vec<Reference> {
     let mut all: Vec<Reference> = Vec::new();
     for &case in CASES {
-        // What is kept of runs with their case is another's to make.
+        // `kept` makes the runs that are stored in the folder of their case.
         for run in (case.claims)().into_iter().flat_map(|claim| claim.runs).filter(|run| !run.kept) {
             let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != Standing::Refused) else {
                 continue;
@@ -43,7 +43,7 @@ pub fn all() -> Vec<Reference> {
 }
 
 impl Reference {
-    /// The scene of the run.
+    /// Returns the scene of the run.
     ///
     /// # Errors
     /// When the scene file is wrong.
@@ -55,7 +55,7 @@ impl Reference {
         Ok(scene)
     }
 
-    /// What it is, in words.
+    /// Returns a title of the run: case, variant and adjustment.
     #[must_use]
     pub fn title(&self) -> String {
         let mut title = self.case.name.to_owned();
@@ -69,7 +69,7 @@ impl Reference {
     }
 }
 
-/// Name of the folder of a run: case, variant and adjustment in letters, digits, `.` and `-`.
+/// Returns the folder name of a run: case, variant and adjustment in letters, digits, `.` and `-`.
 #[must_use]
 pub fn id(case: &Case, run: &Run) -> String {
     let variant = if run.variant == PLAIN { "" } else { run.variant };
@@ -80,13 +80,13 @@ pub fn id(case: &Case, run: &Run) -> String {
     words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// Whether there is a folder for a run.
+/// Returns true if a run has a folder.
 #[must_use]
 pub fn exists(case: &Case, run: &Run) -> bool {
     Program::by_name(run.solver).is_some_and(|program| folder(program, &id(case, run)).is_dir())
 }
 
-/// The stored record of a run of a program; none where nothing is stored.
+/// Reads the stored record of a run of an external solver; `None` if nothing is stored.
 pub(crate) fn record(case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
     let program = Program::by_name(run.solver)?;
     let folder = folder(program, &id(case, run));

@@ -1,4 +1,4 @@
-//! Numerical uncertainties of claims, estimated once over three levels of resolution and stored with provenance:
+//! Numerical uncertainties of claims, estimated once from three levels of resolution and stored with their provenance.
 //! `grainbench reference uncertainty` makes them.
 
 use grainbench_harness::case::Case;
@@ -9,36 +9,36 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// The estimates of a case, as they are stored.
+/// Stored estimates of a case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stored {
-    /// The program that made them, with its version.
+    /// Name and version of the program that made them.
     pub program: String,
-    /// The commit that it was built from; unknown of estimates from before it was told.
+    /// Commit that the program was built from; empty for old estimates.
     #[serde(default)]
     pub commit: String,
-    /// When (YYYY-MM-DD).
+    /// Date (YYYY-MM-DD).
     pub date: String,
-    /// How.
+    /// Rule of the estimation.
     pub rule: String,
-    /// The estimates.
+    /// Estimates.
     #[serde(default)]
     pub estimate: Vec<Estimate>,
 }
 
-/// Where the estimates of a case are.
+/// Returns the file with the estimates of a case.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
     Path::new(grainbench_reference::FOLDER).join("uncertainty").join(format!("{case}.toml"))
 }
 
-/// What is stored of a case; nothing where there is no file, or none that can be read.
+/// Loads the stored estimates of a case; empty if the file is missing or unreadable.
 fn load(case: &str) -> Stored {
     let text = std::fs::read_to_string(file(case)).unwrap_or_default();
     toml::from_str(&text).unwrap_or_default()
 }
 
-/// What is stored of a claim.
+/// Returns the stored estimate of a claim.
 #[must_use]
 pub fn find(case: &Case, claim: &Claim) -> Option<Estimate> {
     static CASES: OnceLock<BTreeMap<&'static str, Stored>> = OnceLock::new();

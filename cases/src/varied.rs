@@ -1,5 +1,5 @@
-//! The material point method in settings that are spelt out in a name, such as `mpm+quadratic+apic`: for cases that
-//! need another setting and say so in their rows.
+//! The material point method with settings in its name, such as `mpm+quadratic+apic`, for claims that need other
+//! settings.
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;
@@ -8,7 +8,7 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 
-/// The solver of such a name; none when a word is unknown.
+/// Returns the solver of a name such as `mpm+apic`; `None` if a word is unknown.
 pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     let (base, words) = name.split_once('+')?;
     let mut mpm = Mpm::named(base)?;
@@ -18,7 +18,7 @@ pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     Some(Box::new(Varied { name: name.to_owned(), mpm }))
 }
 
-/// Changes a setting by a word; none when there is no such word.
+/// Changes a setting by a word; `None` if the word is unknown.
 fn change(setting: &mut Setting, word: &str) -> Option<()> {
     match word {
         "linear" => setting.basis = Basis::Linear,
@@ -45,7 +45,7 @@ fn change(setting: &mut Setting, word: &str) -> Option<()> {
     Some(())
 }
 
-/// The material point method in a setting that is spelt out in its name.
+/// The material point method with the settings in its name.
 struct Varied {
     name: String,
     mpm: Mpm,

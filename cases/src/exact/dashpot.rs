@@ -2,30 +2,31 @@
 
 use std::f64::consts::PI;
 
-/// How much smaller a restitution is, Δe/e over ωΔt, when the dashpot takes the velocity half a step back: v − ½Δt dv/dt is a
-/// spring and a dashpot stiffer by the factor 1 + ζωΔt each, a damping ratio ζ larger by the factor 1 + ζωΔt/2, and
-/// dln e/dζ = −π/(1 − ζ²)^{3/2} of e = exp(−πζ/√(1 − ζ²)). Source: the damped oscillator.
+/// Returns the relative decrease of restitution over the step, (Δe/e)/(ωΔt), if the dashpot uses the velocity half a
+/// step earlier. The velocity v − ½Δt dv/dt makes spring and dashpot stiffer by 1 + ζωΔt each. The damping ratio ζ is
+/// then larger by 1 + ζωΔt/2. With e = exp(−πζ/√(1 − ζ²)), dln e/dζ = −π/(1 − ζ²)^{3/2}. Source: the damped oscillator.
 #[must_use]
 pub fn lag(damping_ratio: f64) -> f64 {
     0.5 * PI * damping_ratio * damping_ratio / (1.0 - damping_ratio * damping_ratio).powf(1.5)
 }
 
-/// Coefficient of restitution of a contact that ends when its force is zero. The oscillator x″ + 2ζ x′ + x = 0 with x = 0 and
-/// x′ = 1 at the start has x″ = 0 at t = 2φ/√(1 − ζ²), cos φ = ζ, and there −x′ = exp(−ζ t). Above critical damping acosh ζ and
-/// √(ζ² − 1) stand for acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager & Pöschel 2007; Hertz contacts obey it in
-/// δ^{5/4}).
+/// Returns the coefficient of restitution of a contact that ends when its force is zero. The oscillator x″ + 2ζ x′ + x
+/// = 0 starts with x = 0 and x′ = 1. At t = 2φ/√(1 − ζ²), cos φ = ζ, it has x″ = 0 and −x′ = exp(−ζ t). Above critical
+/// damping, acosh ζ and √(ζ² − 1) replace acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager & Pöschel 2007;
+/// Hertz contacts obey it in δ^{5/4}).
 #[must_use]
 pub fn no_tension_restitution(damping_ratio: f64) -> f64 {
     (-2.0 * damping_ratio * arc(damping_ratio)).exp()
 }
 
-/// acos ζ/√(1 − ζ²), or acosh ζ/√(ζ² − 1).
+/// Returns acos ζ/√(1 − ζ²), or acosh ζ/√(ζ² − 1) above critical damping.
 fn arc(damping_ratio: f64) -> f64 {
     let root = (1.0 - damping_ratio * damping_ratio).abs().sqrt();
     if damping_ratio < 1.0 { damping_ratio.acos() / root } else { damping_ratio.acosh() / root }
 }
 
-/// Damping ratio of a contact that ends when its force is zero and has a coefficient of restitution, by bisection.
+/// Returns the damping ratio that gives a coefficient of restitution, for a contact that ends when its force is zero.
+/// By bisection.
 #[must_use]
 pub fn no_tension_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 / restitution);
@@ -36,7 +37,7 @@ pub fn no_tension_ratio(restitution: f64) -> f64 {
     low
 }
 
-/// [`lag`] of a contact that ends when its force is zero: dln e/dζ = −2 [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)].
+/// Returns [`lag`] for a contact that ends when its force is zero: dln e/dζ = −2 [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)].
 #[must_use]
 pub fn no_tension_lag(damping_ratio: f64) -> f64 {
     damping_ratio * damping_ratio * (arc(damping_ratio) - damping_ratio) / (1.0 - damping_ratio * damping_ratio)

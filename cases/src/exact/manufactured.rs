@@ -1,12 +1,12 @@
-//! What manufactured motions are judged by.
+//! Error of a run against its manufactured solution.
 
 use grainbench_harness::prelude::{Done, Missing};
 use grainbench_scene::manufactured::Medium;
 
-/// Root mean square over the material points of the displacement's error at the end (m).
+/// Returns the root mean square, over the material points, of the error of the final displacement (m).
 ///
 /// # Errors
-/// When the record has no material points or the scene no manufactured motion.
+/// When the record has no material points or the scene has no manufactured motion.
 pub fn error(done: &Done) -> Result<f64, Missing> {
     let missing = || Missing("material points at the end".to_owned());
     let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);

@@ -1,4 +1,4 @@
-//! Closed forms that several cases are judged by; those of one case stand in its folder.
+//! Closed forms that several cases use. A closed form of one case is in the folder of the case.
 
 pub mod dashpot;
 pub mod manufactured;

@@ -7,9 +7,9 @@
 //! rolling   a = g_t/(1+i)                            slipping   a = g_t − μ g_n,   R dΩ/dt = μ g_n/i
 //! ```
 //!
-//! An elastic tangential spring k_t sticks and rings first: with slip u = v − ΩR, F = k_t ∫u dt,
-//! du/dt = g_t − (F/m)(1 + 1/i), hence F/m = f g_t (1 − cos ωt) with ω² = (k_t/m)(1 + 1/i), until it reaches μ g_n.
-//! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26; the compliant forms are
+//! An elastic tangential spring k_t first sticks and oscillates. With slip u = v − ΩR, F = k_t ∫u dt and
+//! du/dt = g_t − (F/m)(1 + 1/i). Hence F/m = f g_t (1 − cos ωt) with ω² = (k_t/m)(1 + 1/i), until it reaches μ g_n.
+//! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26. The compliant forms are
 //! derived here.
 
 use grainbench_harness::run::{Done, Missing};
@@ -17,7 +17,7 @@ use grainbench_scene::contact_law::Springs;
 use grainbench_scene::scene::{Dimension, Scene};
 use std::f64::consts::PI;
 
-/// The grain, the plane and the law between them.
+/// One grain, its plane and their contact law.
 #[derive(Clone, Copy, Debug)]
 pub struct OneGrain {
     /// Radius R (m).
@@ -40,7 +40,7 @@ pub struct OneGrain {
     pub overlap_ratio: f64,
     /// Normal stiffness about the static overlap (N/m).
     pub normal_stiffness: f64,
-    /// Tangential damping over the mass γ_t (1/s), of what is proportional to the mass.
+    /// Tangential damping over the mass γ_t (1/s), of the part of the damping that is proportional to the mass.
     pub tangential_damping: f64,
 }
 
@@ -56,7 +56,7 @@ pub struct State {
 }
 
 impl OneGrain {
-    /// Reads the scene: one grain on a plane whose normal is y (two dimensions) or z (three).
+    /// Reads a scene with one grain on a plane. The normal of the plane is y in two dimensions, z in three.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let grain = &scene.grains[0];
@@ -79,19 +79,19 @@ impl OneGrain {
         }
     }
 
-    /// f = i/(1+i): the share of gravity along the plane that friction takes up where the grain rolls.
+    /// Returns f = i/(1+i), the friction force of a rolling grain over the gravity force along the plane.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.inertia_factor / (1.0 + self.inertia_factor)
     }
 
-    /// Whether a rigid grain rolls without slip.
+    /// Returns true if a rigid grain rolls without slip.
     #[must_use]
     pub fn sticks(&self) -> bool {
         self.along * self.share() <= self.friction * self.onto
     }
 
-    /// A rigid grain released from rest on the slope.
+    /// Returns the state at t (s) of a rigid grain released from rest on the slope.
     #[must_use]
     pub fn rigid_incline(&self, t: f64) -> State {
         if self.sticks() {
@@ -104,40 +104,42 @@ impl OneGrain {
         }
     }
 
-    /// Frequency of the tangential spring, ω² = (k_t/m)(1 + 1/i) (rad/s).
+    /// Returns the frequency of the tangential spring, ω² = (k_t/m)(1 + 1/i) (rad/s).
     fn tangential_frequency(&self) -> f64 {
         (self.tangential_stiffness / self.mass * (1.0 + 1.0 / self.inertia_factor)).sqrt()
     }
 
-    /// When friction acts in full at the latest (s), wherever the grain was let go within its static overlap: half a period
-    /// of the spring along the plane, and half of that along the normal.
+    /// Returns the latest time (s) at which friction is fully mobilised, for any release height within the static
+    /// overlap: half a period of the tangential spring plus half a period of the normal spring.
     #[must_use]
     pub fn onset(&self) -> f64 {
         PI / self.tangential_frequency() + PI / (self.normal_stiffness / self.mass).sqrt()
     }
 
-    /// Slip velocity (m/s) with which an undamped spring would ring about rolling under a force per mass a (m/s²): a/ω.
+    /// Returns the amplitude of slip velocity (m/s) of an undamped spring about rolling, under a force per mass a
+    /// (m/s²): a/ω.
     #[must_use]
     pub fn ringing(&self, acceleration: f64) -> f64 {
         acceleration / self.tangential_frequency()
     }
 
-    /// Stretch (m) of the spring under a force per mass a (m/s²): m a/k_t.
+    /// Returns the spring displacement (m) under a force per mass a (m/s²): m a/k_t.
     #[must_use]
     pub fn stretch(&self, acceleration: f64) -> f64 {
         self.mass * acceleration / self.tangential_stiffness
     }
 
-    /// When the undamped spring reaches Coulomb's limit, arccos(1 − μ g_n/(f g_t))/ω (s); not a number if it never
-    /// does.
+    /// Returns the time at which the undamped spring reaches the Coulomb limit, arccos(1 − μ g_n/(f g_t))/ω (s). NaN if
+    /// it never does.
     #[must_use]
     pub fn slips_from(&self) -> f64 {
         (1.0 - self.friction * self.onto / (self.share() * self.along)).acos() / self.tangential_frequency()
     }
 
-    /// Fractions by which the rigid answer of a grain released on the slope is off at t if friction is absent until an undamped
-    /// spring has reached Coulomb's limit, and acts in full from then on: the most that a spring can take. Where it rolls, the
-    /// spring swings by up to twice its stretch f g_t/ω², and velocities end as they would without it.
+    /// Returns the largest relative deviation from the rigid solution at t (s) that a tangential spring can cause, for
+    /// a grain released on the slope. A sliding grain has no friction until an undamped spring reaches the Coulomb
+    /// limit, and full friction from then on. For a rolling grain, the spring oscillates by up to twice its
+    /// displacement f g_t/ω², and the final velocities are those of the rigid grain.
     #[must_use]
     pub fn compliance(&self, t: f64) -> State {
         let exact = self.rigid_incline(t);
@@ -150,45 +152,46 @@ impl OneGrain {
         State { x: 2.0 * velocity, v: velocity, omega: late / t }
     }
 
-    /// What is left, after t, of a slip velocity that the tangential spring and dashpot make ring about rolling: e^{−λt} with
-    /// the slower rate λ of s″ + 2b s′ + ω² s = 0, 2b = γ_t (1 + 1/i).
+    /// Returns the remaining fraction of a slip velocity after t (s), when tangential spring and dashpot oscillate
+    /// about rolling: e^{−λt}. λ is the slower rate of s″ + 2b s′ + ω² s = 0, 2b = γ_t (1 + 1/i).
     #[must_use]
     pub fn rung(&self, t: f64) -> f64 {
         (-self.settling_rate() * t).exp()
     }
 
-    /// That rate λ (1/s).
+    /// Returns the slower decay rate λ (1/s) of the slip velocity.
     fn settling_rate(&self) -> f64 {
         let (half, omega) =
             (0.5 * self.tangential_damping * (1.0 + 1.0 / self.inertia_factor), self.tangential_frequency());
         if half > omega { half - (half * half - omega * omega).sqrt() } else { half }
     }
 
-    /// Frequency (rad/s) of a grain that rolls on its rolling spring (Ai, Chen, Rotter & Ooi 2011), ω_r² = k_r/((1 + i)mR²)
-    /// with k_r = 2.25 k_n μ_r² R².
+    /// Returns the frequency (rad/s) of a grain on its rolling spring (Ai, Chen, Rotter & Ooi 2011): ω_r² = k_r/((1 +
+    /// i)mR²) with k_r = 2.25 k_n μ_r² R².
     #[must_use]
     pub fn rolling_frequency(&self, rolling_friction: f64) -> f64 {
         let moment = (1.0 + self.inertia_factor) * self.mass;
         1.5 * rolling_friction * (self.normal_stiffness / moment).sqrt()
     }
 
-    /// What a critically damped rolling spring leaves, after t, of the acceleration with which a grain begins to roll, in the
-    /// mean over as long again: v = a t e^{−ω_r t}, hence at most e^{−ω_r t} of it; and later by 1/λ, for friction follows late.
+    /// Returns the remaining fraction of the initial acceleration of a grain on a critically damped rolling spring,
+    /// averaged from t to 2t. With v = a t e^{−ω_r t}, it is at most e^{−ω_r t}. The time is reduced by 1/λ because
+    /// friction follows with this delay.
     #[must_use]
     pub fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
         (-self.rolling_frequency(rolling_friction) * (t - 1.0 / self.settling_rate())).exp()
     }
 
-    /// How far (m) a grain falls behind at the end of sliding, when the dashpot counts in Coulomb's limit: from the slip velocity
-    /// s_c = γ_t μ g_n (1 + 1/i)/(k_t/m) on the spring can no longer follow, friction falls below its limit, and the rest of
-    /// the slip lasts for ∫s dt < s_c γ_t/(k_t/m), of which the grain lacks the share f.
+    /// Returns the lag (m) of a grain at the end of sliding, if the dashpot force counts in the Coulomb limit. Below
+    /// the slip velocity s_c = γ_t μ g_n (1 + 1/i)/(k_t/m), the spring can no longer follow and friction falls below
+    /// its limit. The remaining slip has ∫s dt < s_c γ_t/(k_t/m). The grain loses the share f of it.
     #[must_use]
     pub fn tail(&self) -> f64 {
         let follows = self.tangential_damping * self.mass / self.tangential_stiffness;
         self.share() * follows * follows * self.friction * self.onto * (1.0 + 1.0 / self.inertia_factor)
     }
 
-    /// The same with an undamped tangential spring.
+    /// Returns the state at t (s) of a grain released from rest on the slope with an undamped tangential spring.
     #[must_use]
     pub fn compliant_incline(&self, t: f64) -> State {
         let (i, f, g) = (self.inertia_factor, self.share(), self.along);
@@ -212,7 +215,8 @@ impl OneGrain {
         }
     }
 
-    /// A rigid grain set down on a flat plane with spin Ω₀ and no velocity: slides until v = ΩR, then rolls.
+    /// Returns the state at t (s) of a rigid grain that is placed on a flat plane with spin Ω₀ and no velocity. It
+    /// slides until v = ΩR, then rolls.
     #[must_use]
     pub fn rigid_backspin(&self, t: f64) -> State {
         let a = self.friction * self.onto;
@@ -226,14 +230,14 @@ impl OneGrain {
         }
     }
 
-    /// Velocity of rolling down the slope at t when tangential forces act at an arm `a` instead of R (m/s):
-    /// v(1 + i(R/a)²) = g_t t, from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
+    /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm `a` instead of
+    /// R: v(1 + i(R/a)²) = g_t t, from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
     #[must_use]
     pub fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
         self.along * t / (1.0 + self.inertia_factor * (self.radius / arm).powi(2))
     }
 
-    /// Final velocity after backspin with the arm `a` (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
+    /// Returns the final velocity after backspin with the lever arm `a` (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
     #[must_use]
     pub fn backspin_velocity(&self, arm: f64) -> f64 {
         let moment = self.inertia_factor * self.radius * self.radius;
@@ -241,8 +245,8 @@ impl OneGrain {
     }
 }
 
-/// Overlap (m) at which springs carry a force (N), of a grain of this radius (m) on a plane: F/k_n, or by Hertz's law
-/// (3F/(4E*√R))^{2/3}.
+/// Returns the overlap (m) at which the springs balance a force (N), for a grain of this radius (m) on a plane: F/k_n,
+/// or by Hertz's law (3F/(4E*√R))^{2/3}.
 fn static_overlap(springs: &Springs, force: f64, radius: f64) -> f64 {
     match *springs {
         Springs::Absent => 0.0,
@@ -253,12 +257,13 @@ fn static_overlap(springs: &Springs, force: f64, radius: f64) -> f64 {
     }
 }
 
-/// 1 (y) in two dimensions, 2 (z) in three.
+/// Returns the axis of the plane's normal: 1 (y) in two dimensions, 2 (z) in three.
 pub(crate) fn normal_axis(scene: &Scene) -> usize {
     scene.dimension.count() - 1
 }
 
-/// Spin in the direction of rolling towards +x: −ω_z in two dimensions, +ω_y in three (the plane's normal is z).
+/// Returns the spin in the direction of rolling towards +x: −ω_z in two dimensions, +ω_y in three (the plane's normal
+/// is z).
 fn rolling_spin(scene: &Scene, spin: &nalgebra::Vector3<f64>) -> f64 {
     match scene.dimension {
         Dimension::Two => -spin.z,
@@ -266,8 +271,8 @@ fn rolling_spin(scene: &Scene, spin: &nalgebra::Vector3<f64>) -> f64 {
     }
 }
 
-/// Sets stiffness and start so that the grain rests at a static overlap of `ratio`·R: k_n = m g_n/(ratio R),
-/// k_t = (2/7) k_n, with normal damping ratio ζ and an equal tangential coefficient, γ_n = γ_t = 2ζ√(k_n/m).
+/// Sets stiffness and start so that the grain rests at a static overlap of `ratio`·R: k_n = m g_n/(ratio R), k_t =
+/// (2/7) k_n. The normal damping ratio is ζ and the tangential coefficient is equal: γ_n = γ_t = 2ζ√(k_n/m).
 pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
     let axis = normal_axis(scene);
     let onto = -scene.gravity[axis];
@@ -282,7 +287,7 @@ pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
     });
 }
 
-/// Displacement, velocity and rolling spin of the probe `grain`, at every sample.
+/// Returns time and state (displacement, velocity and rolling spin) of the probe `grain` at each sample.
 ///
 /// # Errors
 /// When the record lacks the probe.
@@ -297,7 +302,7 @@ pub fn course(done: &Done) -> Result<Vec<(f64, State)>, Missing> {
     Ok(samples.map(|(((&t, x), &v), omega)| (t, State { x: x - start, v, omega: sign * omega })).collect())
 }
 
-/// The last sample.
+/// Returns time and state of the last sample.
 ///
 /// # Errors
 /// When the record lacks the probe.
@@ -305,10 +310,10 @@ pub fn last(done: &Done) -> Result<(f64, State), Missing> {
     course(done)?.last().copied().ok_or_else(|| Missing("samples".to_owned()))
 }
 
-/// The sample nearest to a moment (s).
+/// Returns time and state of the sample nearest to a moment (s).
 ///
 /// # Errors
-/// There are no samples.
+/// When there are no samples.
 pub fn nearest(done: &Done, moment: f64) -> Result<(f64, State), Missing> {
     let course = course(done)?;
     let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
@@ -319,7 +324,7 @@ pub fn nearest(done: &Done, moment: f64) -> Result<(f64, State), Missing> {
 mod tests {
     use super::*;
 
-    /// A disc of 2 kg and .5 m on a slope of 60°, μ = .3, k_n = 2e4 N/m, k_t = (2/7) k_n, γ_t = 100/s.
+    /// Returns a disc of 2 kg and 0.5 m on a slope of 60°, μ = 0.3, k_n = 2e4 N/m, k_t = (2/7) k_n, γ_t = 100/s.
     fn disc() -> OneGrain {
         OneGrain {
             radius: 0.5,
@@ -336,7 +341,7 @@ mod tests {
         }
     }
 
-    /// The closed form of the undamped spring comes near to what compliance may take, and no nearer to it than that.
+    /// The closed form of the undamped spring reaches nearly the bound of `compliance` and does not exceed it.
     #[test]
     fn an_undamped_spring_takes_no_more_than_compliance_says() {
         let worst = |grain: OneGrain, of: fn(State) -> f64| {
@@ -355,8 +360,8 @@ mod tests {
         }
     }
 
-    /// s″ + 2b s′ + ω² s = 0 step by step: what is left falls at the slower rate, and over the end of a slide the grain lacks
-    /// less than is said, but more than a third of it.
+    /// Integrates s″ + 2b s′ + ω² s = 0. The slip velocity decays at the slower rate. At the end of a slide, the lag of
+    /// the grain is between a third of the bound and the bound.
     #[test]
     fn the_end_of_a_slide_is_that_of_a_damped_spring() {
         let grain = disc();
@@ -380,7 +385,8 @@ mod tests {
         assert!(lacks < grain.tail() && lacks > grain.tail() / 3.0, "{lacks} of {}", grain.tail());
     }
 
-    /// A grain that comes to rest on both of its springs, step by step: no more is left than is said, and more than half of it.
+    /// Integrates a grain that comes to rest on both of its springs. The remainder is between half of the bound and the
+    /// bound.
     #[test]
     fn a_grain_comes_to_rest_on_its_rolling_spring() {
         let (grain, rolling_friction, half, step) = (disc(), 0.05, 2.0, 1e-5);

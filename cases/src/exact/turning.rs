@@ -1,11 +1,11 @@
-//! A mass on springs that are alike in all directions, whose rest place turns about an axis.
+//! A mass on an isotropic spring whose anchor rotates about an axis.
 
 use nalgebra::{Rotation3, Vector3};
 
-/// Place of the mass (m) at a time (s), which started at its rest place with the velocity of the rest place.
+/// Returns the position of the mass (m) at a time (s). The mass starts at the anchor with the velocity of the anchor.
 ///
-/// r̈ = −ω²(r − r₀(t)), where r₀ turns at Ω. With w = x + iy across the axis, w = r₀[a e^{iΩt} + b e^{iωt} + c e^{−iωt}], where
-/// a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a). The part along the axis stays.
+/// r̈ = −ω²(r − r₀(t)), where r₀ rotates at Ω. With w = x + iy across the axis, w = r₀[a e^{iΩt} + b e^{iωt} + c
+/// e^{−iωt}]. Here a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a). The component along the axis is constant.
 #[must_use]
 pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64) -> Vector3<f64> {
     let rate = spin.norm();
@@ -21,10 +21,10 @@ pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64
         + across(-phase) * (0.5 * (sum - difference))
 }
 
-/// Error of a scheme of second order (m), of a mass at a distance d (m) from the axis.
+/// Returns the error (m) of a second-order scheme for a mass at a distance d (m) from the axis.
 ///
-/// The turn of the frame gives d (ΩΔt)² (1 + Ωt)². The swing on the springs, 2 d (Ω/ω)², gives the error of its phase,
-/// ωt (ωΔt)²/24.
+/// The rotation of the frame gives d (ΩΔt)² (1 + Ωt)². The oscillation on the spring, of amplitude 2 d (Ω/ω)², is
+/// multiplied by its phase error ωt (ωΔt)²/24.
 #[must_use]
 pub fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
     let phase = frequency * time * (frequency * step).powi(2) / 24.0;

@@ -1,20 +1,20 @@
-//! `claims.toml`: what is claimed of the scene beside it.
+//! The file `claims.toml`: claims about the scene in the same folder.
 
 use serde::Deserialize;
 
-/// The file.
+/// Contents of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClaimsFile {
     /// Title of the case.
     pub(super) title: String,
-    /// What is claimed as a whole.
+    /// Claim of the case as a whole.
     #[serde(default)]
     pub(super) claim: String,
-    /// Where the test is weak.
+    /// Limitations of the test.
     #[serde(default)]
     pub(super) weakness: String,
-    /// The claims.
+    /// Claims.
     pub(super) claims: Vec<Claimed>,
 }
 
@@ -22,56 +22,57 @@ pub(super) struct ClaimsFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Claimed {
-    /// What is measured, in words.
+    /// Measured quantity.
     pub(super) quantity: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub(super) unit: String,
-    /// The variant of the scene.
+    /// Variant of the scene.
     pub(super) variant: Option<String>,
-    /// Whose row it is.
+    /// Name of the solver.
     #[serde(default = "dem")]
     pub(super) solver: String,
-    /// How finely it works.
+    /// Resolution of the solver.
     #[serde(default)]
     pub(super) resolution: Knobs,
-    /// Over columns of the record.
+    /// Expression over columns of the record.
     pub(super) value: String,
-    /// The moment at which it is read (s); the end where none is named.
+    /// Time (s) at which the value is read; the end of the run by default.
     pub(super) at: Option<f64>,
-    /// How samples are read, where it is not one of them.
+    /// Reduction over the samples, instead of the value at one time.
     pub(super) over: Option<Over>,
-    /// What is expected: one of these. A value, which may contain the time `t`,
+    /// Expected value, which may contain the time `t`. A claim has exactly one of `equals`, `follows`, `at_least`,
+    /// `at_most` and `between`.
     pub(super) equals: Option<Formula>,
-    /// a course in a table,
+    /// Expected curve in a table.
     pub(super) follows: Option<CourseFile>,
-    /// or a bound.
+    /// Lower bound.
     pub(super) at_least: Option<Formula>,
     pub(super) at_most: Option<Formula>,
     pub(super) between: Option<[Formula; 2]>,
-    /// What the difference is divided by; what is expected where nothing is said.
+    /// Scale that divides the difference; the expected value by default.
     pub(super) scale: Option<Formula>,
-    /// Where what is expected comes from: one of these. An equation or a law, in words,
+    /// Equation or law of the expected value. A claim has exactly one of `derived`, `printed` and `measured`.
     pub(super) derived: Option<String>,
-    /// a work and the place in it,
+    /// Printed work and place in it.
     pub(super) printed: Option<Place>,
-    /// or a measurement on real grains.
+    /// Measurement on real grains.
     pub(super) measured: Option<Place>,
-    /// How far it may be off, in units of the scale.
+    /// Largest error that passes, in units of the scale.
     pub(super) allowed: Formula,
-    /// Why.
+    /// Reason for the tolerance.
     pub(super) because: String,
-    /// What it must refuse.
+    /// Negative control.
     pub(super) control: Controlled,
 }
 
-/// The solver of claims that name none.
+/// Solver of claims that name none.
 pub(super) const DEM: &str = "dem";
 
 fn dem() -> String {
     DEM.to_owned()
 }
 
-/// A number, or arithmetic over the scene.
+/// Number, or arithmetic over numbers of the scene.
 #[derive(Deserialize)]
 #[serde(untagged)]
 pub(super) enum Formula {
@@ -79,7 +80,7 @@ pub(super) enum Formula {
     Text(String),
 }
 
-/// How finely a solver works.
+/// Parameters of the resolution.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Knobs {
@@ -92,47 +93,47 @@ pub(super) struct Knobs {
     pub(super) iterations: Option<u32>,
 }
 
-/// How samples are read.
+/// Reduction over the samples.
 #[derive(Clone, Copy, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Over {
-    /// Each of them: the worst counts.
+    /// Each sample; the worst one decides.
     Course,
-    /// The largest.
+    /// Largest sample.
     Max,
-    /// The smallest.
+    /// Smallest sample.
     Min,
-    /// Their mean in time.
+    /// Mean over time.
     Mean,
 }
 
-/// A course in a table.
+/// Curve in a table.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CourseFile {
-    /// The file, beside the claims.
+    /// File name, in the folder of the claims.
     pub(super) file: String,
-    /// The column of times (s).
+    /// Name of the column of times (s).
     pub(super) time: String,
-    /// The column of what is expected.
+    /// Name of the column of expected values.
     pub(super) value: String,
 }
 
-/// A place in a work.
+/// Place in a work.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Place {
     /// Author, year, title.
     pub(super) work: String,
-    /// Where in it, and what stands there.
+    /// Place in the work, with the statement found there.
     pub(super) place: String,
 }
 
-/// Wrong physics that the claim must refuse.
+/// Negative control: wrong physics for which the claim must fail.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Controlled {
-    /// What is wrong, in words.
+    /// Description of the wrong physics.
     pub(super) name: String,
     /// Keys of the scene with the wrong values.
     pub(super) set: toml::Table,

@@ -1,30 +1,31 @@
-//! Arithmetic over named numbers, as a claim in a file has it.
+//! Arithmetic over named numbers, for claims in files.
 //!
-//! `+ - * /`, `^` that binds more tightly than a sign before it and from right to left (−2^2 = −4, 2^3^2 = 512), parentheses,
-//! `pi`, and functions by name. A name is a path of keys such as `grains.ball.radius`; one with other letters stands in braces,
-//! `{contacts.ball-plane.friction}`. Angles are in radians. Crates that were tried take −2^2 for 4 or do not read `1e-3`.
+//! Operators are `+ - * /` and `^`. `^` binds more tightly than a sign before it and associates to the right: −2^2 =
+//! −4, 2^3^2 = 512. There are parentheses, `pi` and named functions. A name is a path of keys such as
+//! `grains.ball.radius`; a name with other characters is in braces, `{contacts.ball-plane.friction}`. Angles are in
+//! radians. The crates that were tried read −2^2 as 4 or cannot read `1e-3`.
 
 use std::f64::consts::PI;
 
-/// Deepest nesting.
+/// Largest depth of nesting.
 const DEEPEST: usize = 100;
 
-/// An expression.
+/// Expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// A named one.
+    /// Named number.
     Name(String),
-    /// With a sign before it.
+    /// Expression with a minus sign.
     Negative(Box<Self>),
-    /// Two sides of an operator.
+    /// Binary operator with its two operands.
     Of(Operator, Box<[Self; 2]>),
-    /// A function of some.
+    /// Function with its arguments.
     Call(Function, Vec<Self>),
 }
 
-/// An operator.
+/// Binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// +
@@ -39,7 +40,7 @@ pub enum Operator {
     Power,
 }
 
-/// A function: its name, how many arguments it takes, and what it does.
+/// Function: its name, its number of arguments and its value.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
     name: &'static str,
@@ -76,17 +77,17 @@ const FUNCTIONS: [Function; 17] = {
         one("sqrt", |x| x[0].sqrt()),
         one("cbrt", |x| x[0].cbrt()),
         one("abs", |x| x[0].abs()),
-        // What is not a number is never the smaller or the larger of two.
+        // NaN is returned if the first argument is NaN.
         two("min", |x| if x[0].is_nan() || x[0] < x[1] { x[0] } else { x[1] }),
         two("max", |x| if x[0].is_nan() || x[0] > x[1] { x[0] } else { x[1] }),
     ]
 };
 
 impl Expression {
-    /// Reads one.
+    /// Parses an expression.
     ///
     /// # Errors
-    /// What was expected and what was found, with the column.
+    /// The message gives the expected text, the found text and the column.
     pub fn read(text: &str) -> Result<Self, String> {
         let mut reader = Reader { text, at: 0, depth: 0 };
         let expression = reader.sum()?;
@@ -96,7 +97,7 @@ impl Expression {
         }
     }
 
-    /// The names in it.
+    /// Returns the names in the expression.
     pub fn names(&self) -> Vec<&str> {
         match self {
             Self::Number(_) => Vec::new(),
@@ -107,7 +108,7 @@ impl Expression {
         }
     }
 
-    /// Its value, where names have theirs; what has none is not a number.
+    /// Evaluates the expression with the values of its names. An unknown name gives NaN.
     pub fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> f64 {
         match self {
             Self::Number(value) => *value,
@@ -130,7 +131,7 @@ impl Expression {
     }
 }
 
-/// Reads from the left to the right.
+/// Recursive-descent parser.
 struct Reader<'a> {
     text: &'a str,
     at: usize,
@@ -142,13 +143,13 @@ impl Reader<'_> {
         &self.text[self.at..]
     }
 
-    /// The next letter that is no blank, which is not taken.
+    /// Returns the next non-blank character without consuming it.
     fn next(&mut self) -> Option<char> {
         self.at += self.rest().len() - self.rest().trim_start().len();
         self.rest().chars().next()
     }
 
-    /// Takes the next letter where it is this one.
+    /// Consumes the next non-blank character if it is this one.
     fn takes(&mut self, letter: char) -> bool {
         let is_there = self.next() == Some(letter);
         if is_there {
@@ -162,14 +163,14 @@ impl Reader<'_> {
         format!("expected {what} at column {}, found {found}", self.text[..self.at].chars().count() + 1)
     }
 
-    /// Sums of products.
+    /// Parses a sum of products.
     fn sum(&mut self) -> Result<Expression, String> {
         self.operators(&[('+', Operator::Plus), ('-', Operator::Minus)], |reader| {
             reader.operators(&[('*', Operator::Times), ('/', Operator::Over)], Self::signed)
         })
     }
 
-    /// Operators of one rank, from the left to the right.
+    /// Parses left-associative operators of one precedence.
     fn operators(
         &mut self,
         rank: &[(char, Operator)],
@@ -182,7 +183,7 @@ impl Reader<'_> {
         Ok(left)
     }
 
-    /// A power, with signs before it.
+    /// Parses a power with signs before it.
     fn signed(&mut self) -> Result<Expression, String> {
         self.depth += 1;
         if self.depth > DEEPEST {

@@ -1,7 +1,7 @@
-//! A case of anybody's, without Rust: a folder with `scene.toml` and `claims.toml`.
+//! A user's case without Rust: a folder with `scene.toml` and `claims.toml`.
 //!
-//! A claim says what is measured, what is expected and from which source, how far it may be off and why, and which wrong scene
-//! it must refuse, as a claim in Rust does. Expected values are arithmetic over the numbers of the scene.
+//! A claim states the quantity, the expected value and its source, the tolerance and its reason, and the negative
+//! control, as a claim in Rust does. Expected values are arithmetic over the numbers of the scene.
 
 mod claims_file;
 mod expression;
@@ -25,14 +25,14 @@ use row::Reader;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The scene.
+/// Scene file.
 const SCENE: &str = "scene.toml";
-/// What is claimed of it.
+/// File of claims.
 pub const CLAIMS: &str = "claims.toml";
-/// Where expected values come from, at more length; it may be absent.
+/// Derivation of the expected values; optional.
 const DERIVATION: &str = "derivation.md";
 
-/// A folder that is no case: which file, where in it, what was expected and what stood there.
+/// Error in the folder of a case: file, place in it, expected and found text.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {what}", file.display())]
 pub struct NoCase {
@@ -40,11 +40,11 @@ pub struct NoCase {
     what: String,
 }
 
-/// What is wrong with a claim.
+/// Error in a claim.
 enum Wrong {
-    /// A key, and what is wrong with it.
+    /// Error in a key: the key and the message.
     Key(String, String),
-    /// A file beside it, in words that name the place.
+    /// Error in another file of the folder; the message names the place.
     Scene(String),
 }
 
@@ -52,15 +52,15 @@ fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> Wr
     Wrong::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
 }
 
-/// Text for as long as the program runs: cases are named on a command line, and there are few.
+/// Leaks a text, so that it lives as long as the program. The command line names only few cases.
 fn kept(text: String) -> &'static str {
     text.leak()
 }
 
-/// The case in a folder.
+/// Reads the case in a folder.
 ///
 /// # Errors
-/// Names the file, the claim and the key, what was expected and what stood there.
+/// The message names the file, the claim and the key, and gives the expected and the found text.
 pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
     let file = folder.join(CLAIMS);
     let no_case = |what: String| NoCase { file: file.clone(), what };
@@ -110,7 +110,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
     })))
 }
 
-/// The text of a file.
+/// Reads the text of a file.
 fn text_of(file: &Path) -> Result<String, NoCase> {
     let told =
         |(expected, found)| NoCase { file: file.to_owned(), what: format!("expected {expected}, found {found}") };

@@ -1,13 +1,14 @@
-//! Names of numbers in a claim: keys of the scene file, and under `scene.` those of the scene as programs are given it.
+//! Names of numbers in a claim: keys of the scene file, and `scene.` followed by keys of the resolved scene that
+//! external solvers get.
 
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::outside::{Given, Resolved};
 use grainbench_scene::scene::Scene;
 use toml::{Table, Value};
 
-/// The time, in expressions.
+/// Name of the time in expressions.
 pub(super) const TIME: &str = "t";
-/// The prefix of what the scene makes definite: masses, moments of inertia, springs by restitution.
+/// Prefix of numbers that the scene resolves: masses, moments of inertia, spring stiffnesses from restitution.
 const DEFINITE: &str = "scene.";
 
 /// Numbers by their names.
@@ -19,12 +20,12 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Of a scene and its file.
+    /// Collects the numbers of a scene and its file.
     ///
     /// # Errors
-    /// When the scene cannot be written down, in words.
+    /// When the scene cannot be serialised. The error is a message.
     pub fn of(file: Table, scene: &Scene) -> Result<Self, String> {
-        // Steps belong to a run and not to a claim: they are taken out again.
+        // Steps belong to a run and not to a claim, so they are removed below.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
         let resolved = Resolved::of(&Given { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
@@ -35,13 +36,13 @@ impl Numbers {
         Ok(Self { file: Value::Table(file), definite, columns })
     }
 
-    /// Whether a name is one of the record and not of the scene: a column that is not there is missing, whatever else has
-    /// its name.
+    /// Returns true if a name belongs to the record and not to the scene. A name with no column and no number in the
+    /// scene is a missing column.
     pub fn is_of_record(&self, name: &str) -> bool {
         name != TIME && (self.columns.iter().any(|column| column == name) || self.get(name).is_none())
     }
 
-    /// The number of a name, a path of keys with places in lists counted from 0.
+    /// Returns the number of a name: a path of keys, with list indices from 0.
     pub fn get<'n>(&'n self, name: &str) -> Option<f64> {
         let (root, path) = match name.strip_prefix(DEFINITE) {
             Some(path) => (&self.definite, path),

@@ -1,4 +1,4 @@
-//! How a number is read of a record: at a moment, over the samples, or at every one of them.
+//! Reading a number from a record: at one time, reduced over the samples, or at each sample.
 
 use super::claims_file::Over;
 use super::expression::Expression;
@@ -10,23 +10,23 @@ use grainbench_harness::run::{Done, Missing};
 use grainbench_harness::source::Source;
 use std::sync::Arc;
 
-/// Reads time and value of samples.
+/// Function that reads time and value of samples.
 type Samples = Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>;
 
-/// How a number is read of a record.
+/// Reading of a number from a record.
 pub struct Read {
-    /// Over columns and numbers of the scene.
+    /// Expression over columns of the record and numbers of the scene.
     pub value: Expression,
-    /// Those numbers.
+    /// Numbers of the scene.
     pub numbers: Arc<Numbers>,
-    /// At this moment (s),
+    /// Time (s) of the reading; with neither `at` nor `over`, the end of the run.
     pub at: Option<f64>,
-    /// or over the samples; else in the end.
+    /// Reduction over the samples.
     pub over: Option<Over>,
 }
 
 impl Read {
-    /// Time and value of every sample.
+    /// Returns time and value of each sample.
     fn all(&self, done: &Done) -> Result<Points, Missing> {
         let series = done.series();
         for name in self.value.names() {
@@ -45,7 +45,7 @@ impl Read {
         if points.is_empty() { Err(Missing("sample".to_owned())) } else { Ok(points) }
     }
 
-    /// Its time and one value.
+    /// Returns one value and its time.
     ///
     /// # Errors
     /// When the record has no such column.
@@ -53,7 +53,7 @@ impl Read {
         let points = self.all(done)?;
         let end = points[points.len() - 1];
         let values = || points.iter().map(|point| point.1);
-        // What is not a number anywhere is none in the whole.
+        // NaN in any sample gives NaN.
         let extreme = |better: fn(f64, f64) -> bool| {
             values().reduce(|best, value| if value.is_nan() || better(value, best) { value } else { best })
         };
@@ -68,7 +68,7 @@ impl Read {
             (Some(value), _) => Ok((end.0, value)),
             (None, None) => Ok(end),
             (None, Some(moment)) => {
-                // A sample is at the moment where none could be nearer.
+                // A sample counts as taken at the moment if it is within half the largest sampling interval of it.
                 let apart = points.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
                 let nearest =
                     points.iter().copied().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
@@ -78,7 +78,7 @@ impl Read {
         }
     }
 
-    /// As a bound wants it.
+    /// Returns the value as a function for a bound.
     pub(super) fn bounded(self) -> Result<impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static, Wrong> {
         if self.over == Some(Over::Course) {
             return Err(wrong("over", "`max`, `min` or `mean` with a bound", "`course`"));
@@ -86,7 +86,7 @@ impl Read {
         Ok(move |done: &[Done]| Ok(self.one(&done[0])?.1))
     }
 
-    /// Every sample, or those between two times.
+    /// Returns each sample, or the samples between two times.
     pub(super) fn samples(self, within: Option<[f64; 2]>) -> Samples {
         Arc::new(move |done| {
             let mut points = self.all(done)?;
@@ -97,7 +97,7 @@ impl Read {
     }
 }
 
-/// Every sample against a course, in units of the scale or of the largest that is expected.
+/// Expects each sample to follow a curve, in units of the scale or of the largest expected value.
 pub(super) fn follow(
     quantity: Quantity,
     source: Source,
@@ -111,14 +111,14 @@ pub(super) fn follow(
     quantity.series(move |done| samples(done)).follows(source, move |_, t| exact(t), scale)
 }
 
-/// The mean over the time of the samples, which need not stand equally far apart: on straight lines between them.
+/// Returns the time average of samples at unequal intervals, by linear interpolation.
 fn mean(points: &Points) -> f64 {
     let [(first, value), .., (last, _)] = points.as_slice() else { return points[0].1 };
     let sum: f64 = points.windows(2).map(|pair| 0.5 * (pair[0].1 + pair[1].1) * (pair[1].0 - pair[0].0)).sum();
     if last > first { sum / (last - first) } else { *value }
 }
 
-/// Between the points of a course, on a straight line.
+/// Interpolates linearly between the points of a curve.
 pub(super) fn interpolated(course: &Points, t: f64) -> f64 {
     let after = course.partition_point(|point| point.0 < t).clamp(1, course.len() - 1);
     let ((t0, low), (t1, high)) = (course[after - 1], course[after]);

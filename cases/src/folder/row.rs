@@ -1,4 +1,4 @@
-//! A claim of a file as the harness has it.
+//! Conversion of a claim in a file to a claim of the harness.
 
 use super::claims_file::{Claimed, Controlled, CourseFile, DEM, Formula, Knobs, Over, Place};
 use super::expression::Expression;
@@ -23,19 +23,19 @@ use grainbench_scene::text::tamed;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a claim is read with.
+/// Files that a claim in a file refers to.
 pub(super) struct Reader<'a> {
-    /// The folder.
+    /// Folder of the case.
     pub(super) folder: &'a Path,
-    /// The scene file.
+    /// Scene file.
     pub(super) source: &'a SceneSource,
 }
 
 impl Reader<'_> {
-    /// The claim.
+    /// Converts a claim.
     ///
     /// # Errors
-    /// Names the key, what was expected and what was found.
+    /// The message names the key and gives the expected and the found text.
     pub(super) fn claim(&self, claimed: Claimed) -> Result<Claim, Wrong> {
         let variant = claimed.variant.as_deref().unwrap_or(PLAIN);
         let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
@@ -49,7 +49,7 @@ impl Reader<'_> {
         let resolution = resolution(&claimed.resolution, &claimed.solver, &scene)?;
         let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
         let course = claimed.follows.as_ref().map(|file| self.course(file, &scene)).transpose()?;
-        // What is judged is what the table has, and the row says so.
+        // The claim covers only the times of the table, and its result states these times.
         let words = match course.as_deref() {
             Some([(first, _), .., (last, _)]) => format!("{}, {first} to {last} s", claimed.quantity),
             _ => claimed.quantity.clone(),
@@ -74,11 +74,12 @@ impl Reader<'_> {
             }
             (None, _) => claim,
         };
-        // What grains on springs do in no convention of a program, another one can be asked.
+        // An external solver can run a claim of `dem`, because `dem` alone implies no contact convention of one
+        // program.
         Ok(if claimed.solver == DEM { claim.fair_to_any_springs() } else { claim })
     }
 
-    /// Points of a course in a table, all within the run.
+    /// Returns the points of a curve in a table. All times must lie within the run.
     fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, Wrong> {
         let table = read_table(&self.folder.join(&file.file)).map_err(|error| Wrong::Scene(error.to_string()))?;
         let column = |key: &'static str, name: &str| {
@@ -100,7 +101,7 @@ impl Reader<'_> {
     }
 }
 
-/// The claim with what is expected of it.
+/// Adds the expectation to a claim.
 fn expecting(
     quantity: Quantity,
     claimed: &Claimed,
@@ -198,7 +199,7 @@ fn check_names(key: &'static str, of: &Expression, numbers: &Numbers, with_time:
     }
 }
 
-/// A number of the scene, finite.
+/// Returns a finite number of the scene.
 fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, Wrong> {
     let expression = formula_of(key, formula)?;
     check_names(key, &expression, numbers, false)?;
@@ -211,7 +212,7 @@ fn tolerance(claimed: &Claimed, numbers: &Numbers) -> Result<Tolerance, Wrong> {
     if allowed < 0.0 {
         return Err(wrong("allowed", "zero or more", allowed.to_string()));
     }
-    // A number that stands there is somebody's judgement; what follows the scene can be computed again.
+    // A plain number is engineering judgement. A formula over numbers of the scene can be computed again.
     let follows = !formula_of("allowed", &claimed.allowed)?.names().is_empty();
     Ok(match &claimed.allowed {
         Formula::Text(formula) if follows => computed(allowed, format!("{formula}: {}", claimed.because)),
@@ -251,7 +252,7 @@ fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Resu
     Ok(Control::scene(kept(controlled.name.clone()), move |scene| (*given).clone_into(scene)))
 }
 
-/// How finely a solver works, from the knobs that it has.
+/// Returns the resolution of a solver from the parameters of its method.
 fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, Wrong> {
     let Some(method) = solvers::by_name(solver).and(Method::of(solver)) else {
         return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
@@ -306,7 +307,7 @@ fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, 
     }
 }
 
-/// Words that a table and a page can hold.
+/// Checks that a text fits in a table and on a page: one line, at most 500 bytes, not empty.
 fn in_words(key: &'static str, text: &str) -> Result<(), Wrong> {
     const LONGEST: usize = 500;
     let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && tamed(text, |_| false) == text;

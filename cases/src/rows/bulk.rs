@@ -1,5 +1,5 @@
-//! Rows of a bulk of grains: beside a program, a grain until rounding has grown and means over time after it; beside codes that
-//! share one packing, the mean over packings of our own.
+//! Claims on a bulk of grains. Against an external solver: one grain until rounding errors have grown, and time
+//! averages afterwards. Against codes that share one packing: the mean over our own packings.
 
 use crate::rows::programs::row;
 use grainbench_harness::claim::Tolerated;
@@ -9,7 +9,7 @@ use grainbench_harness::source::Cited;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use grainbench_reference::round_robin::Spread;
 
-/// The place of the probe `one`, in units of the first grain's radius.
+/// Claims the position of the probe `one`, in units of the first grain's radius.
 pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
     let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
     let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
@@ -18,7 +18,7 @@ pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
     })
 }
 
-/// The mean of a column from a time on (s), in units of half the confidence interval of the difference.
+/// Claims the time average of a column from a time on (s), in units of half the confidence interval of the difference.
 pub(crate) fn mean(
     quantity: &str,
     unit: &'static str,
@@ -38,8 +38,9 @@ pub(crate) fn mean(
     })
 }
 
-/// The mean over own packings, an own run each, in units of what it may be off two codes on one packing of theirs,
-/// 2 √(s_code² + s_own² (1/m + 1)): s_code from half the codes' difference, half · √2, s_own between the m own packings.
+/// Claims the mean over our own packings, one run each, in units of the allowed error against two codes on one packing:
+/// 2 √(s_code² + s_own² (1/m + 1)). s_code is half the difference of the codes, times √2. s_own is the standard
+/// deviation between our m packings.
 pub(crate) fn of_packings(
     (quantity, unit): (String, &'static str),
     runs: Vec<Run>,

@@ -1,21 +1,22 @@
-//! What draws differ by, from a table that holds a row a draw and a column a quantity.
+//! Spread of a quantity over random packings, from a table with one row per packing and one column per quantity.
 
 use grainbench_harness::statistics::spread;
 
-/// How far two draws are apart in a quantity, with 99 %; nothing where the table does not have it, so that the row is red.
+/// Returns the 99 % interval of the difference of two packings in a quantity. Zero if the table lacks the quantity, so
+/// that the claim fails.
 #[must_use]
 pub fn apart(table: &str, quantity: &str) -> f64 {
     spread(&draws_of(table, quantity)).unwrap_or(0.0)
 }
 
-/// The mean of what draws have of a quantity, without its sign; not a number where the table does not have it.
+/// Returns the absolute mean of a quantity over packings. NaN if the table lacks the quantity.
 #[must_use]
 pub fn mean_of(table: &str, quantity: &str) -> f64 {
     let draws = draws_of(table, quantity);
     (draws.iter().sum::<f64>() / draws.len() as f64).abs()
 }
 
-/// What each draw has of a quantity.
+/// Returns the value of a quantity for each packing.
 fn draws_of(table: &str, quantity: &str) -> Vec<f64> {
     let mut table = csv::Reader::from_reader(table.as_bytes());
     let place = table.headers().ok().and_then(|names| names.iter().position(|name| name == quantity));

@@ -1,5 +1,5 @@
-//! A grain as an elastic body on a plane: how it starts, and the change of stiffness that leads to the rigid answer;
-//! and a disc that is pressed.
+//! An elastic grain on a plane: its relaxation before the run, and the factor on its stiffness that leads to the rigid
+//! solution. An elastic disc under diametral compression.
 
 use crate::exact::one_grain::{OneGrain, last};
 use grainbench_harness::prelude::*;
@@ -7,17 +7,17 @@ use grainbench_scene::body::Settle;
 use grainbench_scene::scene::{Duration, Scene};
 use std::f64::consts::PI;
 
-/// A phase of settling: how long (s), and its mass-proportional damping (1/s).
+/// Relaxation phase before the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Rest {
-    /// How long (s).
+    /// Duration (s).
     pub duration: f64,
-    /// Damping α (1/s).
+    /// Mass-proportional damping α (1/s).
     pub damping: f64,
 }
 
-/// The first grain touches its plane and comes to rest on it under the part of gravity that presses it there; the run
-/// then lasts `time` (s).
+/// Places the first grain in contact with its plane and relaxes it under the normal component of gravity. The run then
+/// lasts `time` (s).
 pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     let normal = scene.dimension.count() - 1;
     scene.grains[0].position[normal] = scene.grains[0].radius;
@@ -29,7 +29,7 @@ pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     scene.duration = Duration::Seconds(time);
 }
 
-/// All moduli times a factor.
+/// Multiplies all moduli by a factor.
 pub fn stiffen(scene: &mut Scene, factor: f64) {
     for material in scene.deformable.iter_mut().flatten() {
         material.bulk_modulus *= factor;
@@ -37,20 +37,21 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// Displacement down an incline over that of a rigid grain, less one.
+/// Returns the displacement down an incline over the displacement of a rigid grain, minus one.
 ///
 /// # Errors
-/// Where the run has no grain.
+/// When the run has no grain.
 pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
-/// An elastic disc in plane strain that is pressed at two opposite sides, or at four, without friction: how much its
-/// diameter shortens.
+/// An elastic disc in plane strain, compressed without friction at two opposite sides or at four: the shortening δ of
+/// its diameter.
 ///
 /// δ/R = p [(2/π)(2 ln(4R/a) − 1) − s], p = F/(E'R), a² = 4pR²/π (Johnson, Contact Mechanics, §5.6: a cylinder between
-/// two flats); s is zero between two flats, and with an equal pair across, which widens it, (4/π − 1) + ν/(1 − ν).
+/// two flats). s is zero between two flats. With an equal pair of forces across, which widens the disc,
+/// s = (4/π − 1) + ν/(1 − ν).
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed {
     /// E' = E/(1 − ν²) (Pa).
@@ -59,12 +60,12 @@ pub struct Pressed {
     pub poisson: f64,
     /// Radius R (m).
     pub radius: f64,
-    /// Two sides, or four.
+    /// Number of compressed sides: 2 or 4.
     pub sides: u8,
 }
 
 impl Pressed {
-    /// The first grain of a scene; none when it does not deform.
+    /// Reads the first grain of a scene; `None` if it is not deformable.
     #[must_use]
     pub fn of(scene: &Scene, sides: u8) -> Option<Self> {
         let disc = (*scene.deformable.first()?)?;
@@ -73,14 +74,14 @@ impl Pressed {
         Some(Self { modulus: disc.plane_modulus(), poisson, radius: scene.grains[0].radius, sides })
     }
 
-    /// Shortening over p R under p.
+    /// Returns the shortening over p R at p.
     fn compliance(&self, p: f64) -> f64 {
         let widened = if self.sides == 4 { 4.0 / PI - 1.0 + self.poisson / (1.0 - self.poisson) } else { 0.0 };
         let patch = (4.0 * p / PI).sqrt();
         2.0 / PI * (2.0 * (4.0 / patch).ln() - 1.0) - widened
     }
 
-    /// Force (N per metre) that shortens each diameter by `shortening` (m), by bisection.
+    /// Returns the force (N per metre) that shortens each diameter by `shortening` (m), by bisection.
     #[must_use]
     pub fn force(&self, shortening: f64) -> f64 {
         let (mut low, mut high) = (1e-12, 0.05);
@@ -91,24 +92,28 @@ impl Pressed {
         low * self.modulus * self.radius
     }
 
-    /// How a disc that bears a force at two opposite contacts gives way to a little more of it at one of them, in units of
-    /// ΔF/(πE'): its mean displacement against that contact, u, and that of the opposite point against the mean, v.
+    /// Returns the displacements of a disc, compressed by a force at two opposite contacts, due to a small increase ΔF
+    /// at one contact. In units of ΔF/(πE'): u is the mean displacement relative to that contact. v is the displacement
+    /// of the opposite point relative to the mean.
     ///
-    /// Its inertia balances ΔF as a uniform body force −ΔF/(πR²). With x along ΔF from the centre and r, θ from the contact,
+    /// Its inertia balances ΔF as a uniform body force −ΔF/(πR²). The axis x points along ΔF from the centre; r and θ
+    /// are measured from the contact. The stress
     ///
     /// ```text
     /// σ = −(2ΔF/πr) cos θ e_r e_r + (ΔF/2πR) (e_x e_x + e_y e_y) + (ΔF/2πR²) [x (e_x e_x − e_y e_y) + y (e_x e_y + e_y e_x)]
     /// ```
     ///
-    /// leaves the rim free; the mean displacement is that of the centre. With n = ν/(1 − ν) and a patch that grows as √F
+    /// leaves the rim free of traction. The mean displacement is the displacement of the centre. With n = ν/(1 − ν) and a
+    /// contact half-width a that grows as √F
     ///
     /// ```text
     /// u = 2 ln(2R/a) − 5/4 − n/4        v = −2 ln 2 + 3/4 − n/4        w = 2 − π/2 + πn/2
     /// ```
     ///
-    /// where u − v = 2 ln(4R/a) − 2 is half a diameter between two flats, and w what a pair of ΔF across widens towards each
-    /// side.
-    /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics, eq. 5.57.
+    /// u − v = 2 ln(4R/a) − 2 is the shortening of half a diameter between two flats. w is the displacement of each side
+    /// due to a pair of forces ΔF across.
+    /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics,
+    /// eq. 5.57.
     #[must_use]
     pub fn gives(&self, force: f64) -> Gives {
         let n = self.poisson / (1.0 - self.poisson);
@@ -118,15 +123,15 @@ impl Pressed {
         Gives { u, v, w: 2.0 - 0.5 * PI + 0.5 * PI * n }
     }
 
-    /// Mean square of the displacement about the mean, in units of (1/πE')², of loads that push at left, right, bottom and top
-    /// and that inertia bears: what of a disc's mass does not move as the whole does. By quadrature of the field of
-    /// [`Self::gives`].
+    /// Returns the mean square of the displacement about its mean, in units of (1/πE')², for forces at left, right,
+    /// bottom and top that inertia balances. It gives the added mass of a disc: the inertia of its deformation. By
+    /// quadrature of the displacement field of [`Self::gives`].
     #[must_use]
     pub fn stirred(&self, loads: [f64; 4]) -> f64 {
         self.stirred_by(100, loads)
     }
 
-    /// The same from so many parts of a diameter each way.
+    /// Computes [`Self::stirred`] on a grid of `parts` × `parts` points over the diameter.
     fn stirred_by(&self, parts: i32, [left, right, bottom, top]: [f64; 4]) -> f64 {
         let n = self.poisson / (1.0 - self.poisson);
         let from_left = |x: f64, y: f64| -> [f64; 2] {
@@ -148,29 +153,29 @@ impl Pressed {
         sum / count
     }
 
-    /// Half-width a of the patch over the radius, a² = 4pR²/π.
+    /// Returns the contact half-width a over the radius, a² = 4pR²/π.
     #[must_use]
     pub fn patch(&self, force: f64) -> f64 {
         (4.0 * force / (PI * self.modulus * self.radius)).sqrt()
     }
 }
 
-/// How a disc gives way, in units of ΔF/(πE').
+/// Displacements of a disc, in units of ΔF/(πE').
 #[derive(Clone, Copy, Debug)]
 pub struct Gives {
-    /// Of its mean displacement against a contact.
+    /// Mean displacement relative to the loaded contact.
     pub u: f64,
-    /// Of the point opposite to a contact against the mean.
+    /// Displacement of the opposite point relative to the mean.
     pub v: f64,
-    /// Of a side towards which a pair across widens it.
+    /// Outward displacement of a side due to a pair of forces across.
     pub w: f64,
 }
 
-/// −Ai'(0): what of a front of width 1 has come before it is due.
+/// −Ai'(0): integral of a wave front of width 1 that arrives before the nominal arrival time.
 pub(crate) const AHEAD: f64 = 0.258_819_403_792_806_8;
 
-/// Width δ of a front after a way, in units of that of `cell` and `way`: δ³ = 3 (25/96) h² s, for a grid on which a wave's
-/// frequency is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
+/// Returns the width δ of a wave front after a path length `way`, in the units of `cell` and `way`: δ³ = 3 (25/96) h²
+/// s. On the grid, a wave's frequency is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
 pub(crate) fn front(cell: f64, way: f64) -> f64 {
     (3.0 * 25.0 / 96.0 * cell * cell * way).cbrt()
 }
@@ -179,8 +184,8 @@ pub(crate) fn front(cell: f64, way: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Stress of one load F = πE' on a disc of radius 1 whose body force −F/π balances it, at a point from the centre; the load
-    /// acts at (−1, 0) along +x.
+    /// Returns the stress at a point from the centre of a disc of radius 1. One force F = πE' acts at (−1, 0) along +x,
+    /// and the body force −F/π balances it.
     fn stress([x, y]: [f64; 2]) -> [[f64; 2]; 2] {
         let (along, r) = ([x + 1.0, y], (x + 1.0).hypot(y));
         let radial = -2.0 * along[0] / (r * r);
@@ -189,8 +194,8 @@ mod tests {
         [[of(0, 0, 0.5 + 0.5 * x), of(0, 1, 0.5 * y)], [of(1, 0, 0.5 * y), of(1, 1, 0.5 - 0.5 * x)]]
     }
 
-    /// The rim is free but for the contact; the strain along the diameter that starts there, and Johnson's depth below a patch,
-    /// give u and v; the mean displacement is that of the centre.
+    /// Checks that the rim is free of traction except at the contact. The strain along the diameter and Johnson's
+    /// approach below a contact patch give u and v. The mean displacement is the displacement of the centre.
     #[test]
     fn a_disc_gives_way_to_a_load_that_its_inertia_bears() {
         for at in 1..20 {
@@ -204,7 +209,7 @@ mod tests {
         let disc = Pressed { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
         let (n, force) = (1.0 / 3.0, 2e-3);
         let Gives { u, v, .. } = disc.gives(force);
-        // E' du/dx over F/π: what two points on the diameter are apart.
+        // E' du/dx over F/π, integrated: relative displacement of two points on the diameter.
         let apart = |from: f64, to: f64| -> f64 {
             let (parts, width) = (20_000, (to - from) / 20_000.0);
             let strain = |x: f64| {
@@ -214,7 +219,7 @@ mod tests {
             (0..parts).map(|part| strain(from + (f64::from(part) + 0.5) * width) * width).sum()
         };
         assert!((apart(0.0, 1.0) - v).abs() < 1e-6, "{} is not {v}", apart(0.0, 1.0));
-        // To a depth of many patches below the contact Johnson's eq. 5.57, of a patch that grows with the load one less.
+        // Johnson's eq. 5.57 at a depth of many contact widths; minus one for a contact that grows with the force.
         let depth = 0.01;
         let (patch, tension) = (disc.patch(force), depth * (0.5 * (1.0 - n) - 0.5 * (1.0 + n)));
         let near = 2.0 * (2.0 * depth / patch).ln() - n - 1.0 - tension;
@@ -239,14 +244,14 @@ mod tests {
         assert!((u - v - half).abs() < 1e-12);
     }
 
-    /// Loads that are turned, or have the other sign, stir it as much.
+    /// Rotated loads, and loads of opposite sign, give the same value.
     #[test]
     fn what_is_stirred_does_not_depend_on_the_axis() {
         let disc = Pressed { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
         let [along, across, back] =
             [[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0], [-1.0, 1.0, 0.0, 0.0]].map(|loads| disc.stirred(loads));
         assert!((along / across - 1.0).abs() < 1e-12 && (along / back - 1.0).abs() < 1e-12);
-        // The quadrature has converged, also of a load on one side alone, to 3 in a thousand of 2.8 % of the mass.
+        // The quadrature has converged to 3e-3 of 2.8 % of the mass, also for a load on one side alone.
         for loads in [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0]] {
             assert!((disc.stirred(loads) / disc.stirred_by(400, loads) - 1.0).abs() < 3e-3, "{loads:?}");
         }

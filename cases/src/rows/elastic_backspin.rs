@@ -1,22 +1,22 @@
-//! Backspin of an elastic grain, on a rigid plane and on a deformable one: what rows of both are read from, and what an
-//! independent prototype says of the sphere.
+//! Backspin of an elastic grain on a rigid plane and on a deformable one: readings of both cases, and reference values
+//! of an independent prototype for the sphere.
 
 use crate::exact::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};
 use grainbench_harness::prelude::*;
 
-/// From when on the grain rolls (s).
+/// Time from which the grain rolls (s).
 pub(crate) const ROLLS: f64 = 0.5;
-/// What the prototype says of the sphere's end.
+/// Result of the prototype for the sphere at the end.
 const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid sphere has 10/7";
 
-/// Displacement over that of a rigid grain, less one.
+/// Returns the displacement over the displacement of a rigid grain, minus one.
 pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::of(&done.scene).rigid_backspin(t).x - 1.0)
 }
 
-/// Mean velocity and mean surface speed ΩR over the time of rolling (m/s).
+/// Returns mean velocity and mean surface speed ΩR over the time of rolling (m/s).
 pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
     let radius = done.scene.grains[0].radius;
     let states: Vec<_> = course(done)?.into_iter().filter(|(t, _)| *t >= ROLLS).collect();
@@ -27,13 +27,13 @@ pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-/// Friction that is felt while the grain slides.
+/// Negative control: smaller friction, which matters while the grain slides.
 pub(crate) fn slippery() -> Control {
     Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }
 
-/// Displacement and speed of the sphere at a level, each of its run, against the prototype. `asked` is the deviation of the
-/// displacement that was asked for at this level before the solver existed.
+/// Claims displacement and speed of the sphere at a level, each from its own run, against the prototype. `asked` is the
+/// deviation of the displacement that was required for this level before the solver existed.
 pub(crate) fn sphere(level: &str, asked: f64, [displacement, speed]: [Run; 2]) -> [Claim; 2] {
     [
         claim(format!("displacement at .8 s over the rigid one, less 1, {level}"), "1")

@@ -1,5 +1,5 @@
-//! A grain released from rest on an inclined plane, a disc or a sphere: one case in two geometries, of which each has its scene,
-//! its slopes and its elastic body.
+//! A grain released from rest on an inclined plane, for a disc and for a sphere. Each of the two cases has its own
+//! scene, slopes and elastic body.
 
 use super::programs;
 use super::rigid::{self, Row};
@@ -8,19 +8,19 @@ use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-/// One of the two.
+/// Parameters of one of the two cases.
 pub(crate) struct Incline {
-    /// The case, for its variants.
+    /// Case, for its variants.
     pub case: &'static Case,
-    /// Its slopes.
+    /// Slopes.
     pub slopes: &'static [Slope],
-    /// What rapier makes of them.
+    /// Variants for the solver `rigid` (rapier).
     pub rigid: &'static [Row],
-    /// The slope on which it is set down, and the dashpots there.
+    /// Variant of the claims on a grain that is set down, and its type of damping.
     pub set_down: (&'static str, Dashpots),
 }
 
-/// The case, of which the two say name, title, scene and derivation.
+/// Builds a case from its name, title, scene and derivation.
 pub(crate) const fn case(
     [name, title, scene, derivation]: [&'static str; 4],
     claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
@@ -47,7 +47,7 @@ pub(crate) const fn case(
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
 impl Incline {
-    /// All claims but those of the elastic body.
+    /// Returns all claims except the claims on the elastic body.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let (variant, dashpots) = self.set_down;
         let variants: Vec<_> = self.slopes.iter().map(|slope| slope.variant).collect();
@@ -60,7 +60,7 @@ impl Incline {
         .concat()
     }
 
-    /// All figures but those of the elastic body.
+    /// Returns all figures except the figures of the elastic body.
     ///
     /// # Errors
     /// When a run fails.
@@ -71,7 +71,7 @@ impl Incline {
     }
 }
 
-/// Where the rigid answers are printed.
+/// Source of the rigid solutions.
 const RIGID: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 
@@ -88,57 +88,57 @@ const COMPLIANCE: Plate = Plate {
 pub struct Slope {
     /// Variant of the scene.
     pub variant: &'static str,
-    /// Whether a rigid grain rolls without slip.
+    /// True if a rigid grain rolls without slip.
     pub sticks: bool,
 }
 
-/// The step of runs against rigid answers.
+/// Time step of runs against rigid solutions.
 pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
-/// The step of the undamped run that is compared with the elastic answer.
+/// Time step of the undamped run that is compared with the elastic solution.
 const FINE: Resolution = Resolution::CriticalFraction(0.0025);
-/// Steps before slip sets in, of the undamped runs that show the order. Slip sets in at mid-step in each, for the
-/// error's coefficient depends on where within a step that is.
+/// Number of steps before slip begins, in the undamped runs for the order of convergence. Slip begins at mid-step in
+/// each run, because the coefficient of the error depends on the position within the step.
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
-/// Static overlaps of the sweep, divided by R.
+/// Static overlaps of the sweep over R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
-/// Static overlap divided by R at which the conventions of soft contacts, and a rigid contact, hardly differ.
+/// Static overlap over R at which soft contacts of all conventions nearly agree with a rigid contact.
 pub const NEARLY_RIGID: f64 = 1e-5;
 /// Damping ratio of the damped runs.
 pub const DAMPING: f64 = 0.5;
 
-/// Wrong inertia: that of the other shape.
+/// Sets a wrong inertia: the inertia of the other shape.
 pub fn wrong_inertia(scene: &mut Scene) {
     let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };
     let grain = &mut scene.grains[0];
     grain.inertia = factor * grain.mass * grain.radius * grain.radius;
 }
 
-/// Friction too large by a twentieth.
+/// Increases friction by 5 %.
 pub fn more_friction(scene: &mut Scene) {
     scene.change_laws(|law| law.friction *= 1.05);
 }
 
-/// Friction too large by a twentieth, which whatever slides feels.
+/// Negative control for sliding grains: friction 5 % larger.
 #[must_use]
 pub fn stronger_friction() -> Control {
     Control::scene("friction ×1.05", more_friction)
 }
 
-/// The inertia of the other shape, which whatever rolls feels.
+/// Negative control for rolling grains: the inertia of the other shape.
 #[must_use]
 pub fn other_inertia() -> Control {
     Control::scene("the inertia of the other shape", wrong_inertia)
 }
 
-/// A run at a static overlap of `ratio`·R.
+/// Returns a run at a static overlap of `ratio`·R.
 #[must_use]
 pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, damping: f64, step: Resolution) -> Run {
     let name = format!("overlap/R = {ratio:e}, damping ratio {damping}");
     Run::new(variant, solver, step).adjusted(&name, move |scene| rest_at_overlap(scene, ratio, damping))
 }
 
-/// A run at a static overlap of 1e-5 R, without tangential dashpot if so wished: whether a dashpot counts in Coulomb's
-/// limit is what conventions differ in most where a grain slips.
+/// Returns a run at a static overlap of 1e-5 R, with or without a tangential dashpot. For a slipping grain, conventions
+/// differ most in whether the dashpot force counts in the Coulomb limit.
 #[must_use]
 pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     if tangential_dashpot {
@@ -151,7 +151,7 @@ pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     })
 }
 
-/// What springs and dashpots make of some slopes.
+/// Returns the claims of spring-dashpot contacts on some slopes.
 fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &slope in slopes {
@@ -168,17 +168,18 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
     claims
 }
 
-/// The last state against an exact one, in units of what is expected.
+/// Compares a quantity of the last state with the exact value, in units of the exact value.
 ///
 /// # Errors
-/// The run tells nothing of the grain.
+/// When the record lacks the grain.
 pub fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
     let expected = pick(exact(&OneGrain::of(&done.scene), t));
     Ok(Measured::new(pick(state), expected, expected))
 }
 
-/// Undamped slip against the exact compliant answer: small at a fine step, second order in the step.
+/// Claims undamped slip against the exact compliant solution: a small error at a fine step, and second order in the
+/// step.
 fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
@@ -204,13 +205,14 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Why a grain that rolls may be off the rigid answer.
+/// Reason why a rolling grain may deviate from the rigid solution.
 const SWINGS: &str = "the tangential spring swings by up to twice its stretch f g_t/ω², ω² = (k_t/m)(1 + 1/i)";
-/// Why a grain that slips may be off the rigid answer.
+/// Reason why a slipping grain may deviate from the rigid solution.
 const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, \
                     t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t of the spin, μ g_n t_s/v of the velocity, twice that of the way";
 
-/// What compliance may take of displacement, velocity and spin at 1 s, as fractions, at a static overlap of `ratio`·R.
+/// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
+/// overlap of `ratio`·R.
 fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
     let unknown = State { x: f64::NAN, v: f64::NAN, omega: f64::NAN };
     case.variant(slope.variant).map_or(unknown, |mut scene| {
@@ -219,7 +221,8 @@ fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
     })
 }
 
-/// What is left of coming to roll at 1 s, `slides` of which the grain slides, and rounding of velocities up to then.
+/// Returns the tolerance for rolling at 1 s: the remaining slip velocity after `slides` (s) of sliding, and the
+/// rounding of velocities.
 pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain) -> f64) -> Tolerance {
     let left = case.variant(variant).map_or(f64::NAN, |mut scene| {
         rest_at_overlap(&mut scene, 1e-3, DAMPING);
@@ -234,7 +237,7 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
     )
 }
 
-/// Damped motion against the rigid answer.
+/// Claims damped motion against the rigid solution.
 fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
     let of = |quantity: &str, unit, pick: fn(State) -> f64| {
@@ -245,7 +248,7 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
             .refuses(telling(slope))
     };
     let mut claims = vec![of("displacement at 1 s", "m", |state| state.x)];
-    // A grain that rolls has its velocity and spin held to rounding, below.
+    // Velocity and spin of a rolling grain have a tighter claim in `final_motion`, to rounding.
     if !slope.sticks {
         claims.push(of("velocity at 1 s", "m/s", |state| state.v));
         claims.push(of("spin at 1 s", "rad/s", |state| state.omega));
@@ -253,7 +256,7 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     claims
 }
 
-/// How the error against the rigid answer falls with the overlap.
+/// Claims the exponent of the error against the rigid solution in the overlap.
 fn exponent(slope: Slope) -> Claim {
     let expected: f64 = if slope.sticks { 1.0 } else { 0.5 };
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
@@ -277,12 +280,13 @@ fn exponent(slope: Slope) -> Claim {
         .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
 }
 
-/// Wrong physics that is felt: inertia where the grain rolls, friction where it slips.
+/// Returns wrong physics that affects the result: inertia for a rolling grain, friction for a slipping one.
 fn telling(slope: Slope) -> Control {
     if slope.sticks { other_inertia() } else { stronger_friction() }
 }
 
-/// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
+/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
+/// solver-independent.
 fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, NEARLY_RIGID);
     let of = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
@@ -309,12 +313,13 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Why the tolerance at other numbers is what it is.
+/// Reason for the tolerance under parameter variation.
 const ELSEWHERE: &str = "rolling: overlap/R for the torque arm, beside it the spring's stretch over the way, or the \
      speed at which it would ring undamped; slipping: half a period of each spring before friction acts in full, over \
      the time";
 
-/// How far the rigid answer may be off on a slope with any numbers, of displacement, velocity and spin, as fractions.
+/// Returns the largest deviation from the rigid solution on a slope with any parameters, for displacement, velocity and
+/// spin, as fractions.
 fn elsewhere(scene: &Scene) -> State {
     let grain = OneGrain::of(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);
@@ -333,7 +338,7 @@ fn elsewhere(scene: &Scene) -> State {
     }
 }
 
-/// Rolling in the end: v and ΩR to rounding, with the torque arm that each convention has.
+/// Claims rolling at the end: v and ΩR to rounding, with the torque arm of each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let of = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";
@@ -361,7 +366,7 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Motion against the rigid answer.
+/// Returns the figures of the motion against the rigid solution.
 fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut displacement = Vec::new();
     let mut spin = Vec::new();

@@ -1,4 +1,4 @@
-//! Rows that several cases have: each file a family of claims over one kind of run.
+//! Claims that several cases share. Each file has the claims of one kind of run.
 
 pub(crate) mod bulk;
 pub mod draws;

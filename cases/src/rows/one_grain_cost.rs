@@ -1,4 +1,4 @@
-//! What accuracy is measured by where one grain moves on a plane: its displacement against the rigid answer, over the
+//! Target quantity of accuracy for one grain on a plane: its displacement against the rigid solution, over the
 //! stiffness of the contact and of the grain.
 
 use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
@@ -13,12 +13,13 @@ use grainbench_scene::solver::Method;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Static overlaps of grains on springs, divided by R.
+/// Static overlaps of grains on springs, over R.
 const OVERLAPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
-/// What the moduli of deformable grains are multiplied by.
+/// Factors on the moduli of deformable grains.
 const STIFFENED: [f64; 2] = [1.0, 10.0];
 
-/// Displacement against a rigid answer, in variants of a case, over a time (s) that all solvers are given.
+/// Returns the displacement against a rigid solution as target quantity, in variants of a case. All solvers run the
+/// same time `seconds` (s).
 #[must_use]
 pub fn displacement(
     name: &str,
@@ -85,8 +86,8 @@ fn touching(scene: &mut Scene) {
     grain.position[axis] = grain.radius;
 }
 
-/// An elastic grain, settled under the load onto the plane. Where the case gives no moduli: those of the 2000 paper, K
-/// = 10 MPa and G = 2.5 MPa.
+/// Relaxes an elastic grain under the normal component of gravity. If the case gives no moduli, they are those of the
+/// 2000 paper, K = 10 MPa and G = 2.5 MPa.
 fn settled(scene: &mut Scene, factor: f64) {
     touching(scene);
     let axis = scene.dimension.count() - 1;

@@ -1,8 +1,9 @@
-//! Rows of the programs `lammps` and `liggghts`: the forces at contacts are ours, as their dumps of contacts and of
-//! walls have them.
+//! Claims against the external solvers `lammps` and `liggghts`: contact forces equal the forces in their dumps of
+//! contacts and walls.
 //!
-//! Between grains both programs evaluate them anew when they are written, with the velocities of the full step: what
-//! dashpots add differs from what moved the grains, and rows of pairs are undamped. At walls they keep what moved them.
+//! Both solvers evaluate the forces between grains again at output, with the velocities of the full step. The dashpot
+//! forces therefore differ from the forces that moved the grains, so runs with pairs are undamped. The dumped wall forces
+//! are the forces that moved the grains.
 
 use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
@@ -16,7 +17,7 @@ fn stiffer() -> Control {
     })
 }
 
-/// Forces at some contacts of runs of each program and of ours, in units of what `unit` says.
+/// Claims the forces at some contacts of runs of each external solver and of ours, in units of `unit`.
 #[must_use]
 pub fn forces(
     runs: impl Fn(&'static str) -> Run,
@@ -32,8 +33,9 @@ pub fn forces(
     PAIRS.map(of).to_vec()
 }
 
-/// Forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves walls as
-/// meshes, whose forces it does not tell disc by disc. They round as places do.
+/// Claims the forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves
+/// walls as meshes and does not report their forces for each disc. The rounding tolerance is the tolerance of
+/// positions.
 #[must_use]
 pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Tolerance) -> Vec<Claim> {
     const BETWEEN: &[&str] =

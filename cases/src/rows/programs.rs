@@ -1,18 +1,18 @@
-//! Rows of the programs `lammps` and `liggghts`, stored or run now: our solver in a program's convention gives what the
-//! program gives.
+//! Claims against the external solvers `lammps` and `liggghts`, stored or live: our solver in the convention of an
+//! external solver gives the same results.
 
 use crate::rows::incline::{DAMPING, at_overlap};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::file::GrainShape;
 
-/// Our solver in the convention of a program, and the program.
+/// Pairs of our solver in the convention of an external solver, and the external solver.
 pub const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
 
-/// The time step of one grain on a plane (s).
+/// Time step of one grain on a plane (s).
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 
-/// A row of ours (first run) against a program (second).
+/// Compares our run (first) with the run of an external solver (second).
 pub(crate) fn row(
     quantity: &str,
     unit: &'static str,
@@ -28,7 +28,8 @@ pub(crate) fn row(
         .refuses(control)
 }
 
-/// Motion of one grain on a plane over one second: undamped, and damped, where the programs' conventions part.
+/// Claims the motion of one grain on a plane over one second: undamped, and damped, where the conventions of the
+/// solvers differ.
 #[must_use]
 pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -50,7 +51,8 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     claims
 }
 
-/// Coulomb's limit is felt where a grain slips, and the spring by which it comes to roll everywhere.
+/// Negative control: a slightly wrong tangential spring. It affects the Coulomb limit of a slipping grain and every
+/// start of rolling.
 fn telling() -> Control {
     Control::ours("tangential stiffness × 1.001 in ours", |scene| {
         scene.change_laws(|law| law.scale_tangential(1.001));
@@ -66,7 +68,7 @@ fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
     })
 }
 
-/// The speed at which two grains part, as a part of that at which they met.
+/// Claims the separation velocity of two grains over their approach velocity.
 #[must_use]
 pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     fn of(done: &Done) -> Result<f64, Missing> {
@@ -92,17 +94,18 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
     claims
 }
 
-/// LIGGGHTS moves walls inwards in three dimensions only: one layer of spheres, whose masses are those of the discs.
+/// Replaces discs by a layer of spheres of the same mass, because LIGGGHTS moves walls inwards in three dimensions
+/// only.
 pub(crate) fn layer_of_spheres(scene: &mut Scene) {
     scene.grain_shape = GrainShape::Sphere;
     let factor = GrainShape::Sphere.inertia_factor();
     scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius * grain.radius);
 }
 
-/// What positions of the nine discs are compared by.
+/// Compared positions of the nine discs.
 const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
 
-/// Positions of the nine discs over all cycles, in units of what `travel` says, and how far they may be rounded.
+/// Claims the positions of the nine discs over all cycles, in units of `travel`, with rounding tolerances `rounded`.
 #[must_use]
 pub fn nine_discs(
     variants: &[&'static str],
@@ -130,8 +133,9 @@ pub fn nine_discs(
     claims
 }
 
-/// The same while the walls turn. Neither program has mass-proportional damping, and a damped contact of LIGGGHTS feels
-/// where one `run` ends and the next begins: the row is undamped. `places` are the largest in units of the walls' travel.
+/// Claims the positions of the nine discs while the walls rotate. The runs are undamped, because neither solver has
+/// mass-proportional damping and a damped contact of LIGGGHTS depends on where one `run` ends and the next begins.
+/// `places` is the largest position in units of the walls' travel.
 #[must_use]
 pub fn turning_walls(
     variant: &'static str,
@@ -166,7 +170,7 @@ pub fn turning_walls(
     PAIRS.map(of).to_vec()
 }
 
-/// Velocity of a Hertz sphere over an impact, and its spin where `turns` says that it gains one.
+/// Claims the velocity of a Hertz sphere over an impact, and its spin if `turns`.
 #[must_use]
 pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -193,7 +197,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
     claims
 }
 
-/// A grain that rolls to rest on a flat plane, in units of R; `ahead` is what LIGGGHTS may be.
+/// Claims a grain that rolls to rest on a flat plane, in units of R. `ahead` is the tolerance for LIGGGHTS.
 #[must_use]
 pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Vec<Claim> {
     let of = |pair: [&'static str; 2]| {
@@ -208,7 +212,8 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
     PAIRS.map(of).to_vec()
 }
 
-/// A grain that starts from rest on a slope, over a damped rolling spring: `tilted` are the runs of both sides.
+/// Claims a grain that starts from rest on a slope, with a damped rolling spring. `tilted` returns the run of each
+/// solver.
 #[must_use]
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
     let allowed = rounding(1.0, "the same cycle; in units of R");
@@ -219,7 +224,7 @@ pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
     row("position over 4 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
 }
 
-/// Motion and wall force of one grain that meets a wall, in units of what they are before the impact.
+/// Claims motion and wall force of one grain that hits a wall, in units of the values before the impact.
 #[must_use]
 pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     let mut claims = Vec::new();

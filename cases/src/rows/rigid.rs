@@ -1,7 +1,7 @@
-//! Rows of the solver `rigid`: one grain on a plane against the rigid answer, and what its errors are made of.
+//! Claims on the solver `rigid`: one grain on a plane against the rigid solution, and the parts of the error.
 //!
-//! rapier takes h = Δt/4 in a step Δt, with symplectic Euler; a contact is detected once a step and its points are then
-//! fixed on the bodies. Three errors follow, and nothing else is seen:
+//! rapier takes substeps h = Δt/4 in a step Δt, with symplectic Euler. It detects a contact once a step; the contact
+//! points are then fixed on the bodies. Three errors follow, and no other is observed:
 //!
 //! ```text
 //! position     x is ahead of its velocities: (x − x_exact)/x_exact = h/t at constant acceleration
@@ -11,9 +11,9 @@
 //!              the overlap is δ = g_n/(2πf)², whatever Δt, and friction acts at the arm R − δ/2
 //! ```
 //!
-//! For the overlap: in rest the biased solve keeps the impulse P = m g_n h, P = (P + m δ b)/(1 + c), with
-//! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf; hence δ = g_n h c/b = g_n/ω². It is reached within about
-//! 2ζ/ω + 1/(hω²), which is longer the finer the step.
+//! For the overlap: at rest, the biased solve keeps the impulse P = m g_n h, P = (P + m δ b)/(1 + c), with
+//! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf. Hence δ = g_n h c/b = g_n/ω². The overlap is reached within about
+//! 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
 use crate::rows::incline::{other_inertia, stronger_friction};
@@ -22,32 +22,32 @@ use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;
 use std::f64::consts::TAU;
 
-/// The solver.
+/// Name of the solver.
 const RIGID: &str = "rigid";
-/// The resolution of rows.
+/// Resolution of most claims.
 pub const DEFAULT: Resolution = Resolution::substeps(8);
-/// Substeps of the sequence of levels.
+/// Numbers of substeps in the figure.
 const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
-/// Substeps at which turning grains no longer lift off.
+/// Numbers of substeps at which rotating grains no longer lift off.
 const FINE: [u32; 5] = [16, 32, 64, 128, 256];
 
 const RIGID_SOURCE: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 const ORDER_SOURCE: Source = Source::Derived("symplectic Euler is of first order in positions");
 
-/// A variant.
+/// Variant with its expected errors.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Variant of the scene.
     pub variant: &'static str,
-    /// Whether the grain rolls without slip in the end, so that a wrong inertia is felt; friction is felt otherwise.
+    /// True if the grain finally rolls without slip. The control is then a wrong inertia, otherwise a wrong friction.
     pub rolls: bool,
-    /// Most that lift-off may take of velocity and spin at the default resolution, where turning lifts the contact point off at
-    /// 1 s; relative to the exact values.
+    /// Largest relative effect of lift-off on velocity and spin at the default resolution, if rotation lifts the
+    /// contact point off at 1 s.
     pub lifts: Option<[f64; 2]>,
 }
 
-/// Sets the grain down just touching: a rigid contact has no static overlap to start from.
+/// Places the grain exactly in contact, because a rigid contact has no static overlap.
 fn touching(scene: &mut Scene) {
     let axis = scene.dimension.count() - 1;
     let grain = &mut scene.grains[0];
@@ -58,7 +58,7 @@ fn run(variant: &'static str, resolution: Resolution) -> Run {
     Run::new(variant, RIGID, resolution).adjusted("touching", touching)
 }
 
-/// Overlap at rest under the scene's gravity (m).
+/// Returns the overlap at rest under the scene's gravity (m).
 fn rest_overlap(grain: &OneGrain) -> f64 {
     grain.onto / (TAU * Settings::default().wall_frequency).powi(2)
 }
@@ -67,7 +67,7 @@ fn wrong(row: Row) -> Control {
     if row.rolls { other_inertia() } else { stronger_friction() }
 }
 
-/// Displacement, velocity and spin at 1 s against the rigid answer.
+/// Claims displacement, velocity and spin at 1 s against the rigid solution.
 fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
     let of = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
@@ -88,12 +88,12 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
     ]
 }
 
-/// Runs at all fine levels.
+/// Returns the runs at all numbers of [`FINE`] substeps.
 fn fine(row: Row) -> impl Iterator<Item = Run> {
     FINE.iter().map(move |&substeps| run(row.variant, Resolution::substeps(substeps)))
 }
 
-/// Order of the displacement's error in the time step, of a grain that slips.
+/// Claims the order of the displacement's error in the time step, for a slipping grain.
 fn order(row: Row) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .of_all(fine(row))
@@ -107,8 +107,9 @@ fn order(row: Row) -> Claim {
         .refuses(wrong(row))
 }
 
-/// A grain that rolls, h/t taken off: the arm of friction is R until the overlap is reached, which takes the longer the finer the
-/// step (at 256 substeps half of the second), and R − δ/2 from then on. There is no order in what is left.
+/// Claims the displacement of a rolling grain minus h/t. The lever arm of friction is R until the overlap is reached,
+/// and R − δ/2 afterwards. A finer step takes longer to reach it: half a second at 256 substeps. The remainder has no
+/// order.
 fn between_arms(case: &Case, row: Row) -> Claim {
     let (overlap, i) = arm(case, row);
     let width = overlap * i / (1.0 + i);
@@ -139,13 +140,13 @@ fn between_arms(case: &Case, row: Row) -> Claim {
         .refuses(wrong(row))
 }
 
-/// Rows of a grain released on a slope.
+/// Returns the claims on a grain released on a slope.
 #[must_use]
 pub fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| incline(case, row)).collect()
 }
 
-/// Overlap at rest over the radius, and I/(mR²).
+/// Returns the overlap at rest over the radius, and I/(mR²).
 fn arm(case: &Case, row: Row) -> (f64, f64) {
     let grain = case.variant(row.variant).map(|scene| OneGrain::of(&scene));
     grain.map_or((f64::NAN, f64::NAN), |grain| (rest_overlap(&grain) / grain.radius, grain.inertia_factor))
@@ -177,16 +178,16 @@ fn incline(case: &Case, row: Row) -> Vec<Claim> {
     claims
 }
 
-/// Velocity of rolling with friction at the arm that rapier's overlap at rest leaves (m/s).
+/// Returns the velocity of rolling (m/s) with the lever arm of friction at rapier's overlap at rest.
 fn rolling(grain: &OneGrain, t: f64) -> f64 {
     grain.rolling_velocity(t, grain.radius - 0.5 * rest_overlap(grain))
 }
 
-/// What does not go away with the time step is the arm, and that it is not there at once: an overdamped contact of
-/// frequency f and damping ratio ζ nears its overlap with exp(−t/τ), τ = 2ζ/(2πf), so that until t a part τ/t of what the
-/// arm is worth is missing.
+/// Claims the error that remains at fine steps: the lever arm, and the delay of its overlap. An overdamped contact of
+/// frequency f and damping ratio ζ approaches its overlap with exp(−t/τ), τ = 2ζ/(2πf). A part τ/t of the lever arm's
+/// effect is therefore missing at t.
 fn final_velocity(case: &Case, row: Row) -> Claim {
-    /// When it is read (s).
+    /// Time of the reading (s).
     const END: f64 = 1.0;
     let Settings { wall_frequency, damping_ratio, .. } = Settings::default();
     let ((overlap, i), lag) = (arm(case, row), 2.0 * damping_ratio / (TAU * wall_frequency));
@@ -207,7 +208,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
         .refuses(wrong(row))
 }
 
-/// Rows of a grain set down with spin.
+/// Returns the claims on a grain set down with spin.
 #[must_use]
 pub fn backspins(case: &Case, rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| backspin(case, row)).collect()
@@ -226,17 +227,17 @@ fn backspin(case: &Case, row: Row) -> Vec<Claim> {
     against(row, OneGrain::rigid_backspin, stronger_friction(), allowed)
 }
 
-/// The error against the rigid answer over the number of substeps.
+/// Returns a figure of the error against the rigid solution over the number of substeps.
 ///
 /// # Errors
-/// When a run fails otherwise than by breaking.
+/// When a run fails for another reason than a crash of the solver.
 pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for row in rows {
         let mut points = Vec::new();
         for substeps in LEVELS {
             let done = match runner.run(&run(row.variant, Resolution::substeps(substeps))) {
-                // Too coarse for what turns as fast: it has no point.
+                // Too coarse for a grain that rotates so fast: no point.
                 Err(RunError::Broken(_)) => continue,
                 done => done?,
             };
@@ -265,7 +266,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     ))
 }
 
-/// Restitution of a head-on impact.
+/// Claims the restitution of a head-on impact.
 #[must_use]
 pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Claim {
     claim("coefficient of restitution", "1")
@@ -285,7 +286,7 @@ pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured
         }))
 }
 
-/// A momentum that is kept to rounding.
+/// Claims that a momentum is conserved to rounding.
 #[must_use]
 pub fn momentum(
     variant: &'static str,
@@ -299,7 +300,7 @@ pub fn momentum(
         .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
 }
 
-/// Angular momentum of an impact off centre.
+/// Claims the angular momentum of an off-centre impact.
 #[must_use]
 pub fn angular_momentum(
     variant: &'static str,
@@ -318,7 +319,7 @@ pub fn angular_momentum(
         }))
 }
 
-/// Energy of a gas of elastic grains over some seconds, in place of a number of cycles.
+/// Claims the energy of a gas of elastic grains over some seconds instead of a number of cycles.
 #[must_use]
 pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Result<Measured, Missing>) -> Claim {
     let run = Run::new(variant, RIGID, DEFAULT).adjusted(&format!("{seconds} s"), move |scene| {
@@ -340,7 +341,7 @@ pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Resul
         }))
 }
 
-/// A variant whose length is a number of cycles: `rigid` must say that it cannot run it.
+/// Claims that `rigid` reports a duration in cycles as unsupported.
 #[must_use]
 pub fn refuses_cycles(variant: &'static str) -> Claim {
     claim("refusal of a length in calculation cycles", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(
@@ -353,7 +354,7 @@ pub fn refuses_cycles(variant: &'static str) -> Claim {
     )
 }
 
-/// A scene with periodic axes: `rigid` must say that it cannot run it.
+/// Claims that `rigid` reports periodic axes as unsupported.
 #[must_use]
 pub fn refuses_periodic_axes(variant: &'static str) -> Claim {
     claim("refusal of periodic axes", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(

@@ -1,5 +1,6 @@
-//! Elastic discs between walls that move in by a little and stop: the force at rest, the frequency at which they ring,
-//! and the spring that they show; without friction, beside rigid discs on springs that have their force at rest.
+//! Elastic discs between walls that move in by a small distance and stop: the force at rest, the frequency of free
+//! vibration and the apparent spring stiffness. Without friction, compared with rigid discs on springs that have the
+//! same force at rest.
 
 use crate::rows::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
@@ -10,7 +11,7 @@ use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
 
-/// What one arrangement of discs is, and what is exact of it.
+/// Parameters and exact values of one arrangement of discs.
 #[derive(Clone, Copy)]
 pub(crate) struct Ringing {
     /// Variant of the case.
@@ -19,46 +20,46 @@ pub(crate) struct Ringing {
     pub(crate) column: &'static str,
     /// Bulk and shear modulus of the elastic discs (Pa).
     pub(crate) moduli: [f64; 2],
-    /// Distance by which each wall moves in (m), and how long it takes (s).
+    /// Distance by which each wall moves in (m), and the duration of this motion (s).
     pub(crate) squeeze: f64,
     pub(crate) ramp: f64,
-    /// End of the run (s): some ten periods after the walls have stopped.
+    /// End of the run (s): about ten periods after the walls have stopped.
     pub(crate) time: f64,
     /// Time between two samples (s).
     pub(crate) sample: f64,
-    /// Cells per radius, and those of the long set.
+    /// Cells per radius, and cells per radius in the long tier.
     pub(crate) cells: f64,
     pub(crate) fine: f64,
-    /// What is exact; none of discs that do not deform.
+    /// Function that returns the exact values; `None` for discs that do not deform.
     pub(crate) exact: fn(&Scene, f64) -> Option<Rung>,
     /// n of ω² = n k_n/m of rigid discs on springs.
     pub(crate) springs: f64,
     /// Force at a wall at rest over k_n times the squeeze, of discs on springs.
     pub(crate) share: f64,
-    /// Where the closed form is from.
+    /// Source of the closed form.
     pub(crate) source: &'static str,
-    /// Most that the force may be off, as a fraction, and why.
+    /// Largest relative error of the force, and the reason.
     pub(crate) allowed: f64,
     pub(crate) because: &'static str,
 }
 
-/// Discs at rest, and how they ring about it.
+/// Discs at rest and the parameters of their free vibration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rung {
     /// Force at a wall at rest (N/m).
     pub(crate) force: f64,
-    /// Force that drives a disc back over its way (N/m²).
+    /// Restoring force on a disc over its displacement (N/m²).
     pub(crate) restoring: f64,
-    /// Part by which inertia of what does not move as the whole does adds to its mass (Rayleigh).
+    /// Added mass of a disc over its mass: the inertia of its deformation (Rayleigh).
     pub(crate) stirred: f64,
-    /// Half-width of a patch over the radius.
+    /// Half-width of a contact patch over the radius.
     pub(crate) patch: f64,
-    /// Part of the compliance that one more of ΔF/(πE') at every contact would be.
+    /// Relative increase of compliance by one more ΔF/(πE') at every contact.
     pub(crate) share: f64,
 }
 
 impl Ringing {
-    /// The discs as elastic bodies; the walls stop.
+    /// Makes the discs elastic and sets the walls' motion and stop.
     fn elastic(self, scene: &mut Scene) {
         let [bulk_modulus, shear_modulus] = self.moduli;
         scene.deformable[0] = Some(Deformable { bulk_modulus, shear_modulus, constitutive: Constitutive::NeoHookean });
@@ -71,7 +72,7 @@ impl Ringing {
         scene.sampling = Sampling::Seconds(self.sample);
     }
 
-    /// Rigid discs on springs that have the force of elastic ones at rest.
+    /// Makes the discs rigid, on springs with the force of the elastic discs at rest.
     fn on_springs(self, scene: &mut Scene) {
         self.elastic(scene);
         if let Some(Rung { force, .. }) = (self.exact)(scene, self.squeeze) {
@@ -82,30 +83,30 @@ impl Ringing {
         }
     }
 
-    /// The run of elastic discs.
+    /// Returns the run of elastic discs.
     pub(crate) fn discs(self, cells: f64) -> Run {
         let run = Run::new(self.variant, "mpm", Resolution::grid(cells, 3));
         run.adjusted("elastic discs", move |scene| self.elastic(scene))
     }
 
-    /// The run of discs on springs.
+    /// Returns the run of rigid discs on springs.
     pub(crate) fn rigid(self) -> Run {
         let run = Run::new(self.variant, "dem", Resolution::CriticalFraction(0.05));
         run.adjusted("springs with the force of elastic discs", move |scene| self.on_springs(scene))
     }
 
-    /// What is exact of the scene of a run.
+    /// Returns the exact values for the scene of a run.
     pub(crate) fn exact(self, done: &Done) -> Result<Rung, Missing> {
         (self.exact)(&done.scene, self.squeeze).ok_or_else(|| Missing("moduli in its scene".to_owned()))
     }
 
-    /// The angular frequency of elastic discs in closed form (rad/s).
+    /// Returns the angular frequency of elastic discs in closed form (rad/s).
     fn expected(self, done: &Done) -> Result<f64, Missing> {
         let Rung { restoring, stirred, .. } = self.exact(done)?;
         Ok((restoring / (done.scene.grains[0].mass * (1.0 + stirred))).sqrt())
     }
 
-    /// Force at the wall after the walls have stopped, with its times.
+    /// Returns times and wall forces after the walls have stopped.
     fn ringing(self, done: &Done) -> Result<(Vec<f64>, Vec<f64>), Missing> {
         let force = done.column(self.column)?;
         Ok(done.series().time.iter().zip(force).filter(|(time, _)| **time > self.ramp).unzip())
@@ -117,14 +118,15 @@ impl Ringing {
         Ok(dominant_frequency(&time, &force, 0.5 * near, 1.6 * near))
     }
 
-    /// Part by which springs between surfaces that are as soft as .4 cells of material lower the frequency.
+    /// Returns the relative decrease of frequency by springs between surfaces, which are as soft as 0.4 cells of
+    /// material.
     fn softened(self, mut scene: Scene, cells: f64) -> f64 {
         self.elastic(&mut scene);
         let soft = |rung: Rung| 0.5 * rung.share * PI * 0.4 / (2.0 * cells * rung.patch);
         (self.exact)(&scene, self.squeeze).map_or(f64::NAN, soft)
     }
 
-    /// The force at rest, the frequency, and the latter over that of the springs.
+    /// Claims the force at rest, the frequency, and the frequency over the frequency of rigid discs on springs.
     pub(crate) fn claims(self, case: &Case, set: impl Fn(Run) -> Run) -> Vec<Claim> {
         let softer = || Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75));
         let exact = Source::Derived(self.source);
@@ -162,7 +164,7 @@ impl Ringing {
                 .of(self.rigid().aside())
                 .equals(exact, move |done| {
                     let Rung { force, restoring, stirred, .. } = self.exact(&done[0])?;
-                    // m cancels; k_n is what gives the springs that force.
+                    // m cancels. k_n is the stiffness at which the springs have this force.
                     let spring = force / (self.share * self.squeeze);
                     let expected = (restoring / (self.springs * spring * (1.0 + stirred))).sqrt();
                     Ok(Measured::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))

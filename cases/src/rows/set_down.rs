@@ -1,6 +1,7 @@
-//! A grain set down on a slope deeper than it rests there, with so much friction that it sticks: it rings about its rest
-//! along the normal, and about rolling along the slope. The contact neither opens nor slips, so that only the springs and
-//! dashpots are felt, which every soft contact has alike.
+//! A grain set down on a slope with an overlap larger than its static overlap, and with so much friction that it
+//! sticks. It oscillates about its static overlap along the normal, and about rolling along the slope. The contact
+//! neither opens nor slips. The motion therefore depends only on the springs and dashpots, which all soft contact laws
+//! share.
 //!
 //! With the static overlap δ_s = m g_n/k_n and the slip velocity s = v − ΩR:
 //!
@@ -9,7 +10,8 @@
 //! ds/dt = g_t − (1 + 1/i)(k_t ∫s dt + c_t s)/m                   s(0) = 0
 //! ```
 //!
-//! two damped oscillators; c_n = γ_n m + β k_n, c_t = γ_t m + β k_t. Source: Newton's and Euler's laws.
+//! The two equations are damped oscillators; c_n = γ_n m + β k_n, c_t = γ_t m + β k_t. Source: Newton's and Euler's
+//! laws.
 
 use crate::exact::one_grain::{OneGrain, course, normal_axis, rest_at_overlap};
 use crate::rows::incline::STEP;
@@ -24,31 +26,31 @@ const SPRINGS: Plate = Plate {
     logarithmic: false,
 };
 
-/// Which numbers of a law make its dashpots.
+/// Coefficients of the dashpots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dashpots {
-    /// γ_n and γ_t, in units of the mass.
+    /// γ_n and γ_t: damping proportional to the mass.
     OfMass,
-    /// β, in units of the stiffness.
+    /// β: damping proportional to the stiffness.
     OfStiffness,
 }
 
 /// Static overlap over the radius.
 const RATIO: f64 = 1e-4;
-/// Start over static overlap.
+/// Initial overlap over the static overlap.
 const DEEPER: f64 = 1.5;
 /// Damping ratio along the normal.
 const DAMPING: f64 = 0.1;
-/// Friction that is never reached.
+/// Friction coefficient so large that the grain never slips.
 const STICKING: f64 = 5.0;
-/// Length of the run and time between two samples, in units of 1/ω_n.
+/// Duration of the run and time between two samples, in units of 1/ω_n.
 const TIMES: [f64; 2] = [40.0, 0.2];
 
 const SOURCE: Source = Source::Derived("damped oscillators along the normal and along the slope (derivation)");
 const BECAUSE: &str = "steps of a hundredth of the critical one: the dashpot lags by half a step, 1 % of ζ; the torque arm \
                        is between R and R − overlap";
 
-/// A damped oscillator that is let go at a distance of one from its rest.
+/// Damped oscillator that is released at unit distance from equilibrium.
 #[derive(Clone, Copy)]
 struct Oscillator {
     /// Undamped frequency ω (rad/s).
@@ -58,31 +60,31 @@ struct Oscillator {
 }
 
 impl Oscillator {
-    /// Of a stiffness and a damping over a mass.
+    /// Builds the oscillator from stiffness and damping, both divided by the mass.
     fn of(stiffness: f64, dashpot: f64) -> Self {
         let frequency = stiffness.sqrt();
         Self { frequency, damping: 0.5 * dashpot / frequency }
     }
 
-    /// Its frequency with the damping (rad/s).
+    /// Returns the frequency with damping (rad/s).
     fn ringing(self) -> f64 {
         self.frequency * (1.0 - self.damping * self.damping).sqrt()
     }
 
-    /// Distance from rest at t.
+    /// Returns the distance from equilibrium at t (s).
     fn distance(self, t: f64) -> f64 {
         let (decay, phase) = (self.damping * self.frequency, self.ringing() * t);
         (-decay * t).exp() * (phase.cos() + decay / self.ringing() * phase.sin())
     }
 
-    /// −d(distance)/dt at t.
+    /// Returns −d(distance)/dt at t (s).
     fn approach(self, t: f64) -> f64 {
         let decay = self.damping * self.frequency;
         (-decay * t).exp() * self.frequency * self.frequency / self.ringing() * (self.ringing() * t).sin()
     }
 }
 
-/// The springs and dashpots of the scene's law over the grain's mass: along the normal, and along the slope.
+/// Returns the oscillators along the normal and along the slope, from the scene's contact law and the grain's mass.
 fn oscillators(scene: &Scene) -> [Oscillator; 2] {
     let (grain, law) = (OneGrain::of(scene), scene.laws.iter().flatten().next().copied().unwrap_or_default());
     let (normal, tangential) = (law.normal_stiffness() / grain.mass, law.tangential_stiffness() / grain.mass);
@@ -93,13 +95,13 @@ fn oscillators(scene: &Scene) -> [Oscillator; 2] {
     ]
 }
 
-/// Static overlap (m).
+/// Returns the static overlap (m).
 fn rest(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     grain.overlap_ratio * grain.radius
 }
 
-/// Peak of the slip velocity of an undamped spring: g_t/ω (m/s).
+/// Returns the peak slip velocity of an undamped spring: g_t/ω (m/s).
 fn peak(scene: &Scene) -> f64 {
     OneGrain::of(scene).along / oscillators(scene)[1].frequency
 }
@@ -121,7 +123,7 @@ fn set_down(scene: &mut Scene, dashpots: Dashpots) {
     scene.sampling = Sampling::Seconds(TIMES[1] / frequency);
 }
 
-/// A spring a twentieth too stiff along both directions.
+/// Increases both spring stiffnesses by 5 %.
 fn stiffer(scene: &mut Scene) {
     scene.change_laws(|law| {
         if let grainbench_scene::contact_law::Springs::Linear { normal, tangential } = &mut law.springs {
@@ -130,7 +132,7 @@ fn stiffer(scene: &mut Scene) {
     });
 }
 
-/// Both courses on a slope.
+/// Claims both displacement curves on a slope.
 #[must_use]
 pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     let name = match dashpots {

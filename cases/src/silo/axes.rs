@@ -1,26 +1,26 @@
-//! Figures 4 and 5 of the paper: the axes of stress and rate of the blocks of the last frame, and the single forces in a part of
-//! it.
+//! Figures 4 and 5 of the paper: principal axes of stress and rate in the blocks of the last frame, and single contact
+//! forces in a part of the silo.
 
 use super::ensemble::{self, Flow};
 use super::figures::rows;
 use super::instant::part;
 use grainbench_harness::prelude::*;
 
-/// Half the length of an axis of D (d).
+/// Half of the drawn length of an axis of D (d).
 const RATE: f64 = 1.6;
-/// Half the length of the longest axes of T but for a tenth (d): blocks are 5 d wide.
+/// Half of the drawn length of the 90th percentile of the axes of T (d). Blocks are 5 d wide.
 const STRESS: f64 = 2.4;
-/// Widths of the lines, as parts of the widest.
+/// Line widths over the largest width.
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
 
-/// Both figures; none of a run of which neither axes nor forces were read.
+/// Returns both figures; none if a run has no table of axes or of forces.
 pub(super) fn all(done: &Done, flow: Flow) -> Vec<Figure> {
     let Some(kinds) = kinds(done) else { return Vec::new() };
     let time = done.table("whole").ok().and_then(|whole| whole.column("time")?.last().copied()).unwrap_or(f64::NAN);
     [whole(done, flow, time, &kinds), detail(done, flow, time, kinds)].into_iter().flatten().collect()
 }
 
-/// The axes of every block as lines.
+/// Returns the axes of each block as lines.
 fn kinds(done: &Done) -> Option<Vec<Lines>> {
     let table = done.table("axes").ok()?;
     let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
@@ -54,7 +54,7 @@ fn labels() -> [String; 2] {
     ["x (d)".to_owned(), "z (d)".to_owned()]
 }
 
-/// Every block (figure 4).
+/// Returns the figure of all blocks (figure 4).
 fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> {
     let domain = done.scene.domain.as_ref()?;
     let places = rows(done.table("axes").ok()?, ["x", "z"]);
@@ -77,7 +77,7 @@ fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> 
     ))
 }
 
-/// The blocks in a part, and the single forces there (figure 5).
+/// Returns the figure of the blocks in a part of the silo and the single forces there (figure 5).
 fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
     let forces = rows(done.table("forces").ok()?, ["from_x", "from_z", "to_x", "to_z", "force"]);
     let largest = forces.iter().map(|row| row[4]).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! What is claimed of every silo, from its elements, blocks and tracers.
+//! Claims on every silo, from its elements, blocks and tracers.
 
 use super::ensemble::{self, Flow, mean, share, steady};
 use crate::rows::draws::{apart, mean_of};
@@ -8,47 +8,47 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
 use grainbench_harness::source::Cited;
 
-/// A quantity of a silo.
+/// Function that returns a quantity of a silo.
 pub(crate) type Quantity = fn(&Done, Flow) -> Result<f64, Missing>;
 
-/// Numbers of the prototype that every silo has.
+/// Values of the prototype for every silo.
 pub(crate) struct Numbers {
     pub(crate) sine: Cited,
     pub(crate) packing: Cited,
 }
 
-/// Numbers of the prototype that silos have which drain.
+/// Values of the prototype for silos that drain.
 pub(crate) struct Drained {
     pub(crate) plateau: Cited,
     pub(crate) onset: Cited,
-    /// Angle between axes, frame by frame, and of means over 20 frames.
+    /// Angles between axes: for single frames, and for means over 20 frames.
     pub(crate) angles: [Cited; 2],
-    /// Correlations of the two criteria of friction, and of rates found in two ways.
+    /// Correlations: of the two friction criteria, and of the rates found by two methods.
     pub(crate) correlations: [Cited; 2],
-    /// Packing fraction in the first bins of |I₀|.
+    /// Packing fractions in the first bins of |I₀|.
     pub(crate) bins: &'static [Cited],
 }
 
-/// A silo and how its tolerances were found.
+/// A silo and the origin of its tolerances.
 #[derive(Clone)]
 pub(crate) struct Silo {
-    /// What makes it flow.
+    /// Cause of the flow.
     pub(crate) flow: Flow,
-    /// The run that is judged.
+    /// Run of the claims.
     pub(crate) run: Run,
-    /// What the prototype gives.
+    /// Values of the prototype.
     pub(crate) numbers: &'static Numbers,
-    /// What ten packings of our own give of every quantity: a table with a row a packing, made by `examples/silo_packings.rs`.
+    /// Table of every quantity in ten of our own packings, one row per packing, made by `examples/silo_packings.rs`.
     pub(crate) packings: &'static str,
 }
 
-/// How finely silos are run: the first is that of the rows.
+/// Levels of resolution of silos. The claims use the first.
 pub(crate) const LEVELS: &[Level] = &[
     Level { name: "dt=2.5e-4 s", resolution: Resolution::TimeStep(2.5e-4) },
     Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
 ];
 
-/// Where these cases are weak.
+/// Limitations of these cases.
 pub(crate) const WEAKNESS: &str = "A tenth of the size of the published silo, and one deposit of ten, whose spread gives the \
                                    tolerances; at full size one deposit of each silo. The friction of the paper is not printed \
                                    and assumed to be 0.5. `run` judges stored results. The tests repeat the runs at a tenth of \
@@ -61,22 +61,22 @@ const PACKING: [&str; 2] = ["mean packing fraction of the flow", "1"];
 const PLATEAU: [&str; 2] = ["packing fraction of tracers strained by more than .4", "1"];
 const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median", "1"];
 
-/// Why a quantity may be off by what packings differ by.
+/// Reason for tolerances from the spread over packings.
 const PACKINGS: &str = "a deposit is one draw of many: the 99 % interval of the difference of two, from ten of our own";
 
-/// Friction halved.
+/// Negative control: half the friction.
 fn half_the_friction() -> Control {
     Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
 }
 
-/// Contacts without tangential springs.
+/// Negative control: no tangential springs.
 pub(crate) fn no_springs() -> Control {
     Control::scene("tangential springs a millionth as stiff", |scene| {
         scene.change_laws(|law| law.scale_tangential(1e-6))
     })
 }
 
-/// The ratio of shear to normal stress, tan φ, taken for sin φ.
+/// Negative control: the ratio of shear to normal stress, tan φ, read as sin φ.
 fn tangent_for_sine() -> Control {
     Control::misread("tan φ taken for sin φ", |tables| {
         for table in tables {
@@ -89,7 +89,7 @@ fn tangent_for_sine() -> Control {
     })
 }
 
-/// Gravity turned by ten degrees about y.
+/// Negative control: gravity turned by ten degrees about y.
 fn turned_gravity() -> Control {
     Control::scene("gravity turned by 10°", |scene| {
         let (sine, cosine) = 10.0_f64.to_radians().sin_cos();
@@ -99,46 +99,46 @@ fn turned_gravity() -> Control {
     .long()
 }
 
-/// Mean sin φ of the elements that flow steadily.
+/// Returns the mean sin φ of the elements in steady flow.
 fn sine(done: &Done, flow: Flow) -> Result<f64, Missing> {
     Ok(mean(&steady(done, flow, "sine_of_friction")?))
 }
 
-/// Their mean packing fraction.
+/// Returns the mean packing fraction of the elements in steady flow.
 fn packing(done: &Done, flow: Flow) -> Result<f64, Missing> {
     Ok(mean(&steady(done, flow, "packing_fraction")?))
 }
 
-/// Grains that have left.
+/// Returns the number of grains that have left.
 pub(crate) fn gone(done: &Done, _: Flow) -> Result<f64, Missing> {
     ensemble::gone(done)
 }
 
-/// Packing fraction of strained tracers.
+/// Returns the packing fraction of strained tracers.
 fn plateau(done: &Done, _: Flow) -> Result<f64, Missing> {
     ensemble::plateau(done)
 }
 
-/// Largest sin φ before tracers dilate, median.
+/// Returns the median over tracers of the largest sin φ before dilation.
 fn onset(done: &Done, _: Flow) -> Result<f64, Missing> {
     ensemble::onset(done)
 }
 
-/// Mean angle between the axes of largest T and D.
+/// Returns the mean angle between the axes of largest T and D.
 fn angle(done: &Done, flow: Flow) -> Result<f64, Missing> {
     Ok(mean(&ensemble::angles(done, flow, false, "largest")?))
 }
 
-/// The same of means over windows of frames.
+/// Returns the mean angle between the axes of largest T and D for means over windows of frames.
 fn angle_of_windows(done: &Done, flow: Flow) -> Result<f64, Missing> {
     Ok(mean(&ensemble::angles(done, flow, true, "largest")?))
 }
 
 impl Silo {
-    /// The rows of every silo.
+    /// Returns the claims on every silo.
     pub(crate) fn of_every(&self) -> Vec<Claim> {
         let of = self.numbers;
-        // Ten packings that are pushed differ by more than half of the friction does.
+        // For pushed silos, the difference between ten packings exceeds the effect of halving the friction.
         let of_sine = match self.flow {
             Flow::Drained => half_the_friction(),
             Flow::Pushed => no_springs(),
@@ -154,7 +154,8 @@ impl Silo {
         all
     }
 
-    /// The rows of silos that drain: these strain enough elements for courses along tracers and for curves.
+    /// Returns the claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over
+    /// the inertial number.
     pub(crate) fn of_drains(&self, of: &Drained) -> Vec<Claim> {
         let mut all = vec![
             self.equals(PLATEAU, of.plateau, no_springs(), plateau),
@@ -168,13 +169,14 @@ impl Silo {
         all
     }
 
-    /// How far two packings are apart in a quantity, with 99 %; nothing where the table does not have it, so that the row is red.
+    /// Returns the 99 % interval of the difference of two packings in a quantity. Zero if the table lacks the quantity,
+    /// so that the claim fails.
     fn spread(&self, quantity: &str) -> f64 {
         apart(self.packings, quantity)
     }
 
-    /// A quantity that is what the prototype gives, within what packings differ by. Angles between axes, which may be none, are
-    /// in units of the mean of what axes that know nothing of each other have in the plane.
+    /// Claims that a quantity equals the value of the prototype within the spread over packings. Angles between axes
+    /// can be zero, so their unit is the mean angle between two independent axes in the plane.
     pub(crate) fn equals(
         &self,
         [quantity, unit]: [&'static str; 2],
@@ -193,7 +195,7 @@ impl Silo {
             .refuses(control)
     }
 
-    /// Part of the elements whose sin φ lies where the paper sees it.
+    /// Claims the fraction of elements whose sin φ lies in the range of the paper.
     fn range_of_friction(&self) -> Claim {
         let (flow, source) = (self.flow, self.numbers.sine.source());
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
@@ -203,7 +205,7 @@ impl Silo {
             .refuses(tangent_for_sine())
     }
 
-    /// Correlations, which shuffled elements lose.
+    /// Claims two correlations, which vanish for shuffled elements.
     fn correlations(&self, cited: [Cited; 2]) -> Vec<Claim> {
         let asked = cited.map(|cited| format!("asked for before; the prototype has {}", cited.value));
         let [for_criteria, for_rates] = asked;
@@ -224,7 +226,7 @@ impl Silo {
         ]
     }
 
-    /// Coaxiality of stress and rate.
+    /// Claims the coaxiality of stress and rate.
     fn coaxiality(&self, cited: [Cited; 2]) -> Vec<Claim> {
         let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
         vec![
@@ -238,13 +240,13 @@ impl Silo {
         ]
     }
 
-    /// The turn from stress to rate, counted outwards in either half: a flow that is symmetric has little of it.
+    /// Claims the mean rotation from stress to rate, counted outwards in both halves. It is small for a symmetric flow.
     pub(crate) fn turn(&self, cited: Cited) -> Claim {
         let control = Control::misread("D turned by 10°", ensemble::rate_turned);
         self.equals(["turn from T to D in the plane, with the sign of x", "deg"], cited, control, ensemble::turn)
     }
 
-    /// A symmetric silo has no shear as a whole.
+    /// Claims that a symmetric silo has no shear stress as a whole.
     pub(crate) fn symmetry(&self) -> Claim {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
             .of(self.run.clone())
@@ -255,7 +257,7 @@ impl Silo {
             .refuses(turned_gravity())
     }
 
-    /// φ over |I₀|: bins that the prototype has, and the mean of what those that flow are off by.
+    /// Claims φ over |I₀|: in the bins of the prototype, and the mean error over the bins of flowing elements.
     fn over_inertia(&self, bins: &'static [Cited]) -> Vec<Claim> {
         let cited = move || bins.iter().map(|cited| cited.value).enumerate();
         let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
@@ -277,7 +279,7 @@ impl Silo {
             claim(mean_off, "1")
                 .of(self.run.clone())
                 .equals(bins[0].source(), move |done| {
-                    // From the second bin to the last but one, of which the ten packings were read.
+                    // From the second bin to the last but one: the ten packings were read in these bins.
                     let middle = cited().skip(1).take(bins.len() - 2);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia_flowing(&done[0])?, middle)?;
                     let off: Vec<f64> = pairs.iter().map(|[found, expected]| found - expected).collect();
@@ -288,13 +290,13 @@ impl Silo {
         ]
     }
 
-    /// The deposit.
+    /// Claims the packing fraction of the deposit.
     pub(crate) fn deposit(&self, cited: Cited) -> Claim {
         let control = Control::misread("radii a hundredth too large", ensemble::larger_radii);
         self.equals(["packing fraction of the deposit", "1"], cited, control, |done, _| ensemble::deposit(done))
     }
 
-    /// Our solver in LAMMPS' convention and LAMMPS, from the same grains.
+    /// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same grains.
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], of: Quantity) -> Claim {
         let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
@@ -309,7 +311,8 @@ impl Silo {
         })
     }
 
-    /// The same until chaos tells them apart: of one silo in the main job, of those of the long set in the tests.
+    /// Claims agreement with LAMMPS until chaotic trajectories separate. One silo is in the main CI job; silos of the
+    /// long tier are in the tests.
     fn beginning(&self) -> Claim {
         let run = |solver| match Run::new("beginning", solver, self.run.resolution) {
             run if self.run.set == Set::Long => run.slow(),

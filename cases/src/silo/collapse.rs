@@ -1,4 +1,5 @@
-//! Whether the elements of several flows lie on one curve, as the paper has it: what is kept of other silos, beside a run.
+//! Comparison of the elements of several flows, which lie on one curve according to the paper: a run against stored
+//! results of other silos.
 
 use super::ensemble::{self, STRAIN};
 use crate::kept;
@@ -6,37 +7,37 @@ use crate::registry::by_name;
 use grainbench_harness::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A flow of this size: its case, the variant that is read as elements, and what it is called in a figure.
+/// A flow of this size: its case, the variant that is read as elements, and its label in figures.
 pub(crate) struct Other {
     pub(crate) case: &'static str,
     pub(crate) variant: &'static str,
     pub(crate) label: &'static str,
-    /// In how many bins of strain it has tracers, from |E| = .1 on.
+    /// Number of bins of strain, from |E| = 0.1 on, that contain tracers.
     pub(crate) strained: usize,
 }
 
-/// The other two flows at a tenth of the size of the paper's.
+/// The other two flows at a tenth of the paper's size.
 pub(crate) const TENTH: [Other; 2] = [
     Other { case: "silo-wide", variant: "drained", label: "wide silo, drained", strained: 5 },
     Other { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
 ];
 
-/// What is pushed at the size of the paper.
+/// The pushed silo at the paper's size.
 const DEEP: Other = Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 };
 
-/// The other flows of the size of the paper beside the tall silo.
+/// The flows that are compared with the tall silo at the paper's size.
 pub(crate) const PAPER: [Other; 2] =
     [Other { case: "silo-wide", variant: "paper", label: "wide silo, drained", strained: 5 }, DEEP];
 
-/// And beside the wide one.
+/// The flows that are compared with the wide silo at the paper's size.
 pub(crate) const BESIDE_WIDE: [Other; 2] =
     [Other { case: "silo-tall", variant: "paper", label: "tall silo, drained", strained: 5 }, DEEP];
 
-/// What was read of a flow, with its case and its variant.
+/// Stored result of a flow with its case and variant.
 type Read = ([&'static str; 2], Result<Done, String>);
 
 impl Other {
-    /// What is kept of its run: read once, for several rows and figures lie beside it.
+    /// Returns the stored result. It is read once, because several claims and figures use it.
     pub(super) fn done(&self) -> Result<Done, Missing> {
         static READ: Mutex<Vec<Read>> = Mutex::new(Vec::new());
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
@@ -60,8 +61,8 @@ impl Other {
     }
 }
 
-/// A silo that drains lies on the curve of φ over |I₀| of another, for as long as that one flows; `which` and `size` say in words
-/// what lies beside what.
+/// Claims that a draining silo lies on the curve of φ over |I₀| of another silo, for the duration of the other flow.
+/// `which` and `size` name the other silo and the size.
 pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .of(run)
@@ -78,10 +79,10 @@ pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2
         .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
 }
 
-/// Bins of strain below |E| = .1, in which flows differ by the deposits that they begin with.
+/// Number of bins of strain below |E| = 0.1, in which flows differ because their deposits differ.
 const FEW_STRAINS: usize = 3;
 
-/// Three flows lie on one curve of φ over |E|.
+/// Claims that three flows lie on one curve of φ over |E|.
 pub(crate) fn of_strained(run: Run, others: &'static [Other], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .of(run)

@@ -1,4 +1,4 @@
-//! Figures of silos, as the paper draws them, from what was read of their runs.
+//! Figures of silos as in the paper, from the tables of their runs.
 
 use super::axes;
 use super::ensemble::{Flow, INERTIA, STRAIN, over_inertia, over_strain, strained};
@@ -9,23 +9,23 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 use nalgebra::Vector3;
 
-/// Frames of the film of a page.
+/// Frames of the animation on a page.
 const FRAMES: usize = 24;
-/// Points of a cloud: more are one blot.
+/// Largest number of points in a scatter plot; more points overlap.
 const CLOUD: usize = 600;
 
-/// An inertial number below which an element rests: grains that are held have one of rounding.
+/// Inertial number below which an element is at rest. Fixed grains have one from rounding.
 const STILL: f64 = 1e-5;
 
-/// All figures of a silo: the film, axes of stress and rate, single forces, φ over |I₀| beside the prototype's bins, sin φ
-/// over φ along tracers, φ over strain.
+/// Returns all figures of a silo: the animation, axes of stress and rate, single forces, φ over |I₀| with the
+/// prototype's bins, sin φ over φ along tracers, φ over strain.
 pub(crate) fn all(done: &Done, flow: Flow, bins: &[Cited]) -> Vec<Figure> {
     let axes = axes::all(done, flow).into_iter();
     let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
     film(done).into_iter().chain(axes).chain(graphs).collect()
 }
 
-/// Columns of a table as rows in which every number is one.
+/// Returns columns of a table as rows, without rows that contain NaN.
 pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
     let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
     if columns.len() < N {
@@ -35,13 +35,13 @@ pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64;
     (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
 }
 
-/// So many evenly chosen points of many.
+/// Thins points evenly to at most `most`.
 pub(super) fn thinned(points: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
     let every = points.len().div_ceil(most).max(1);
     points.into_iter().step_by(every).collect()
 }
 
-/// Speed, sin φ, φ and |D₀| beside each other (figures 2 and 3 of the paper).
+/// Returns an animation of speed, sin φ, φ and |D₀| (figures 2 and 3 of the paper).
 fn film(done: &Done) -> Option<Figure> {
     let table = done.table("elements").ok()?;
     let domain = done.scene.domain.as_ref()?;
@@ -82,7 +82,7 @@ fn film(done: &Done) -> Option<Figure> {
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
-/// |I₀| and φ of the elements of the bulk in the steady flow, but for those that are held.
+/// Returns |I₀| and φ of the elements of the bulk in steady flow, without fixed grains.
 pub(super) fn flowing(done: &Done) -> Vec<(f64, f64)> {
     let Ok(table) = done.table("elements") else { return Vec::new() };
     let all = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
@@ -90,7 +90,7 @@ pub(super) fn flowing(done: &Done) -> Vec<(f64, f64)> {
     all.filter(flows).map(|row| (row[3], row[4])).collect()
 }
 
-/// φ over |I₀| (figure 6).
+/// Returns the figure of φ over |I₀| (figure 6).
 fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
     let cloud = flowing(done);
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
@@ -115,7 +115,7 @@ fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
     ))
 }
 
-/// sin φ over φ along tracers (figure 7).
+/// Returns the figure of sin φ over φ along tracers (figure 7).
 fn along_tracers(done: &Done) -> Option<Figure> {
     let table = done.table("tracers").ok()?;
     let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
@@ -148,7 +148,7 @@ fn along_tracers(done: &Done) -> Option<Figure> {
     ))
 }
 
-/// φ over |E| (figure 8).
+/// Returns the figure of φ over |E| (figure 8).
 fn over_hencky(done: &Done) -> Option<Figure> {
     let cloud = strained(done).ok()?.into_iter().map(|[strain, packing]| (strain, packing)).collect();
     let means = over_strain(done, &STRAIN).ok()?;

@@ -5,24 +5,24 @@ use super::ensemble::{self, INERTIA, STRAIN};
 use super::figures::{flowing, rows, thinned};
 use grainbench_harness::prelude::*;
 
-/// Largest inertial number of figure 6: beyond it are the elements over the slit.
+/// Largest inertial number of figure 6. Elements over the slit are beyond it.
 const FASTEST: f64 = 0.15;
-/// Frames that a tracer's course is averaged over: stresses of an instant are noisy.
+/// Number of frames in the moving average along a tracer, because instantaneous stresses are noisy.
 const SMOOTH: usize = 5;
-/// What is seen of packing fractions, of sin φ and of strain.
+/// Plotted ranges of packing fraction, sin φ and strain.
 const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.8], [0.0, 0.9]];
 
-/// A flow with what it is called.
+/// Flows with their labels.
 type Flows = [(&'static str, Done)];
 
-/// The figures of a run and of what is kept of other flows.
+/// Returns the figures of a run and of the stored results of other flows.
 pub(crate) fn figures(done: &Done, label: &'static str, others: &[Other]) -> Vec<Figure> {
     let mut flows = vec![(label, done.clone())];
     flows.extend(others.iter().filter_map(|other| Some((other.label, other.done().ok()?))));
     vec![over_rate(&flows), along_tracers(&flows), over_strain(&flows)]
 }
 
-/// φ over |I₀|, on even axes (figure 6).
+/// Returns the figure of φ over |I₀| on linear axes (figure 6).
 fn over_rate(flows: &Flows) -> Figure {
     let mut curves = Vec::new();
     for (label, done) in flows {
@@ -44,7 +44,7 @@ fn over_rate(flows: &Flows) -> Figure {
     Figure::graph("inertia-of-flows", "Packing fraction over the inertial number, three flows", caption, axes, curves)
 }
 
-/// Courses of the tracers of a flow in two of their quantities, each averaged over some frames.
+/// Returns the paths of the tracers of a flow in two quantities, averaged over some frames.
 fn courses(done: &Done, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     let Ok(table) = done.table("tracers") else { return Vec::new() };
     let all = rows(table, ["tracer", "z", names[0], names[1]]);
@@ -63,10 +63,10 @@ fn courses(done: &Done, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     lines
 }
 
-/// Width of the lines, as a part of the widest.
+/// Line width over the largest width.
 const WIDTH: f64 = 0.15;
 
-/// Courses of the tracers of all flows.
+/// Returns the plot of the tracer paths of all flows.
 fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2], means: Vec<Lines>) -> LinePlot {
     let kind = |(label, done): &(&str, Done)| Lines { label: (*label).to_owned(), lines: courses(done, names) };
     let kinds = flows.iter().map(kind).chain(means).collect();
@@ -74,7 +74,7 @@ fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2],
     LinePlot { axes: axes.map(str::to_owned), to_scale: false, sheets: vec![sheet] }
 }
 
-/// sin φ over φ (figure 7).
+/// Returns the figure of sin φ over φ (figure 7).
 fn along_tracers(flows: &Flows) -> Figure {
     let [packing, sine, _] = SEEN;
     let names = ["packing_fraction", "sine_of_friction"];
@@ -93,13 +93,13 @@ fn along_tracers(flows: &Flows) -> Figure {
     Figure::lines("tracers-of-flows", "sin φ over the packing fraction along tracers, three flows", &caption, plot)
 }
 
-/// φ over |E| (figure 8).
+/// Returns the figure of φ over |E| (figure 8).
 fn over_strain(flows: &Flows) -> Figure {
     let [packing, _, strain] = SEEN;
     let plateau =
         flows.iter().filter_map(|(label, done)| Some(format!("{:.3} ({label})", ensemble::plateau(done).ok()?)));
     let plateau: Vec<String> = plateau.collect();
-    // The mean of the first flow leads the eye.
+    // The mean curve of the first flow guides the eye.
     let means = flows.first().and_then(|(label, done)| Some((label, ensemble::over_strain(done, &STRAIN).ok()?)));
     let means = means.map(|(label, all)| {
         let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);

@@ -1,5 +1,5 @@
-//! What the last frame of a silo is drawn from: principal axes of stress and rate of its blocks, and the forces of the contacts
-//! in a part of it (figures 4 and 5 of the paper).
+//! Data of the last frame of a silo: principal axes of stress and rate of its blocks, and contact forces in a part of
+//! the silo (figures 4 and 5 of the paper).
 
 use super::ensemble::{FLOWING, Flow};
 use grainbench_fields::element::Element;
@@ -10,9 +10,9 @@ use grainbench_harness::reading::Table;
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
-/// Columns of the table of axes: of a block, the three axes of T from the smallest principal value to the largest, each
-/// projected on the plane of x and z and √|principal value of its deviator| long (√(mg/d²)); then, where the block flows, the
-/// axes of the smallest and the largest principal value of D, projected.
+/// Columns of the table of axes, one row per block. The three axes of T, from the smallest principal value to the
+/// largest, are projected on the x-z plane. Each axis has the length √|principal value of the deviator| (√(mg/d²)). If
+/// the block flows, the projected axes of the smallest and the largest principal value of D follow.
 pub(super) const AXES: [&str; 12] = [
     "x",
     "z",
@@ -27,20 +27,20 @@ pub(super) const AXES: [&str; 12] = [
     "lengthens_x",
     "lengthens_z",
 ];
-/// Columns of the table of forces: of a contact between grains, their centres and the size of the force.
+/// Columns of the table of forces, one row per contact between grains: both centres and the magnitude of the force.
 pub(super) const FORCES: [&str; 5] = ["from_x", "from_z", "to_x", "to_z", "force"];
 
-/// The part of a silo whose single forces are shown: lower and upper corner in x and z (d).
+/// Returns the part of a silo whose single forces are plotted: lower and upper corner in x and z (d).
 pub(super) const fn part(flow: Flow) -> [[f64; 2]; 2] {
     match flow {
-        // Where the funnel meets what rests beside it.
+        // Boundary between the funnel and the resting grains beside it.
         Flow::Drained => [[0.0, 5.0], [10.0, 15.0]],
-        // Over the edge of what is moved, where a band of shear goes up.
+        // Above the edge of the moving floor, where a shear band rises.
         Flow::Pushed => [[-5.0, 10.0], [5.0, 20.0]],
     }
 }
 
-/// The axes of the blocks of a frame that hold enough.
+/// Returns the axes of the blocks that contain enough grains.
 pub(super) fn axes(blocks: &[Element], masked: &[Masked], grid: &Grid) -> Table {
     let mut table = Table::new("axes", &AXES);
     for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few && !masked[*cell].surface) {
@@ -59,13 +59,13 @@ pub(super) fn axes(blocks: &[Element], masked: &[Masked], grid: &Grid) -> Table 
     table
 }
 
-/// Axes of a stress, each √|principal value of the deviator| long.
+/// Returns the axes of a stress, each of length √|principal value of the deviator|.
 fn long(stress: &Matrix3<f64>) -> [Vector3<f64>; 3] {
     let of = principal(&deviator(stress, 3), 3);
     [0, 1, 2].map(|number| of.axes[number] * of.values[number].abs().sqrt())
 }
 
-/// The contacts between grains of a snapshot whose contact point is in a part of the silo.
+/// Returns the contacts between grains whose contact point is in a part of the silo.
 pub(super) fn forces(snapshot: &Snapshot, [low, high]: [[f64; 2]; 2]) -> Table {
     let mut table = Table::new("forces", &FORCES);
     for contact in snapshot.told_contacts() {
@@ -76,7 +76,7 @@ pub(super) fn forces(snapshot: &Snapshot, [low, high]: [[f64; 2]; 2]) -> Table {
         }
         let radius = |id: u32| Some(snapshot.grain(id)?.radius);
         let (Some(one), Some(two)) = (radius(contact.grain), radius(other)) else { continue };
-        // By the contact, so that a pair across the period is not drawn across the silo.
+        // Positions from the contact point, so that a pair across the periodic boundary is not drawn across the silo.
         let from = contact.point - contact.normal * one;
         let to = contact.point + contact.normal * two;
         let force = (contact.shear_force - contact.normal * contact.normal_force).norm();
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn axes_are_as_long_as_the_roots_of_the_deviator() {
-        // p = 3: the deviator is diag(−2, 1, 1) less what makes them distinct.
+        // p = 3, so the deviator is diag(−2, 0.9, 1.1): the middle and the largest axis are distinct.
         let stress = Matrix3::from_diagonal(&Vector3::new(-5.0, -2.1, -1.9));
         let [smallest, middle, largest] = long(&stress).map(|axis| axis.abs());
         assert!((smallest - Vector3::new(2.0_f64.sqrt(), 0.0, 0.0)).norm() < 1e-12);

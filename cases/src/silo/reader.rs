@@ -1,4 +1,4 @@
-//! Reads the snapshots of a silo as granular elements of 2.5 d across, as blocks of 5 d, and along tracers.
+//! Reading of the snapshots of a silo as granular elements of 2.5 d, as blocks of 5 d, and along tracers.
 
 use super::ensemble::{Flow, INERTIA};
 use super::instant;
@@ -15,20 +15,21 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::{Dimension, Scene};
 use nalgebra::{Matrix3, Vector3};
 
-/// The reading of every silo.
+/// Reading of every silo.
 pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin };
 
-/// Size of an element across and up (m): it is as deep as the period.
+/// Size of an element in x and z (m). In y, an element is as long as the period.
 pub(super) const ELEMENT: f64 = 2.5;
-/// Time from which on the flow is taken for steady (s): windows begin there.
+/// Time from which the flow counts as steady (s). Windows begin there.
 pub(super) const STEADY: f64 = 6.0;
-/// Frames whose stresses and motions are averaged into a window.
+/// Number of frames whose stresses and motions are averaged in a window.
 const WINDOW: usize = 20;
-/// Most rows of elements that are kept, and of blocks of single frames: of larger runs some frames only.
+/// Largest number of stored rows of elements, and of blocks of single frames. Larger runs store only some frames.
 const MOST_ROWS: usize = 30_000;
-/// The plane in which axes turn: x and z.
+/// Plane in which axes rotate: x and z.
 const PLANE: [usize; 2] = [0, 2];
-/// Without fewer than eight grains, and a cell at the surface is filled to less than two fifths, or the one above it.
+/// Elements need at least eight grains. A cell is at the surface if it, or the cell above it, has a packing fraction
+/// below 0.4.
 const MASKS: Masks = Masks {
     fewest: 8,
     surface: 0.4,
@@ -43,7 +44,7 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     let width = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.x, domain.high.x]);
     let depth = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.y, domain.high.y]);
     let top = scene.grains.iter().map(|grain| grain.position.z + grain.radius).fold(0.0, f64::max);
-    // Whole blocks of two elements, of which the lowest stand on the floor; one more, so that the surface has something above it.
+    // Whole blocks of two elements, starting on the floor. One more block gives the surface a cell above it.
     let height = ((top / (2.0 * ELEMENT)).ceil() + 1.0) * 2.0 * ELEMENT;
     let corners = (Vector3::new(width[0], depth[0], 0.0), Vector3::new(width[1], depth[1], height));
     let of = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
@@ -65,10 +66,10 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     })
 }
 
-/// Columns of the table of elements, beside the quantities of [`QUANTITIES`]: elements that stand on the floor are no elements
-/// of a side.
+/// Columns of the table of elements, before the quantities of [`QUANTITIES`]. Elements on the floor do not count as
+/// elements at a side.
 const PLACED: [&str; 5] = ["time", "x", "z", "side", "surface"];
-/// Quantities of elements, by the names that [`COLUMNS`] gives them.
+/// Quantities of elements, by their names in [`COLUMNS`].
 const QUANTITIES: [&str; 8] = [
     "packing_fraction",
     "sine_of_friction",
@@ -79,10 +80,10 @@ const QUANTITIES: [&str; 8] = [
     "velocity_x",
     "velocity_z",
 ];
-/// Columns of the table of all frames, none of whose elements is at a side or the surface.
+/// Columns of the table of all frames, which contains only elements away from the sides and the surface.
 const RATES: [&str; 6] = ["time", "side", "surface", "shear_rate", "inertial_number", "packing_fraction"];
-/// Columns of the table of blocks of 5 d: how many frames they are means of, and how the axes of T and D lie; beside it those
-/// of the T of another block.
+/// Columns of the table of blocks of 5 d: the number of averaged frames, the angles between the axes of T and D, and
+/// the angle to the axis of T of another block.
 const BLOCKS: [&str; 13] = [
     "time",
     "frames",
@@ -98,22 +99,23 @@ const BLOCKS: [&str; 13] = [
     "axis_of_stress",
     "shear_stress",
 ];
-/// Columns of the table of the whole silo: grains whose centre is above the floor, mean stresses of all elements below the
-/// surface over their pressure, and the pressure of the right half over that of the left one.
+/// Columns of the table of the whole silo. `grains` counts centres above the floor. Stresses are means over all
+/// elements below the surface, over their pressure; the last column is the pressure of the right half over the left
+/// half.
 const WHOLE: [&str; 5] = ["time", "grains", "packing_fraction", "shear_over_pressure", "right_over_left"];
 
 struct Silo {
     course: Course,
     blocks: Grid,
-    /// Every how many frames the blocks of a single one are kept.
+    /// Interval in frames at which blocks of single frames are stored.
     every_blocks: usize,
-    /// What makes the grains flow.
+    /// Cause of the flow.
     flow: Flow,
-    /// The grains of the snapshot before.
+    /// Previous snapshot.
     before: Option<Snapshot>,
-    /// |D₀| of every element from where grains were in the frame before.
+    /// |D₀| of each element, from displacements since the previous frame.
     rates: Vec<Vec<Option<f64>>>,
-    /// Stress and L of every block, of the frames of the window so far.
+    /// Stress and L of each block, for the frames of the present window.
     window: Vec<Vec<Element>>,
     of_blocks: Table,
     whole: Table,
@@ -143,7 +145,7 @@ impl Reader for Silo {
 }
 
 impl Silo {
-    /// Adds the blocks of a snapshot, and those of the window that ends with it.
+    /// Adds the blocks of a snapshot, and of the window that ends with it.
     fn see_blocks(&mut self, snapshot: &Snapshot) {
         let blocks = elements(snapshot, Dimension::Three, &self.blocks);
         if self.course.frames.len().is_multiple_of(self.every_blocks) {
@@ -161,7 +163,7 @@ impl Silo {
         }
     }
 
-    /// Adds what the last frame is as a whole.
+    /// Adds the last frame's row of the whole silo.
     fn see_whole(&mut self) {
         let (Some(frame), Some(snapshot)) = (self.course.frames.last(), &self.before) else { return };
         let above = snapshot.grains.iter().filter(|grain| grain.position.z >= 0.0).count();
@@ -190,7 +192,7 @@ impl Silo {
         ]);
     }
 
-    /// Elements with eight grains or more, of every so many frames.
+    /// Returns the table of elements with at least eight grains, at the stored frames.
     fn elements(&self) -> Table {
         let columns = [&PLACED[..], &QUANTITIES, &["shear_rate_between"]].concat();
         let mut table = Table::new("elements", &columns);
@@ -212,12 +214,13 @@ impl Silo {
         table
     }
 
-    /// Every how many frames elements are kept.
+    /// Returns the interval in frames at which elements are stored.
     fn every(&self) -> usize {
         (self.course.grid.cells() * self.course.frames.len()).div_ceil(MOST_ROWS).max(1)
     }
 
-    /// Where some frames only are kept: what φ over |I₀| is made of, of every frame. Few elements are as fast as those at a slit.
+    /// Returns the data of φ over |I₀| for all frames, if only some frames are stored. Few elements are as fast as the
+    /// elements at a slit.
     fn rates(&self) -> Option<Table> {
         let mut table = Table::new("rates", &RATES);
         let columns = RATES[3..].iter().filter_map(|name| COLUMNS.iter().find(|column| column.name == *name));
@@ -234,14 +237,14 @@ impl Silo {
         (self.every() > 1).then_some(table)
     }
 
-    /// Where tracers were, how far they were strained, and what was around them, for as long as they were in the bulk.
+    /// Returns the table of tracers in the bulk: position, strain, and the quantities around them.
     fn tracers(&self) -> Table {
         let names = ["packing_fraction", "sine_of_friction"];
         let mut table = Table::new("tracers", &["time", "tracer", "x", "z", "strain", names[0], names[1]]);
         for stop in self.course.trails.iter().flat_map(|trails| &trails.stops) {
             let frame = &self.course.frames[stop.frame];
             let is_bulk = |cell: usize| !frame.masked[cell].surface && !frame.masked[cell].few;
-            // What lies between the bulk and its surface is mixed from both.
+            // Between the bulk and its surface, an interpolated value mixes both.
             let over = stop.position + Vector3::new(0.0, 0.0, 0.5 * ELEMENT);
             if ![stop.position, over].iter().all(|place| self.course.grid.find(*place).is_some_and(is_bulk)) {
                 continue;
@@ -257,13 +260,13 @@ impl Silo {
     }
 }
 
-/// Whether a cell is of the first or the last column.
+/// Returns true if a cell is in the first or last column.
 fn is_side(grid: &Grid, cell: usize) -> bool {
     let [column, ..] = grid.at(cell);
     column == 0 || column + 1 == grid.count[0]
 }
 
-/// The element of the mean tensors of a block over some frames in which it had enough grains.
+/// Returns the element with the mean tensors of a block, over the frames in which it had enough grains.
 fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
     let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
     let count = all.len() as f64;
@@ -302,7 +305,7 @@ fn add_blocks(table: &mut Table, grid: &Grid, time: f64, frames: usize, blocks: 
     }
 }
 
-/// Angle of the axis of the largest principal stress from x towards z (degrees), −90 to 90.
+/// Returns the angle of the axis of the largest principal stress from x towards z (degrees), −90 to 90.
 fn axis(stress: &Matrix3<f64>) -> f64 {
     let all = principal(stress, 3);
     let largest = all.axes[all.axes.len() - 1];
