@@ -1,4 +1,4 @@
-//! A grain set down with spin and no velocity (2001 paper, and the disc beside it).
+//! A grain set down with spin and no velocity (the sphere of the 2001 paper, and a disc).
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -41,19 +41,19 @@ fn claims() -> Vec<Claim> {
     dem.chain(rigid::backspins(&CASE, RIGID)).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
-/// The last state against the rigid answer.
+/// Compares a quantity of the last state with the rigid solution.
 fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     incline::end(done, OneGrain::rigid_backspin, pick)
 }
 
-/// The grain at a static overlap of 1e-3 R, and the step (s).
+/// Returns the grain at a static overlap of 1e-3 R, and the time step (s).
 fn soft(variant: &str) -> Option<(OneGrain, f64)> {
     let mut scene = CASE.variant(variant).ok()?;
     rest_at_overlap(&mut scene, 1e-3, DAMPING);
     Some((OneGrain::of(&scene), STEP.steps(&scene).ok()?.0))
 }
 
-/// What the first step may take of friction halfway through the slide.
+/// Returns the tolerance for friction that the first step may lack, halfway through the slide.
 fn first_step(variant: &str) -> Tolerance {
     computed(
         soft(variant).map_or(f64::NAN, |(grain, step)| 2.0 * step / sliding(&grain)),
@@ -61,7 +61,7 @@ fn first_step(variant: &str) -> Tolerance {
     )
 }
 
-/// What a soft contact may take of the displacement.
+/// Returns the tolerance for the effect of a soft contact on the displacement.
 fn fallen_behind(variant: &str) -> Tolerance {
     let behind = |(grain, step): (OneGrain, f64)| {
         (grain.tail() + grain.friction * grain.onto * step * sliding(&grain)) / grain.rigid_backspin(1.0).x
@@ -91,7 +91,8 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
+/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
+/// solver-independent.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
     let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
@@ -106,7 +107,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         estimated(allowed, "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5")
             .up_to(2.0 * allowed)
     };
-    // With an arm a the velocity is off by (1−i)/(1+i) of (R−a)/R, the spin by 2/(1+i) of it: i = 2/5 and 1/2.
+    // A lever arm a changes the velocity by (1−i)/(1+i) of (R−a)/R, and the spin by 2/(1+i) of it: i = 2/5 and 1/2.
     let arm = |times: f64| {
         computed(
             times * NEARLY_RIGID,
@@ -125,28 +126,28 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Why the tolerance at other numbers is what it is.
+/// Reason for the tolerance under parameter variation.
 const ELSEWHERE: &str = "half a period of each spring before friction acts in full, over the time of sliding; of what \
      rolls overlap/R for the torque arm and the speed at which the spring would ring undamped";
 
-/// Time of sliding (s).
+/// Returns the time of sliding (s).
 fn sliding(grain: &OneGrain) -> f64 {
     grain.backspin_velocity(grain.radius) / (grain.friction * grain.onto)
 }
 
-/// How far the velocity halfway may be off at any numbers, as a fraction.
+/// Returns the largest relative error of the velocity halfway through the slide, for any parameters.
 fn halfway(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     2.0 * grain.onset() / sliding(&grain)
 }
 
-/// How far the final velocity and spin may be off at any numbers, as a fraction.
+/// Returns the largest relative error of final velocity and spin, for any parameters.
 fn rolling(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     grain.overlap_ratio + grain.ringing(grain.friction * grain.onto) / grain.backspin_velocity(grain.radius)
 }
 
-/// How far the displacement may be off at any numbers, as a fraction.
+/// Returns the largest relative error of the displacement, for any parameters.
 fn displaced(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);

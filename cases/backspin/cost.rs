@@ -1,4 +1,4 @@
-//! From sliding to rolling, over stiffness.
+//! Target quantity of accuracy: the transition from sliding to rolling, over stiffness.
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;

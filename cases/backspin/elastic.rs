@@ -1,9 +1,9 @@
-//! The grain as an elastic body: what the material point method gives.
+//! The grain as an elastic body, with the material point method.
 //!
-//! An elastic grain rolls on a flattened side, at a smaller height, and comes out a few per cent faster than a rigid
-//! one. Of the sphere an independent prototype says how far it gets. Of the disc nobody does, but ten and a hundred
-//! times larger moduli lead to the rigid answer, which needs no reference. The mean speed from .5 s on leaves out the
-//! ringing of the contact, which nothing damps.
+//! An elastic grain rolls on a flattened side, at a smaller height, and becomes a few per cent faster than a rigid
+//! grain. For the sphere, an independent prototype gives the displacement. For the disc there is no reference, but ten
+//! and a hundred times larger moduli lead to the rigid solution. The mean speed from 0.5 s on averages over the
+//! undamped free vibration of the contact.
 
 use crate::exact::one_grain::course;
 use crate::rows::elastic::{Pressed, Rest, settle, stiffen};
@@ -22,7 +22,7 @@ fn run(variant: &'static str, solver: &'static str, cells: f64) -> Run {
     stiffened(variant, solver, cells, 1.0)
 }
 
-/// The moduli times a factor.
+/// Returns the run of an elastic grain with its moduli times a factor.
 fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f64) -> Run {
     let (rest, points) = if variant == "sphere" { (SPHERE, 2) } else { (DISC, 3) };
     let name = format!("elastic and settled, moduli × {factor}");
@@ -32,9 +32,9 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
     })
 }
 
-/// How much nearer to the plane than its radius the centre of the disc is on a grid of so many cells a radius (R), at rest under
-/// its weight W (N per metre) and that of the springs at its surface: with K = 10 MPa, G = 2.5 MPa, so ν = 5/13, 3000 kg/m³ and R
-/// = .5 m. See [`Pressed::gives`] for what the disc gives.
+/// Returns the decrease of the height of the disc's centre over R, at rest under its weight W (N per metre), on a grid
+/// with `cells` cells a radius. It includes the springs at the surface. K = 10 MPa and G = 2.5 MPa, so ν = 5/13; 3000
+/// kg/m³ and R = 0.5 m. See [`Pressed::gives`] for the displacement of the disc.
 fn flattened(cells: f64) -> f64 {
     let radius = 0.5;
     let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
@@ -47,7 +47,7 @@ fn flattened(cells: f64) -> f64 {
 
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    // Deviations that were asked for before the solver existed.
+    // The deviations were required before the solver existed.
     for (cells, asked) in [(4.0, 0.03), (8.0, 0.01)] {
         // R/8 takes a minute.
         let run = || if cells > 4.0 { run("sphere", "mpm", cells).long() } else { run("sphere", "mpm", cells) };
@@ -96,7 +96,7 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Moduli ten and a hundred times larger: nearer to the rigid answer, which needs no reference.
+/// Claims with moduli ten and a hundred times larger: closer to the rigid solution, which needs no reference.
 fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);

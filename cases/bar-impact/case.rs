@@ -1,4 +1,4 @@
-//! Two elastic bars meet end to end.
+//! End-to-end impact of two elastic bars.
 
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
@@ -31,7 +31,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Speed of approach (m/s), of waves (m/s), length (m), density (kg/m³).
+/// Impact velocity (m/s), wave speed (m/s), length (m) and density (kg/m³).
 struct Impact {
     speed: f64,
     wave: f64,
@@ -50,7 +50,7 @@ impl Impact {
         Self { speed: body.velocity.x, wave: (modulus / body.density).sqrt(), length, density: body.density }
     }
 
-    /// Velocity of the right bar's centre of mass (m/s).
+    /// Returns the velocity of the right bar's centre of mass (m/s).
     fn velocity(&self, time: f64) -> f64 {
         self.speed * (0.5 * time * self.wave / self.length).min(1.0)
     }
@@ -60,16 +60,16 @@ impl Impact {
     }
 }
 
-/// Width of a front after the way 2L, in units of that way.
+/// Returns the width of a wave front after a path length 2L, over 2L.
 fn width(resolution: Resolution) -> f64 {
     let Resolution::Grid { cells, .. } = resolution else { return f64::NAN };
     front(0.5 / cells, 1.0)
 }
 
-/// What a contact still owes when half of a front of width 1 has come.
+/// Momentum that a contact has not yet transferred when half of a front of width 1 has arrived.
 const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
-/// Mean stress in the middle of the right bar between two times, in transits L/c.
+/// Returns the mean stress in the middle of the right bar from 0.7 to 1.3 transits L/c.
 fn plateau(done: &Done) -> Result<f64, Missing> {
     let impact = Impact::of(&done.scene);
     let transit = impact.length / impact.wave;

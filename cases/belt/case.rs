@@ -1,4 +1,4 @@
-//! A grain laid on a moving belt slides until it rolls.
+//! A grain placed on a moving belt slides until it rolls.
 
 use crate::exact::one_grain::{OneGrain, State, course, last, nearest, rest_at_overlap};
 use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
@@ -11,9 +11,9 @@ use std::f64::consts::TAU;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
-/// The belt that stops.
+/// Variant with a belt that stops.
 const STOPS: &str = "stops";
-/// The resolution of `rigid`.
+/// Number of substeps of `rigid`.
 const SUBSTEPS: u32 = 8;
 
 const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
@@ -35,12 +35,12 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The grain and the belt.
+/// Grain and belt.
 struct Belt {
     grain: OneGrain,
-    /// V (m/s).
+    /// Belt speed V (m/s).
     speed: f64,
-    /// When it stops (s).
+    /// Time at which the belt stops (s).
     stop: f64,
 }
 
@@ -57,22 +57,22 @@ impl Belt {
         }
     }
 
-    /// μ g (m/s²).
+    /// Returns the acceleration by friction, μ g (m/s²).
     fn push(&self) -> f64 {
         self.grain.friction * self.grain.onto
     }
 
-    /// Velocity of rolling f V (m/s).
+    /// Returns the velocity of rolling, f V (m/s).
     fn rolling(&self) -> f64 {
         self.grain.share() * self.speed
     }
 
-    /// Time of sliding t_s (s).
+    /// Returns the time of sliding t_s (s).
     fn sliding(&self) -> f64 {
         self.rolling() / self.push()
     }
 
-    /// A rigid grain, on a belt that stops after it has come to roll, or never.
+    /// Returns the state of a rigid grain at t (s). The belt stops after the grain has started to roll, or never.
     fn rigid(&self, t: f64) -> State {
         let Self { grain, stop, .. } = self;
         let turn = grain.inertia_factor * grain.radius;
@@ -82,34 +82,34 @@ impl Belt {
             State { x: 0.5 * v * slid + v * (t - slid), v, omega: -v / turn }
         };
         let (now, since) = (sped_up(t), sped_up((t - stop).max(0.0)));
-        // From when it stops on, a belt that runs backwards beside the one that runs on.
+        // Superposition: from the stop on, a second belt runs backwards in addition to the first.
         State { x: now.x - since.x, v: now.v - since.v, omega: now.omega - since.omega }
     }
 
-    /// Velocity of rolling when friction acts at an arm (m/s).
+    /// Returns the velocity of rolling for a lever arm of friction (m/s).
     fn rolling_at(&self, arm: f64) -> f64 {
         let moment = self.grain.inertia_factor * self.grain.radius.powi(2);
         self.speed * moment / (moment + arm * arm)
     }
 
-    /// By how much sliding lags at the most, with steps (s): the spring's stretch over V, and a step.
+    /// Returns the largest delay of sliding (s) at a time step (s): the spring displacement over V, plus one step.
     fn lag(&self, step: f64) -> f64 {
         self.grain.stretch(self.push()) / self.speed + step
     }
 
-    /// How far the displacement at t may be off, as a fraction.
+    /// Returns the largest relative error of the displacement at t.
     fn displaced(&self, t: f64, step: f64) -> f64 {
         (self.rolling() * self.lag(step) + self.grain.stretch(self.push())) / self.rigid(t).x
     }
 
-    /// How far the way of the second slide may be off because the spring rings when it begins (m): a velocity μ g/ω lasts
-    /// f V/(μ g).
+    /// Returns the largest error of the second sliding distance (m) due to the spring's oscillation at its start: a
+    /// velocity μ g/ω lasts f V/(μ g).
     fn rung(&self) -> f64 {
         self.rolling() * self.grain.ringing(self.push()) / self.push()
     }
 
-    /// Velocity after the first step where Coulomb's limit does not hold for the dashpot (m/s): where the belt is seen to run
-    /// from step 1 on, and from step 0 on.
+    /// Returns the velocities after the first step (m/s) if the Coulomb limit does not hold for the dashpot: with a
+    /// belt that moves from step 1 on, and from step 0 on.
     fn kicked(&self, scene: &Scene, step: f64) -> [f64; 2] {
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let spring = self.grain.tangential_stiffness / self.grain.mass * step;
@@ -125,19 +125,19 @@ fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> = VARIANTS.into_iter().flat_map(of_both).collect();
     claims.extend(stopped());
     claims.push(kick());
-    // LIGGGHTS' dashpot at step 0 feels a belt that runs; ours feels one that has not yet moved: see `kick`.
+    // At step 0, the dashpot of LIGGGHTS sees a moving belt, and our dashpot a resting one: see `kick`.
     claims.extend(programs::one_grain(&VARIANTS).into_iter().filter(|claim| !is_kicked(claim)));
     claims
 }
 
-/// The last state against the rigid answer.
+/// Compares a quantity of the last state with the rigid solution.
 fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
     let exact = pick(Belt::of(&done.scene).rigid(t));
     Ok(Measured::new(pick(state), exact, exact))
 }
 
-/// The velocity nearest to half the time of sliding.
+/// Compares the velocity at half the time of sliding with the rigid solution.
 fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
     let belt = Belt::of(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
@@ -145,7 +145,7 @@ fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
     Ok(Measured::new(state.v, exact, exact))
 }
 
-/// The belt of a variant with springs as stiff as a run has them, and the step of it (s).
+/// Returns grain and belt of a variant with the spring stiffness of the nearly rigid runs, and their time step (s).
 fn stiff(variant: &'static str) -> (Belt, f64) {
     let Ok(mut scene) = CASE.variant(variant) else {
         return (Belt { grain: NO_GRAIN, speed: f64::NAN, stop: f64::NAN }, f64::NAN);
@@ -171,7 +171,8 @@ const NO_GRAIN: OneGrain = OneGrain {
     tangential_damping: f64::NAN,
 };
 
-/// Against the rigid answer where the contact is so stiff that conventions hardly differ: fair to any solver.
+/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
+/// solver-independent.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
     let (belt, step) = stiff(variant);
@@ -205,7 +206,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Rounding of a sum of as many steps as runs at overlap/R = 1e-3 take, in units of the velocity.
+/// Returns the rounding error of a sum of as many steps as runs at overlap/R = 1e-3 take, in units of the velocity.
 fn rounding() -> Tolerance {
     let steps = 1.0 / (0.01 * 2.0 * (1e-3_f64 * 0.5 / 9.8).sqrt());
     computed(
@@ -214,7 +215,7 @@ fn rounding() -> Tolerance {
     )
 }
 
-/// Rolling in the end, to rounding, with the torque arm that each convention has.
+/// Claims rolling at the end, to rounding, with the torque arm of each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
     let of = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
@@ -237,7 +238,8 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Rapier, whose contacts have no compliance: what it is off by is its step and its overlap at rest (see `backspin`).
+/// Claims on rapier, whose contacts have no compliance. Its error comes from its step and its overlap at rest (see
+/// `backspin`).
 fn by_impulses(variant: &'static str) -> Vec<Claim> {
     let (belt, _) = stiff(variant);
     let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
@@ -270,7 +272,8 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// The belt stops: the disc comes to rest, with its spin, where the speed of rolling would have brought it until then.
+/// Claims on a belt that stops: velocity and spin of the disc become zero. Its displacement is the velocity of rolling
+/// times the time of the stop.
 fn stopped() -> Vec<Claim> {
     let (belt, step) = stiff(STOPS);
     let turning = || {
@@ -312,12 +315,13 @@ fn stopped() -> Vec<Claim> {
     ]
 }
 
-/// Whether a row compares a run of LIGGGHTS with a dashpot along the belt.
+/// Returns true if a claim compares a LIGGGHTS run that has a dashpot along the belt.
 fn is_kicked(claim: &Claim) -> bool {
     claim.runs.iter().any(|run| run.solver == "liggghts") && claim.quantity.contains(", damped,")
 }
 
-/// What LIGGGHTS' dashpot does at step 0, when the belt of ours has not moved yet: by how much its grain is the faster one.
+/// Claims the effect of LIGGGHTS' dashpot at step 0, when our belt still rests: the velocity difference after the first
+/// step.
 fn kick() -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| {
         Run::new("disc", solver, Resolution::TimeStep(1e-4)).adjusted("one step, overlap/R = 1e-3", |scene| {
@@ -366,7 +370,8 @@ mod tests {
 
     use super::*;
 
-    /// Seen from the belt it is set down with spin and velocity: the end of `backspin` with R Ω₀ = V.
+    /// In the frame of the belt, the grain has initial spin and velocity: its motion ends as in `backspin` with R Ω₀ =
+    /// V.
     #[test]
     fn is_backspin_seen_from_the_belt() {
         let belt = Belt::of(&CASE.variant("disc").unwrap());
@@ -377,7 +382,7 @@ mod tests {
         }
     }
 
-    /// At rest, after f V T, and it slides on the belt that has stopped for as long as on the one that ran.
+    /// The disc is at rest after f V T. It slides on the stopped belt as long as on the moving belt.
     #[test]
     fn a_belt_that_stops_brings_it_to_rest() {
         let belt = Belt::of(&CASE.variant(STOPS).unwrap());

@@ -1,10 +1,10 @@
-//! Every pair of materials of the round robin of bulk processes, beside LIGGGHTS.
+//! All material pairs of the round robin of bulk processes, against LIGGGHTS.
 
 use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
-/// The step of the paper's impact (Dosta et al. 2024).
+/// The time step of the paper's impact (Dosta et al. 2024).
 const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
 
 pub(crate) static CASE: Case = Case {
@@ -23,10 +23,10 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Our solver in LIGGGHTS' convention, and LIGGGHTS.
+/// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 
-/// Variants, and which pairs they are.
+/// Variants with the names of their pairs.
 const PAIRS: [(&str, &str); 8] = [
     ("m1-m1", "M1 on M1"),
     ("m1-m2", "M1 on M2"),
@@ -51,7 +51,7 @@ fn runs(variant: &'static str) -> [Run; 2] {
     SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
 
-/// The force on the first of a pair, m Δv/Δt, over all steps.
+/// Claims the force on the first grain of a pair, m Δv/Δt, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
     let allowed = rounding(1.0, "the same cycle; in units of the largest force");
     let control = Control::ours("E* × 1.00001 in ours", |scene| {
@@ -63,7 +63,7 @@ fn force(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// The torque on it, I Δω/Δt.
+/// Claims the torque on the first grain of a pair, I Δω/Δt.
 fn torque(variant: &'static str, about: &str) -> Claim {
     let allowed = rounding(1.0, "the same cycle; in units of the largest torque");
     let control = Control::ours("μ × 1.00001 in ours", |scene| {
@@ -75,7 +75,8 @@ fn torque(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// What velocities gain a step times an inertia, the worst difference of ours from the program's in units of its largest.
+/// Returns the largest difference between our rate and the external solver's, in units of its largest rate. A rate is
+/// the velocity change per step, times an inertia, over the step.
 fn rate(done: &[Done], columns: &[&str], inertia: f64) -> Result<Measured, Missing> {
     let [ours, theirs, ..] = done else { return Err(Missing("second run to compare with".to_owned())) };
     let times = &theirs.series().time;

@@ -1,4 +1,5 @@
-//! A grain is carried round by two driven grains: a contact whose normal turns, and one that turns about its normal.
+//! A grain carried round by two grains with prescribed motion: a contact with a rotating normal, and a contact that
+//! rotates about its normal.
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;
@@ -21,7 +22,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The motion, in numbers of the scene.
+/// Parameters of the motion.
 struct Motion {
     /// Angular velocity Ω (rad/s).
     spin: Vector3<f64>,
@@ -55,7 +56,7 @@ impl Motion {
         }
     }
 
-    /// Distance that the place may be off (m); lever arms matter where the axis is across the normals.
+    /// Returns the largest error of the position (m). Lever arms matter if the axis is across the normals.
     fn off(&self, across: bool) -> f64 {
         let (rate, distance) = (self.spin.norm(), self.start.norm());
         let phase = 0.25 * self.frequency * self.time;
@@ -70,7 +71,7 @@ fn motion(variant: &str) -> Option<Motion> {
     CASE.variant(variant).ok().map(|scene| Motion::of(&scene))
 }
 
-/// Place of the carried grain in the end (m).
+/// Returns the final position of the carried grain (m).
 fn place(done: &Done) -> Result<Vector3<f64>, Missing> {
     let mut place = Vector3::zeros();
     for (axis, name) in ["carried.x", "carried.y", "carried.z"].iter().enumerate().take(done.scene.dimension.count()) {

@@ -1,9 +1,9 @@
 //! Bessel functions of integer order, for the linear chain.
 
-/// J_0 … J_{orders−1} at x > 0 by Miller's downward recurrence, J_{n−1} = (2n/x) J_n − J_{n+1}, normalised by
+/// Returns J_0 … J_{orders−1} at x > 0 by Miller's downward recurrence, J_{n−1} = (2n/x) J_n − J_{n+1}, normalised by
 /// J_0 + 2 Σ J_{2k} = 1.
 pub(crate) fn bessel(x: f64, orders: usize) -> Vec<f64> {
-    // High enough above both x and the orders wanted that the arbitrary start has died out.
+    // So far above x and the orders that the effect of the arbitrary start vanishes.
     let top = 2 * (orders.max(x.ceil() as usize) / 2) + 60;
     let mut values = vec![0.0; top + 2];
     values[top] = 1e-300;
@@ -19,7 +19,7 @@ pub(crate) fn bessel(x: f64, orders: usize) -> Vec<f64> {
     values
 }
 
-/// v_n/V of the driven chain at x = 2ω₀t: J_{2n} + 2 Σ_{k≥1} J_{2n+2k}.
+/// Returns v_n/V of the driven chain at x = 2ω₀t: J_{2n} + 2 Σ_{k≥1} J_{2n+2k}.
 pub(crate) fn velocity(n: usize, x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -32,7 +32,7 @@ pub(crate) fn velocity(n: usize, x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Values from tables, and the chain's check values that were computed by quadrature.
+    /// Compares with tabulated values, and with values of the chain that were computed by quadrature.
     #[test]
     fn agrees_with_tables() {
         let values = bessel(1.0, 3);

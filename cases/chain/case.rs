@@ -1,4 +1,4 @@
-//! A linear chain, driven at one end.
+//! A linear chain of beads, driven at one end.
 
 #[path = "bessel.rs"]
 mod bessel;
@@ -42,7 +42,7 @@ fn run(level: Level) -> Run {
     Run::new(PLAIN, "dem", level.resolution)
 }
 
-/// Driving speed V (m/s), ω₀ (rad/s) and impedance √(km) (N s/m).
+/// Returns the driving speed V (m/s), ω₀ (rad/s) and the impedance √(km) (N s/m).
 fn chain(scene: &Scene) -> (f64, f64, f64) {
     let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let mass = scene.grains[0].mass;
@@ -94,7 +94,7 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.scale_normal(1.02));
         }))
         .fair_to_any();
-    // Rigid beads have no dispersion, and no unique answer either: many beads touch at once.
+    // Rigid beads have no dispersion, and no unique solution when many beads are in contact at once.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
         .of(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and its distribution over beads in contact \
@@ -106,7 +106,7 @@ fn claims() -> Vec<Claim> {
     BEADS.into_iter().map(at_bead).chain([order, force, rigid]).collect()
 }
 
-/// Root mean square error of the six beads in units of V.
+/// Returns the root mean square error of the velocities of the six beads, in units of V.
 fn rms(done: &Done) -> Result<f64, Missing> {
     let errors: Result<Vec<f64>, Missing> =
         BEADS.into_iter().map(|(n, column)| Ok(bead(done, n, column)?.error())).collect();

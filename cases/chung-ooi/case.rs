@@ -22,7 +22,7 @@ const ELASTIC: [&str; 4] = ["1-glass", "1-limestone", "2-aluminium-alloy", "2-ma
 const DAMPED: [&str; 2] = ["3-aluminium-oxide", "3-cast-iron"];
 const OBLIQUE: [&str; 2] = ["4-aluminium-oxide", "4-aluminium-alloy"];
 const RESTITUTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.8, 1.0];
-/// Angles of impact from the normal (degrees) on the sliding branch.
+/// Impact angles from the normal (degrees) on the sliding branch.
 const ANGLES: [f64; 5] = [40.0, 50.0, 60.0, 70.0, 80.0];
 const HERTZ: Source = Source::Derived("energy and a quadrature of F = kδ^{3/2} (derivation)");
 const RESTITUTION: Source = Source::Derived("damped oscillator in δ^{5/4}: v′/v = −e (derivation)");
@@ -55,19 +55,19 @@ fn claims() -> Vec<Claim> {
         claims.extend(forces(run, &["contact.normal_force"], |scene, _| hertz(scene).1));
     }
     claims.push(force_that_moves());
-    // At a wall both programs keep the force that moved the grain.
+    // At a wall, both external solvers output the force that moved the grain.
     let damped = |solver| Run::new(DAMPED[0], solver, STEP.resolution);
     claims.extend(forces(damped, &["contact.normal_force"], |scene, _| hertz(scene).1));
     claims
 }
 
-/// The law of the contact that the scene is about: between spheres where there are two, else with the plane.
+/// Returns the contact law of the scene: between two spheres, or between the sphere and the plane.
 fn law(scene: &Scene) -> ContactLaw {
     let partner = if scene.grains.len() == 2 { scene.grains[1].material } else { scene.walls[0].material };
     scene.law(scene.grains[0].material, partner).copied().unwrap_or_default()
 }
 
-/// Hertz's k = (4/3)E*√R*, effective mass and closing speed.
+/// Returns Hertz's k = (4/3)E*√R*, the effective mass and the approach velocity.
 fn impact(scene: &Scene) -> (f64, f64, f64) {
     let first = &scene.grains[0];
     let (radius, mass, speed) = match scene.grains.get(1) {
@@ -81,14 +81,14 @@ fn impact(scene: &Scene) -> (f64, f64, f64) {
     (4.0 / 3.0 * law(scene).effective_modulus() * radius.sqrt(), mass, speed)
 }
 
-/// Deepest overlap (m), largest force (N) and duration (s) of an elastic impact.
+/// Returns the largest overlap (m), the largest force (N) and the duration (s) of an elastic impact.
 fn hertz(scene: &Scene) -> (f64, f64, f64) {
     let (k, mass, speed) = impact(scene);
     let overlap = (5.0 * mass * speed * speed / (4.0 * k)).powf(0.4);
     (overlap, k * overlap.powf(1.5), 2.943_275_184 * overlap / speed)
 }
 
-/// The largest value of a column, refined by the parabola through the three samples about it.
+/// Returns the largest value of a column, refined by a parabola through the three samples about it.
 fn peak(values: &[f64]) -> f64 {
     let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
     let (left, top, right) = (values[at - 1], values[at], values[at + 1]);
@@ -96,7 +96,7 @@ fn peak(values: &[f64]) -> f64 {
     if bend < 0.0 { top - (right - left).powi(2) / (8.0 * bend) } else { top }
 }
 
-/// When the overlap ends: the last touching sample, and on at the closing speed it has there.
+/// Returns the time at which the overlap ends: the last sample in contact, extrapolated with its approach rate.
 fn duration(done: &Done) -> Result<f64, Missing> {
     let overlap = done.column("contact.overlap")?;
     let time = &done.series().time;
@@ -141,7 +141,7 @@ fn elastic() -> Vec<Claim> {
     claims
 }
 
-/// ζ of a coefficient of restitution.
+/// Returns the damping ratio ζ of a coefficient of restitution.
 fn damping_ratio(restitution: f64) -> f64 {
     let log = restitution.ln();
     -log / (PI * PI + log * log).sqrt()
@@ -157,7 +157,7 @@ fn rebound(done: &Done) -> Result<f64, Missing> {
     Ok(-done.last("a.vz")? / done.scene.grains[0].velocity.z)
 }
 
-/// Tolerance of a restitution with a dashpot that is half a step late.
+/// Returns the tolerance of a restitution for a dashpot that is half a step late.
 fn late(variant: &str, restitution: f64) -> Tolerance {
     let error = |scene: Scene| {
         let ((k, mass, speed), (overlap, ..)) = (impact(&scene), hertz(&scene));
@@ -196,8 +196,8 @@ fn restitution() -> Vec<Claim> {
     DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| of(variant, restitution))).collect()
 }
 
-/// Force (N) on the sphere of aluminium oxide that meets the plane with e = .5, by hand: k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where
-/// that pushes, with the ζ of a release at zero force.
+/// Returns the force (N) on the sphere of aluminium oxide that hits the plane with e = 0.5, with typed values: k
+/// δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where positive. ζ belongs to a release at zero force.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     let (radius, density, modulus) = (0.0025_f64, 4000.0, 380.0e9 / (1.0 - 0.23 * 0.23));
     let stiffness = 4.0 / 3.0 * modulus * radius.sqrt();
@@ -206,8 +206,8 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
     if overlap > 0.0 { (stiffness * overlap.powf(1.5) + damping * overlap.powf(0.25) * rate).max(0.0) } else { 0.0 }
 }
 
-/// The contact force that `dem` records is the one that moves the grain: its dashpot takes the velocity half a step back,
-/// by which the sphere came from its last position to this one.
+/// Claims that the contact force that `dem` records is the force that moves the grain. Its dashpot uses the velocity
+/// half a step earlier, which moved the sphere from the previous position to this one.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .of(Run::new(DAMPED[0], "dem", STEP.resolution))
@@ -238,12 +238,12 @@ fn at_angle(variant: &'static str, degrees: f64) -> Run {
     })
 }
 
-/// Tangential velocity after impact over that before.
+/// Returns the tangential velocity after the impact over the tangential velocity before it.
 fn tangential(done: &Done) -> Result<f64, Missing> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// Tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
+/// Returns tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
     let meeting = Meeting::of(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);
@@ -284,8 +284,8 @@ fn more_friction() -> Control {
     Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
 }
 
-/// A rigid-body engine has neither overlap nor duration; restitution it gives back exactly. Friction it limits by the
-/// impulse that stops the approach, μ m v_n, and leaves out what restitution adds: μ(1+e) m v_n is Coulomb's.
+/// Claims on a rigid-body engine, which has neither overlap nor duration but an exact restitution. It limits friction
+/// by μ m v_n, the impulse that stops the approach. Coulomb's limit is μ(1+e) m v_n, with the impulse of restitution.
 fn rigid() -> Vec<Claim> {
     let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid::DEFAULT) };
     let oblique = || rigid(at_angle(OBLIQUE[0], 60.0));

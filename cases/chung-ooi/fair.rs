@@ -1,5 +1,6 @@
-//! What any program with Hertz's springs owes in the eight tests, whatever it leaves to convention: read from places, velocities
-//! and spins of grains at samples, for a program need not tell the forces at contacts.
+//! Solver-independent claims: properties that any external solver with Hertz springs must satisfy in the eight tests,
+//! independent of conventions. They use only sampled positions, velocities and spins, because an external solver need
+//! not output contact forces.
 
 use super::forms::{Meeting, restitution};
 use super::turning::{BALLS, PLANE, STICKING, elastic, sliding_along, spinning};
@@ -8,11 +9,11 @@ use super::{at_angle, hertz, peak, rebound, with_restitution};
 use crate::exact::dashpot::no_tension_restitution;
 use grainbench_harness::prelude::*;
 
-/// Angles of impact from the normal (degrees) of test 4 that any program is asked for.
+/// Impact angles from the normal (degrees) of test 4 for external solvers.
 const ANGLES: [f64; 2] = [40.0, 70.0];
-/// Angle at which the contact sticks.
+/// Impact angle at which the contact sticks (degrees from the normal).
 const STEEP: f64 = 20.0;
-/// What a scheme may be off by, of an impact that takes some thousand steps.
+/// Largest error of an integration scheme, for an impact of about a thousand steps.
 const FIRST_ORDER: f64 = 1e-3;
 const SCHEME: &str = "a scheme of first order is off by about a step of an impact that takes a thousand and more";
 
@@ -49,7 +50,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.into_iter().map(asked).collect()
 }
 
-/// A claim as others are asked for it: with steps three times as long as ours, for theirs may take a thousand times our time.
+/// Makes a claim solver-independent. Its steps are three times as long as ours, because external solvers may take a
+/// thousand times our run time.
 fn asked(mut claim: Claim) -> Claim {
     for run in claim.runs.iter_mut().filter(|run| run.resolution == STEP.resolution) {
         *run = run.at(LEVELS[1].resolution);
@@ -57,7 +59,7 @@ fn asked(mut claim: Claim) -> Claim {
     claim.fair_to_any_springs()
 }
 
-/// The scene of a run; the gates make their runs of scenes that are right, so there is one.
+/// Returns the scene of a run. The claims use only valid scenes, so it exists.
 fn scene(run: &Run) -> Option<Scene> {
     let mut scene = CASE.variant(run.variant).ok()?;
     if let Some((_, change)) = &run.adjustment {
@@ -66,7 +68,8 @@ fn scene(run: &Run) -> Option<Scene> {
     Some(scene)
 }
 
-/// Deepest overlap of the elastic impact over the smallest radius: how far arms of friction between R and R − overlap differ.
+/// Returns the largest overlap of the elastic impact over the smallest radius. Lever arms of friction differ by this
+/// fraction between R and R − overlap.
 fn depth(run: &Run) -> f64 {
     let of = |scene: &Scene| {
         let radius = scene.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
@@ -75,14 +78,15 @@ fn depth(run: &Run) -> f64 {
     scene(run).as_ref().map_or(0.0, of)
 }
 
-/// Overlap (m) by the way of the first sphere from where it touches: twice that way where two alike meet.
+/// Returns the overlap (m) from the displacement of the first sphere since first contact; twice the displacement if two
+/// equal spheres collide.
 fn overlap(done: &Done) -> Result<Vec<f64>, Missing> {
     let times = done.scene.grains.len() as f64;
     let start = done.scene.grains[0].position.z;
     Ok(done.column("a.z")?.iter().map(|height| times * (start - height)).collect())
 }
 
-/// When the overlap is zero again (s), between the samples about it; no number where it never is.
+/// Returns the time at which the overlap returns to zero (s), interpolated between samples. NaN if it never does.
 fn parted(done: &Done) -> Result<f64, Missing> {
     let (overlap, time) = (overlap(done)?, &done.series().time);
     let last = overlap.iter().rposition(|&overlap| overlap > 0.0).unwrap_or_default();
@@ -90,7 +94,7 @@ fn parted(done: &Done) -> Result<f64, Missing> {
     Ok(time[last] + (time[last + 1] - time[last]) * overlap[last] / (overlap[last] - next))
 }
 
-/// Tests 1 and 2: an elastic impact.
+/// Claims of tests 1 and 2: an elastic impact.
 fn normal(variant: &'static str) -> [Claim; 3] {
     let run = || Run::new(variant, "dem", STEP.resolution);
     let stiffer = || Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01)));
@@ -121,8 +125,8 @@ fn normal(variant: &'static str) -> [Claim; 3] {
     ]
 }
 
-/// Test 3: the coefficient comes back, or what the same dashpot gives where the contact lets go at zero force. The scene says
-/// which dashpot there is, and programs differ in whether it may pull; neither is preferred.
+/// Claims of test 3: the coefficient of restitution, or the coefficient of the same dashpot with a release at zero
+/// force. The scene gives the dashpot. External solvers differ in whether it may pull, and the claim accepts both.
 fn given_back(run: Run) -> Claim {
     let words = run.adjustment.as_ref().map_or("of the scene", |(name, _)| name);
     claim(format!("rebound velocity over impact velocity, {words}, or of a release at zero force"), "1")
@@ -139,14 +143,14 @@ fn given_back(run: Run) -> Claim {
         .refuses(Control::scene("damping × 1.2", |scene| scene.change_laws(|law| law.damping_ratio *= 1.2)))
 }
 
-/// Impulse along the normal on the first sphere (N s).
+/// Returns the normal impulse on the first sphere (N s).
 fn normal_impulse(done: &Done) -> Result<f64, Missing> {
     let grain = &done.scene.grains[0];
     Ok(grain.mass * (done.last("a.vz")? - grain.velocity.z))
 }
 
-/// A contact that slides throughout: what friction takes of the velocity, and the spin that it gives, by the impulse along the
-/// normal that the impact had. Whether that is the right one the rebound shows.
+/// Claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from the measured
+/// normal impulse. The claim on the rebound tests the normal impulse itself.
 fn sliding(run: &Run) -> [Claim; 2] {
     let of = |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
         let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
@@ -188,10 +192,11 @@ fn wrong_inertia() -> Control {
     })
 }
 
-/// Where the dashpot is large, what it does to Coulomb's limit is convention: the spring's force alone gives 1 + e, a contact
-/// that never pulls 1 + e′ with the larger e′ of a release at zero force, and the magnitude of a force that pulls in the end
-/// adds e′ − e once more. A dashpot that counts in the limit pushes before Mindlin's spring is stretched, which takes a little:
-/// most where the dashpot is made for a release at zero force and the spring grows by what is added to its stretch.
+/// Claims the impulse of friction with a strong dashpot, whose effect on the Coulomb limit is a convention. The spring
+/// force alone gives 1 + e. A contact that never pulls gives 1 + e′, with the larger e′ of a release at zero force. The
+/// magnitude of a force that finally pulls adds e′ − e once more. A dashpot that counts in the limit pushes before
+/// Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if the dashpot is made
+/// for a release at zero force and the spring is incremental.
 fn coulomb(run: Run) -> Claim {
     let given = scene(&run).as_ref().map(Meeting::of);
     let [low, high] = given.map_or([0.0; 2], |meeting| {
@@ -211,7 +216,8 @@ fn coulomb(run: Run) -> Claim {
         .refuses(Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)))
 }
 
-/// Angular momentum about the contact stays what it was, whether it sticks or slides: I Δω = −a m Δv with the arm a of friction.
+/// Claims that angular momentum about the contact is conserved for sticking and sliding: I Δω = −a m Δv with the lever
+/// arm a of friction.
 fn lever(run: Run, times: f64) -> Claim {
     let allowed = computed(
         times * depth(&run) + FIRST_ORDER,
@@ -234,7 +240,7 @@ fn lever(run: Run, times: f64) -> Claim {
         .refuses(wrong_inertia())
 }
 
-/// Test 8: what one sphere loses the other has, though it is 125,000 times as heavy.
+/// Claims of test 8: equal and opposite momentum changes, although one sphere is 125,000 times as heavy.
 fn momentum(run: &Run) -> [Claim; 2] {
     let of = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")
@@ -257,7 +263,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
     ]
 }
 
-/// Test 7: surfaces that meet at one velocity feel no friction.
+/// Claims of test 7: no friction between surfaces of equal velocity.
 fn gears(variant: &'static str) -> [Claim; 3] {
     let of = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)

@@ -1,34 +1,35 @@
-//! Closed forms of an impact whose contact slides throughout, and of a dashpot that may not pull.
+//! Closed forms of an impact whose contact slides throughout, and of a dashpot that never pulls.
 
 use super::{impact, law};
 use crate::exact::dashpot::{no_tension_ratio, no_tension_restitution};
 use grainbench_scene::scene::Scene;
 use std::f64::consts::PI;
 
-/// How the first grain of a scene meets what lies below it.
+/// Impact parameters of the first grain of a scene against the second grain or the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
-    /// Velocity of its surface along x against the other's, s = v_a − ω_a R_a − v_b − ω_b R_b (m/s).
+    /// Velocity of its surface along x relative to the partner's surface, s = v_a − ω_a R_a − v_b − ω_b R_b (m/s).
     pub(super) slip: f64,
     /// Impulse m* v_n that stops the approach (N s).
     pub(super) stopping: f64,
     /// Friction μ.
     pub(super) friction: f64,
-    /// Coefficient of restitution e that the law was made for.
+    /// Coefficient of restitution e for which the law was made.
     pub(super) restitution: f64,
-    /// Ratio e′ of the velocities along the normal where the contact lets go as soon as its force is zero.
+    /// Ratio e′ of the normal velocities if the contact ends as soon as its force is zero.
     pub(super) early: f64,
-    /// ρ = 6 G* s/(μ E* v_n): how much faster the tangential spring grows than Coulomb's limit by the normal one.
+    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the Coulomb limit by the normal
+    /// spring.
     pub(super) steepness: f64,
 }
 
-/// e = exp(−πζ/√(1−ζ²)), of a contact that lets go when the overlap is zero.
+/// Returns e = exp(−πζ/√(1−ζ²)) of a contact that ends when the overlap is zero.
 pub(super) fn restitution(ratio: f64) -> f64 {
     (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()
 }
 
 impl Meeting {
-    /// Of a scene.
+    /// Reads a scene.
     pub(super) fn of(scene: &Scene) -> Self {
         let first = &scene.grains[0];
         let own = first.velocity.x - first.spin.y * first.radius;
@@ -47,20 +48,21 @@ impl Meeting {
         }
     }
 
-    /// Part of friction's impulse, in units of μ m* v_n, that is lost because the contact sticks at the start, 2ζ²/(2ρ/3 − 1)
-    /// (derivation): of a limit on spring and dashpot, the ζ whose release at zero force gives e, and a spring that is added to
-    /// by k_s Δs, which has 2/3 of the force k_s s, as k_s grows with √δ.
+    /// Returns the part of friction's impulse, in units of μ m* v_n, that is lost because the contact sticks at first:
+    /// 2ζ²/(2ρ/3 − 1) (derivation). It assumes a limit on spring and dashpot, the ζ whose release at zero force gives
+    /// e, and an incremental spring. Increments k_s Δs give 2/3 of the force k_s s, because k_s grows with √δ.
     pub(super) fn latest_start(&self) -> f64 {
         2.0 * no_tension_ratio(self.restitution).powi(2) / (2.0 / 3.0 * self.steepness - 1.0)
     }
 
-    /// Friction's impulse on the first grain (N s): μ times `factor` times the one that stops the approach, against the slip.
-    /// The factor is 1 + e where the limit is that of the spring, or of a force that never pulls and leaves e.
+    /// Returns friction's impulse on the first grain (N s), opposite to the slip: μ times `factor` times the impulse
+    /// that stops the approach. The factor is 1 + e if the limit is the spring's, or the limit of a force that never
+    /// pulls and leaves e.
     pub(super) fn impulse(&self, factor: f64) -> f64 {
         -self.slip.signum() * self.friction * factor * self.stopping
     }
 
-    /// Velocity along x (m/s) and spin (rad/s) of the first grain after that impulse, which acts at the distance R.
+    /// Returns the velocity along x (m/s) and the spin (rad/s) of the first grain after this impulse at the distance R.
     pub(super) fn after(&self, scene: &Scene, factor: f64) -> [f64; 2] {
         let (grain, impulse) = (&scene.grains[0], self.impulse(factor));
         [grain.velocity.x + impulse / grain.mass, grain.spin.y - impulse * grain.radius / grain.inertia]

@@ -1,33 +1,34 @@
-//! Tests 5 to 8 for our solvers: impulses of friction to the digits that a convention fixes, and the branches that stick, drawn.
+//! Tests 5 to 8 for our solvers: friction impulses to the digits that a convention fixes, and figures with the sticking
+//! branches.
 
 use super::forms::Meeting;
 use super::{SLIDING, STEP};
 use grainbench_harness::prelude::*;
 
-/// Test 5.
+/// Variants of test 5.
 pub(super) const PLANE: [&str; 2] = ["5-steel", "5-polyethylene"];
-/// Tests 6 and 8.
+/// Variants of tests 6 and 8.
 pub(super) const BALLS: [&str; 4] = ["6-aluminium-alloy", "6-nylon", "8-aluminium-alloy", "8-nylon"];
-/// A velocity (m/s) of test 5 and a spin (rad/s) of tests 6 and 8 at which the contact sticks.
+/// Velocity (m/s) of test 5 and spin (rad/s) of tests 6 and 8 at which the contact sticks.
 pub(super) const STICKING: f64 = 2.0;
 
-/// Test 5 with a velocity along the plane (m/s).
+/// Returns the run of test 5 with a velocity along the plane (m/s).
 pub(super) fn sliding_along(variant: &'static str, along: f64) -> Run {
     Run::new(variant, "dem", STEP.resolution)
         .adjusted(&format!("{along} m/s along the plane"), move |scene| scene.grains[0].velocity.x = along)
 }
 
-/// The step of test 8: its critical one is that of the lighter sphere on the stiffer one's floor, some forty times shorter than
-/// that of the contact that is looked at.
+/// Time step of test 8. Its critical step is that of the lighter sphere on the stiffer material, about forty times
+/// shorter than the critical step of the studied contact.
 pub(super) const OF_TEST_8: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Tests 6 and 8 with a spin (rad/s).
+/// Returns the run of tests 6 and 8 with a spin (rad/s).
 pub(super) fn spinning(variant: &'static str, spin: f64) -> Run {
     Run::new(variant, "dem", if variant.starts_with('8') { OF_TEST_8 } else { STEP.resolution })
         .adjusted(&format!("{spin} rad/s"), move |scene| scene.grains[0].spin.y = spin)
 }
 
-/// The same without a dashpot, where conventions have nothing to differ in.
+/// Returns the run of tests 6 and 8 without a dashpot, for which the conventions agree.
 pub(super) fn elastic(variant: &'static str, spin: f64) -> Run {
     spinning(variant, spin).adjusted(&format!("{spin} rad/s, e = 1"), move |scene| {
         scene.grains[0].spin.y = spin;
@@ -40,8 +41,9 @@ pub(super) fn claims() -> Vec<Claim> {
     runs.chain(BALLS.map(|variant| spinning(variant, 12.0))).flat_map(|run| sharp(&run)).collect()
 }
 
-/// Velocity and spin after a contact that slides. With Cundall & Strack's limit, that of the spring, friction has the impulse
-/// μ(1+e) m* v_n. With the limit of spring and dashpot it lacks the part in which the tangential spring is not stretched yet.
+/// Claims velocity and spin after a sliding contact. With Cundall & Strack's limit, which applies to the spring,
+/// friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the part before the tangential spring is
+/// displaced is missing.
 fn sharp(run: &Run) -> Vec<Claim> {
     let of = |solver: &'static str, other: &'static str, words: &str, factor: fn(&Meeting) -> f64| {
         let row = |quantity: &str, unit, column: &'static str, at: usize| {
@@ -75,7 +77,8 @@ fn sharp(run: &Run) -> Vec<Claim> {
     if run.variant.starts_with('5') { spring.to_vec() } else { spring.into_iter().chain(pushing).collect() }
 }
 
-/// What the paper draws: the slide of the surfaces after the impact against that before, both over the velocity along the normal.
+/// Returns the paper's figure: the tangential surface velocity after the impact over the value before, both over the
+/// normal velocity.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slides = |done: &Done, friction: f64| -> Option<(f64, f64)> {
         let (grain, before) = (&done.scene.grains[0], Meeting::of(&done.scene));

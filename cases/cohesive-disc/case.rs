@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The cohesion at which the disc just rolls (N).
+/// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     let share = grain.inertia_factor / (1.0 + grain.inertia_factor);
@@ -34,15 +34,16 @@ fn threshold(scene: &Scene) -> f64 {
 }
 
 fn with_cohesion(factor: f64) -> Run {
-    // The paper's limit is that of the spring alone: one of spring and dashpot is reached while the load comes on.
+    // The paper's limit applies to the spring alone. A limit on spring and dashpot would be reached while the load
+    // builds up.
     Run::new(PLAIN, "dem:1979", STEP.resolution).adjusted(&format!("c = {factor} of the threshold"), move |scene| {
         let cohesion = factor * threshold(scene);
         scene.change_laws(|law| law.cohesion = cohesion);
     })
 }
 
-/// Growth of the surface's slip, d(v − ΩR)/dt, over the second half of the run: measured and exact, in units of g sin
-/// θ.
+/// Compares the growth rate of the surface's slip, d(v − ΩR)/dt, over the second half of the run with the exact rate,
+/// in units of g sin θ.
 fn slip(done: &Done) -> Result<Measured, Missing> {
     let scene = &done.scene;
     let grain = OneGrain::of(scene);

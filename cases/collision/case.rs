@@ -1,4 +1,4 @@
-//! Two discs collide: restitution in both release conventions, momentum and angular momentum.
+//! Collision of two discs: restitution in both release conventions, momentum and angular momentum.
 
 use crate::exact::dashpot::{lag, no_tension_restitution};
 use crate::rows::programs;
@@ -46,14 +46,14 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Columns of the momentum, and their axes.
+/// Columns of the momentum with their axes.
 const AXES: [(&str, usize); 2] = [("all.momentum_x", 0), ("all.momentum_y", 1)];
 
 fn along((_, axis): (&str, usize)) -> String {
     format!("momentum along {}, worst", ["x", "y"][axis])
 }
 
-/// A momentum against that at the start, in units of that of the first grain.
+/// Compares a momentum with its initial value, in units of the first grain's momentum.
 fn worst_momentum(done: &Done, (column, axis): (&str, usize)) -> Result<Measured, Missing> {
     let grains = &done.scene.grains;
     let start: f64 = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum();
@@ -61,19 +61,19 @@ fn worst_momentum(done: &Done, (column, axis): (&str, usize)) -> Result<Measured
     Ok(Measured::worst(&done.series().time, done.column(column)?, |_| start, scale))
 }
 
-/// m v R of the first grain (kg m²/s).
+/// Returns m v R of the first grain (kg m²/s).
 fn lever(scene: &Scene) -> f64 {
     let grain = &scene.grains[0];
     grain.mass * grain.velocity.norm() * grain.radius
 }
 
-/// The angular momentum against that at the start, in units of m v R.
+/// Compares the angular momentum with its initial value, in units of m v R.
 fn worst_angular_momentum(done: &Done) -> Result<Measured, Missing> {
     let start = initial_angular_momentum(&done.scene);
     Ok(Measured::worst(&done.series().time, done.column("all.angular_momentum")?, |_| start, lever(&done.scene)))
 }
 
-/// Effective mass (kg), frequency ω (rad/s) and damping ratio ζ of the pair.
+/// Returns effective mass (kg), frequency ω (rad/s) and damping ratio ζ of the pair.
 fn pair(scene: &Scene) -> (f64, f64, f64) {
     let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
     let mass = 1.0 / scene.grains.iter().map(|grain| 1.0 / grain.mass).sum::<f64>();
@@ -81,7 +81,7 @@ fn pair(scene: &Scene) -> (f64, f64, f64) {
     (mass, (law.normal_stiffness() / mass).sqrt(), viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()))
 }
 
-/// Coefficient of restitution.
+/// Returns the coefficient of restitution.
 fn exact_restitution(zeta: f64, pulls: bool) -> f64 {
     if pulls { (-PI * zeta / (1.0 - zeta * zeta).sqrt()).exp() } else { no_tension_restitution(zeta) }
 }
@@ -95,18 +95,18 @@ fn measured_restitution(done: &Done) -> Result<Measured, Missing> {
     Ok(Measured::new(after / before, exact_restitution(zeta, pulls), 1.0))
 }
 
-/// Whose contact force is looked at: ζ = .2 by β.
+/// Variant whose contact force is compared: ζ = 0.2 by β.
 const FELT: &str = DAMPED[3];
-/// Its largest spring force without damping, v√(k m*) (N), closing at v = 2 m/s.
+/// Largest spring force without damping, v√(k m*) (N), at an approach velocity of v = 2 m/s.
 const LARGEST: f64 = 2.0 * 70.710_678_118_654_76;
 
-/// Force (N) of the pair with ζ = .2, by hand: k = 1e4 N/m, c = 2ζ√(k m*) = 28.284271 N s/m.
+/// Returns the force (N) of the pair with ζ = 0.2, with typed values: k = 1e4 N/m, c = 2ζ√(k m*) = 28.284271 N s/m.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     if overlap > 0.0 { 1.0e4 * overlap + 28.284_271_247_461_902 * rate } else { 0.0 }
 }
 
-/// The contact force that `dem` records is the one that moves the grains: its dashpot takes the velocity of half a step
-/// before, by which the overlap came from its last value to this one.
+/// Claims that the contact force that `dem` records is the force that moves the grains. Its dashpot uses the velocity
+/// half a step earlier, which changed the overlap from its previous value to this one.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .of(Run::new(FELT, "dem", LEVELS[1].resolution))
@@ -115,7 +115,7 @@ fn force_that_moves() -> Claim {
             let overlap = |at: usize| 2.0 - (b[at] - a[at]);
             let rate = |at: usize| (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]);
             let of = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
-            // They start apart.
+            // The discs start apart.
             let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(of)).collect();
             Ok(Measured::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
         })
@@ -127,8 +127,8 @@ fn force_that_moves() -> Claim {
         .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
 }
 
-/// Both programs evaluate the contact anew when they print it, and the dashpot takes the velocity of the sample: half a
-/// step later than what moved the grains.
+/// Claims the printed force of both external solvers. They evaluate the contact again at output, so the dashpot uses
+/// the velocity of the sample: half a step later than the force that moved the grains.
 fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
     let because = "the same cycle; in units of the largest force without damping";
@@ -144,7 +144,7 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     })
 }
 
-/// The other release convention.
+/// Negative control: the other release convention.
 fn other(solver: &'static str) -> Control {
     if solver == "dem" {
         Control::solver("the dashpot may pull", "dem:1979")
@@ -157,7 +157,7 @@ fn restitution(variant: &'static str, solver: &'static str) -> Claim {
     claim("coefficient of restitution", "1")
         .of(Run::new(variant, solver, FINEST.resolution))
         .equals(Source::Derived("damped oscillator with this release (derivation)"), move |done| {
-            // The convention judged is that of the row, also where another solver was put in its place.
+            // The exact value follows the convention of the claim, even if the control replaces the solver.
             let exact = exact_restitution(pair(&done[0].scene).2, solver != "dem");
             Ok(Measured::new(measured_restitution(&done[0])?.value, exact, 1.0))
         })
@@ -169,7 +169,7 @@ const FIRST_ORDER: &str = "touch and release fall within a step, which gives or 
                            each, 2ζ ωΔt e; it is half a step late, which makes ζ larger by the factor 1 + ζωΔt/2, \
                            π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt e; and (ωΔt)² for what is of second order (derivation)";
 
-/// How far the restitution may be off at a resolution.
+/// Returns the largest error of the restitution at a resolution.
 fn first_order(variant: &str, resolution: Resolution) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (_, omega, zeta) = pair(&scene);
@@ -177,13 +177,13 @@ fn first_order(variant: &str, resolution: Resolution) -> f64 {
     exact_restitution(zeta, false) * (2.0 * zeta + lag(zeta)) * phase + phase * phase
 }
 
-/// Sixteen steps from .04 of the critical one downwards, a factor 1.3 apart.
+/// Returns one of sixteen steps from 0.04 of the critical step downwards, with a ratio of 1.3.
 fn step(at: i32) -> Resolution {
     Resolution::CriticalFraction(0.04 * 1.3_f64.powi(-at))
 }
 
-/// Where within a step release falls decides how far a single run is off, so that no order can be fitted: of 16 steps each is
-/// within what is of first order.
+/// Claims that the error is within the first-order bound for each of 16 steps. An order cannot be fitted, because the
+/// error of a single run depends on the position of the release within a step.
 fn steps(variant: &'static str, solver: &'static str) -> Claim {
     claim("restitution's error over what is of first order in Δt, worst of 16 steps", "1")
         .of_all((0..16).map(|at| Run::new(variant, solver, step(at))))
@@ -200,7 +200,7 @@ fn steps(variant: &'static str, solver: &'static str) -> Claim {
         .refuses(other(solver))
 }
 
-/// Rounding over the oblique impact, `count` times ε in every step.
+/// Returns the rounding error over the oblique impact: `count` times ε in each step.
 fn rounding(count: f64, because: &str) -> Tolerance {
     let steps = CASE.variant("oblique").ok().and_then(|scene| LEVELS[1].resolution.steps(&scene).ok());
     computed(count * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64), because)
@@ -212,7 +212,7 @@ fn momentum() -> Vec<Claim> {
             .of(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
             .within(rounding(2.0, "two velocities round by ε in every step; in units of one grain's momentum"))
-            // Gravity is what any solver has.
+            // All solvers have gravity.
             .refuses(Control::scene("a gravity of 1e-9 m/s² along x and y", |scene| {
                 (scene.gravity.x, scene.gravity.y) = (1e-9, 1e-9);
             }))
@@ -242,8 +242,8 @@ fn angular_momentum() -> Vec<Claim> {
                 let (overlap, shear) = (done[0].column("contact.overlap")?, done[0].column("contact.shear_force")?);
                 let impulse: f64 = overlap.iter().zip(shear).map(|(overlap, shear)| overlap * shear).sum();
                 let change = done[0].last("all.angular_momentum")? - initial_angular_momentum(scene);
-                // The shear force on the first grain is positive along t = (e₂, −e₁): e × t = −1, so both arms turn it
-                // by −R F_t.
+                // The shear force on the first grain is positive along t = (e₂, −e₁). Because e × t = −1, both lever
+                // arms give a torque −R F_t.
                 let expected = -impulse * done[0].record.provenance.time_step;
                 Ok(Measured::new(change, expected, lever(scene)))
             })
@@ -256,8 +256,8 @@ fn angular_momentum() -> Vec<Claim> {
     .collect()
 }
 
-/// In the oblique impact friction is at Coulomb's limit at every step: the spin of the first disc. The paper's limit is
-/// that of the spring.
+/// Claims the spin of the first disc in the oblique impact, in which friction is at the Coulomb limit in each step. The
+/// paper's limit applies to the spring.
 fn at_the_limit() -> Claim {
     claim("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s")
         .of(Run::new("oblique", "dem:1979", LEVELS[1].resolution))
@@ -266,7 +266,7 @@ fn at_the_limit() -> Claim {
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
             let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
             let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
-            // Both discs are turned clockwise.
+            // Friction turns both discs clockwise.
             let expected = -limit * grain.radius / grain.inertia;
             Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
         })
@@ -274,7 +274,8 @@ fn at_the_limit() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Ours keeps Coulomb's law as it is written, |F_s| ≤ μ F_n with all of F_n, none where it pulls.
+/// Claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction while F_n
+/// pulls.
 fn coulomb() -> Vec<Claim> {
     let of = |quantity: &str, unit, solver| claim(quantity, unit).of(Run::new("oblique", solver, LEVELS[1].resolution));
     let within = |solver: &'static str| {

@@ -1,4 +1,4 @@
-//! A column under its own weight.
+//! An elastic column under its own weight.
 
 use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
@@ -50,12 +50,12 @@ impl Column {
         Self { height, density: body.density, modulus, gravity: -scene.gravity.y }
     }
 
-    /// Sinking of the centre of mass at rest, ρgH²/3E (m).
+    /// Returns the displacement of the centre of mass at rest, ρgH²/3E (m).
     fn sag(&self) -> f64 {
         self.density * self.gravity * self.height * self.height / (3.0 * self.modulus)
     }
 
-    /// Displacement of the centre of mass (m) after it was let go.
+    /// Returns the displacement of the centre of mass (m) at a time (s) after release.
     fn swing(&self, time: f64) -> f64 {
         let speed = (self.modulus / self.density).sqrt();
         let mode = |n: u32| {
@@ -72,7 +72,8 @@ fn softer() -> Control {
 }
 
 fn claims() -> Vec<Claim> {
-    // From 25 to 50 cells ours has to gain more than a method of second order does: of others that is not asked.
+    // From 25 to 50 cells, our solver must improve more than a second-order method. The claim at 50 cells does not
+    // apply to other solvers.
     let mut claims = vec![
         swinging(LEVELS[0], 0.037).fair_to_any_continuum(),
         swinging(LEVELS[1], 9e-3).fair_to_any_continuum(),

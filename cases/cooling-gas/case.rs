@@ -1,4 +1,4 @@
-//! Ten thousand inelastic discs cool: Haff's law, at the rate of hard discs.
+//! Ten thousand inelastic discs cool by Haff's law at the rate of hard discs.
 
 use crate::rows::programs::{PAIRS, row};
 use crate::sources::prototype::event_driven_gas::{COOLING_RATE, SPREAD};
@@ -25,9 +25,9 @@ pub(crate) static CASE: Case = Case {
 };
 
 const ENERGY: &str = "all.kinetic_energy";
-/// Where the first speeds, all alike, have become a Maxwellian.
+/// Time (s) from which the initially equal speeds have a Maxwell distribution.
 const FROM: f64 = 2.0;
-/// How long two programs go the same way in every digit that counts (s).
+/// Time (s) up to which two solvers agree in all relevant digits.
 const FORETOLD: f64 = 2.01;
 /// Coefficient of restitution.
 const RESTITUTION: f64 = 0.9;
@@ -36,14 +36,14 @@ fn run(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[0].resolution)
 }
 
-/// 1/√T at each sample, with T = E/N.
+/// Returns time and 1/√T of each sample, with T = E/N.
 fn course(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
     let count = done.scene.grains.len() as f64;
     let samples = done.series().time.iter().zip(done.column(ENERGY)?);
     Ok(samples.map(|(&time, energy)| (time, (energy / count).powf(-0.5))).collect())
 }
 
-/// Slope of 1/√T against t by least squares, from [`FROM`] on.
+/// Returns the slope of 1/√T over t by least squares, from [`FROM`] on.
 fn cooling_rate(done: &Done) -> Result<f64, Missing> {
     let course: Vec<(f64, f64)> = course(done)?.into_iter().filter(|(time, _)| *time >= FROM).collect();
     let count = course.len() as f64;
@@ -54,7 +54,7 @@ fn cooling_rate(done: &Done) -> Result<f64, Missing> {
     Ok(cross / square)
 }
 
-/// Number density n, pair correlation χ at contact, diameter d and mass m.
+/// Returns number density n, pair correlation χ at contact, diameter d and mass m.
 fn gas(scene: &Scene) -> (f64, f64, f64, f64) {
     let (radius, mass) = (scene.grains[0].radius, scene.grains[0].mass);
     let size = scene.domain.map_or(f64::NAN, |domain| (domain.high - domain.low).xy().product());
@@ -63,7 +63,7 @@ fn gas(scene: &Scene) -> (f64, f64, f64, f64) {
     (number, (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2), 2.0 * radius, mass)
 }
 
-/// Enskog's cooling rate, see the derivation.
+/// Returns Enskog's cooling rate (derivation).
 fn enskog(scene: &Scene) -> f64 {
     const A2: f64 = -0.027;
     let (number, correlation, diameter, mass) = gas(scene);
@@ -71,10 +71,10 @@ fn enskog(scene: &Scene) -> f64 {
         * (1.0 + 3.0 / 16.0 * A2)
 }
 
-/// Collisions of a disc in the duration of a contact, ω t_c, for a stiffness k (N/m) at the mean temperature of the course,
-/// T = 1/(1 + .058 t)² from t = 2 to 12.
+/// Returns the number of collisions of a disc in the duration of a contact, ω t_c, for a stiffness k (N/m) at the mean
+/// temperature of the run, T = 1/(1 + 0.058 t)² from t = 2 to 12.
 fn in_contact(stiffness: f64) -> f64 {
-    // As the scene has it: φ = .2, d = m = 1; the mean of √T over the course is .73.
+    // The scene has φ = 0.2 and d = m = 1; the time average of √T is 0.73.
     let (packing_fraction, mean_root) = (0.2_f64, 0.73);
     let correlation = (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2);
     2.0 * PI.sqrt() * correlation * 4.0 * packing_fraction / PI * mean_root * PI * (0.5 / stiffness).sqrt()
@@ -83,12 +83,12 @@ fn in_contact(stiffness: f64) -> f64 {
 /// Student's t of 23 degrees of freedom at 99 %.
 const STUDENT: f64 = 2.807;
 
-/// The 99 % interval of one run against the mean of the 24 of the prototype.
+/// Returns the 99 % interval of one run against the mean of the prototype's 24 runs, relative to the cooling rate.
 fn interval() -> f64 {
     STUDENT * SPREAD.value / COOLING_RATE.value * (1.0 + 1.0 / 24.0_f64).sqrt()
 }
 
-/// As fast as hard discs, for a stiffness k (N/m).
+/// Claims the cooling rate of hard discs, for a stiffness k (N/m).
 fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
         .of(run)
@@ -102,14 +102,14 @@ fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
         .refuses(Control::scene(LIVELIER, livelier))
 }
 
-/// What the gas must not be.
+/// Name of the negative control.
 const LIVELIER: &str = "dashpots of e = .92 for .9";
 
 fn livelier(scene: &mut Scene) {
     damp(scene, 0.92);
 }
 
-/// Dashpots of another coefficient of restitution.
+/// Sets the dashpots to another coefficient of restitution.
 fn damp(scene: &mut Scene, restitution: f64) {
     // ζ = −ln e/√(π² + ln² e).
     let ratio = -restitution.ln() / PI.hypot(restitution.ln());
@@ -163,7 +163,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let ours = runner.run(&run(PLAIN, "dem"))?;
     let mut curves = vec![];
     for (label, stroke, done) in std::iter::once(("dem", Stroke::Line, ours.clone())).chain(
-        // Without a program and without its stored run there is nothing to draw.
+        // Without the external solver and its stored run, there is no curve.
         PAIRS.iter().filter_map(|pair| Some((pair[1], Stroke::Markers, runner.run(&run(PLAIN, pair[1])).ok()?))),
     ) {
         curves.push(Curve::new(label, stroke, course(&done).unwrap_or_default()));

@@ -1,4 +1,4 @@
-//! A hundred elastic discs in a box keep their energy.
+//! Energy conservation of a hundred elastic discs in a box.
 
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
@@ -22,11 +22,11 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Steps of the runs, as fractions of the critical one.
+/// Time steps of the runs, as fractions of the critical time step.
 const FRACTIONS: [f64; 3] = [0.1, 0.03, FINEST];
 const FINEST: f64 = 0.01;
 
-/// The scene over the same simulated time at any step: that of 10⁵ steps at the finest.
+/// Returns a run over the same simulated time at any step: the time of 10⁵ steps at the finest step.
 fn run(fraction: f64) -> Run {
     let cycles = (1e5 * FINEST / fraction).round() as u64;
     Run::new(PLAIN, "dem", Resolution::CriticalFraction(fraction)).adjusted(&format!("{cycles} cycles"), move |scene| {

@@ -1,4 +1,4 @@
-//! Chains of discs, struck at one end (2001 paper, Figs 9 to 11): when the force arrives.
+//! Arrival of force in chains of discs struck at one end (2001 paper, Figs 9 to 11).
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -15,16 +15,16 @@ use modal::Modes;
 
 const LEVELS: &[Level] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
 const STEP: Level = LEVELS[2];
-/// Force that counts as arrived, as a fraction of the impedance force V√(k m).
+/// Force that counts as arrival, as a fraction of the impedance force V√(k m).
 const ARRIVED: f64 = 0.1;
-/// Longitudinal wave speed of the paper's material (m/s): the unit of time is the transit of one disc, d/c.
+/// Longitudinal wave speed of the paper's material (m/s). The unit of time is the transit of one disc, d/c.
 const WAVE_SPEED: f64 = 10_208.355_710_680_81;
-/// Where the paper has its order of the chains.
+/// Source of the paper's order of the chains.
 const FASTER: Source = Source::Printed(
     &bardenhagen_2001::WORK,
     "text to Figs 10 and 11: fringes pass the line, and the glued zig-zag, much faster than the zig-zag that slips",
 );
-/// Smaller than equal: the paper states no ratio.
+/// Ratio below 1 that counts as sooner, because the paper states no ratio.
 const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
@@ -46,7 +46,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The two discs of a contact between neighbours, by their place in the scene: the odd ones come first there.
+/// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number
+/// first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {
     let odd = scene.grains.len().div_ceil(2);
     let place = |number: usize| if number % 2 == 1 { number / 2 } else { odd + number / 2 - 1 };
@@ -54,13 +55,13 @@ fn pair(scene: &Scene, first: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// .1 V√(k m) (N).
+/// Returns the threshold force 0.1 V√(k m) (N).
 fn threshold(scene: &Scene) -> f64 {
     let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     ARRIVED * scene.walls[0].motion.phases[0].velocity.norm() * (stiffness * scene.grains[0].mass).sqrt()
 }
 
-/// When a column first exceeds a threshold (s), between two samples.
+/// Returns the time at which a column first exceeds a threshold (s), interpolated between two samples.
 fn first_above(done: &Done, column: &str, threshold: f64) -> Result<f64, Missing> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = values.iter().position(|&value| value > threshold).filter(|&at| at > 0);
@@ -69,7 +70,7 @@ fn first_above(done: &Done, column: &str, threshold: f64) -> Result<f64, Missing
     Ok(time[at - 1] + share * (time[at] - time[at - 1]))
 }
 
-/// When the force arrives at the contact of a disc with the next (s).
+/// Returns the arrival time of force at the contact of a disc with the next one (s).
 fn arrival(done: &Done, first: usize) -> Result<f64, Missing> {
     first_above(done, &format!("{first}-{}.normal_force", first + 1), threshold(&done.scene))
 }
@@ -81,7 +82,7 @@ fn duration(scene: &Scene) -> f64 {
     }
 }
 
-/// The striker at a thousandth of its speed, so that the geometry stays as the modes have it.
+/// Returns the run with a thousandth of the striker's speed, so that the geometry remains that of the modal solution.
 fn gentle(variant: &'static str) -> Run {
     Run::new(variant, "dem", STEP.resolution).adjusted("striker at a thousandth of its speed", |scene| {
         scene.walls[0].motion.phases[0].velocity *= 1e-3;
@@ -100,7 +101,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Arrival at a contact against the modes.
+/// Claims the arrival at a contact against the modal solution.
 fn exact(variant: &'static str, first: usize) -> Claim {
     claim(format!("arrival of force between discs {first} and {}", first + 1), "s")
         .of(gentle(variant))
@@ -120,7 +121,7 @@ fn exact(variant: &'static str, first: usize) -> Claim {
         }))
 }
 
-/// The force of the first two discs where they stick, for as long as no contact of the assembly opens.
+/// Claims the force between the first two discs of the sticking chain, as long as no contact of the assembly opens.
 fn glued() -> Claim {
     claim("force between discs 1 and 2 until a contact opens, worst", "N")
         .of(gentle(GLUED))
@@ -144,7 +145,7 @@ fn glued() -> Claim {
         }))
 }
 
-/// The paper's order: a variant passes force to the fourth disc sooner than the slipping zig-zag.
+/// Claims the paper's order: force arrives at the fourth disc of a variant sooner than in the slipping zig-zag.
 fn sooner(variant: &'static str, of: &str) -> Claim {
     claim(format!("arrival at disc 4 of the {of}"), "1")
         .of(Run::new(variant, "dem", STEP.resolution))
@@ -157,7 +158,7 @@ fn sooner(variant: &'static str, of: &str) -> Claim {
         }))
 }
 
-/// A rigid contact passes an impulse through the whole chain in one step.
+/// Claims the arrival for rigid contacts, through which an impulse passes the whole chain in one step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
         .of(Run::new("line", "rigid", rigid::DEFAULT).known(

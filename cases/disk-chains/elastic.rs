@@ -1,9 +1,9 @@
-//! The discs as elastic bodies: when stress arrives in them.
+//! Arrival of stress in elastic discs.
 //!
-//! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which is what fringes
-//! show, first exceeds a tenth of ρcv. Time is counted in transits of a disc, d/c. Arrivals hang on how stiff contacts
-//! are at first touch: ours are held against finite elements (derivation), the papers' nodal contact against a
-//! prototype of the same.
+//! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which fringes show, first
+//! exceeds a tenth of ρcv. Times are in transits of a disc, d/c. Arrivals depend on the contact stiffness at first
+//! contact. Our contacts are compared with finite elements (derivation), the papers' nodal contact with a prototype of
+//! the same method.
 
 use super::{FASTER, SOONER, WAVE_SPEED, fringes};
 use crate::sources::literature::bardenhagen_2001::FRINGES_SLOWER;
@@ -15,17 +15,17 @@ use grainbench_scene::scene::{BodyName, Duration, Probe, ProbeTarget, Spot};
 const BEST: &str = "mpm";
 const STIFF: &str = "mpm+penalty=5.2";
 const PAPER: &str = "mpm:2001";
-/// Part of ρcv that counts as arrived.
+/// Fraction of ρcv that counts as arrival.
 const ARRIVED: f64 = 0.1;
 /// The paper's second Poisson's ratio, at the same longitudinal modulus.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.48;
 
-/// Cells a radius; shorter steps than usual, for the striker.
+/// Returns a grid with `cells` cells a radius and a smaller time step than usual, for the striker.
 pub(super) const fn grid(cells: f64, points: u32) -> Resolution {
     Resolution::Grid { cells, points, courant: 0.3 }
 }
 
-/// A run that is watched at the centre of every disc for so many transits.
+/// Returns a run with a probe at the centre of each disc, over a number of transits.
 pub(super) fn run(variant: &'static str, solver: &'static str, resolution: Resolution, transits: f64) -> Run {
     Run::new(variant, solver, resolution).adjusted(&format!("elastic, {transits} transits"), move |scene| {
         watch(scene, transits);
@@ -44,13 +44,13 @@ fn watch(scene: &mut Scene, transits: f64) {
     }
 }
 
-/// Which disc a grain is, counted from the striker: the odd ones come first in the scene.
+/// Returns the number of a disc, counted from the striker. The scene lists discs of odd number first.
 fn number(scene: &Scene, place: usize) -> usize {
     let odd = scene.grains.len().div_ceil(2);
     if place < odd { 2 * place + 1 } else { 2 * (place - odd) + 2 }
 }
 
-/// Another Poisson's ratio at the same longitudinal modulus M: G = M (1 − 2ν)/(2 (1 − ν)), K = M − 4G/3.
+/// Sets another Poisson's ratio at the same longitudinal modulus M: G = M (1 − 2ν)/(2 (1 − ν)), K = M − 4G/3.
 fn set_poisson_ratio(scene: &mut Scene, poisson: f64) {
     for material in scene.deformable.iter_mut().flatten() {
         let modulus = material.longitudinal_modulus();
@@ -59,7 +59,7 @@ fn set_poisson_ratio(scene: &mut Scene, poisson: f64) {
     }
 }
 
-/// The line with the other Poisson's ratio, whose waves in discs are slower.
+/// Returns the run of the line with the other Poisson's ratio, for which waves in discs are slower.
 fn slower(solver: &'static str, resolution: Resolution) -> Run {
     Run::new("line", solver, resolution).adjusted("elastic, ν = .48", |scene| {
         watch(scene, 21.0);
@@ -67,14 +67,14 @@ fn slower(solver: &'static str, resolution: Resolution) -> Run {
     })
 }
 
-/// Difference of the principal stresses at the centre of a disc (Pa), by sample.
+/// Returns the difference of the principal stresses at the centre of a disc (Pa), as a function of the sample.
 pub(super) fn principal_difference(done: &Done, disc: usize) -> Result<impl Fn(usize) -> f64, Missing> {
     let column = |part: &str| done.column(&format!("centre-{disc}.sigma_{part}"));
     let (xx, yy, xy) = (column("xx")?, column("yy")?, column("xy")?);
     Ok(move |at: usize| f64::hypot(xx[at] - yy[at], 2.0 * xy[at]))
 }
 
-/// When stress arrives at the centre of a disc (d/c).
+/// Returns the arrival time of stress at the centre of a disc (d/c).
 fn arrival(done: &Done, disc: usize) -> Result<f64, Missing> {
     let scene = &done.scene;
     let difference = principal_difference(done, disc)?;
@@ -88,7 +88,7 @@ fn arrival(done: &Done, disc: usize) -> Result<f64, Missing> {
     Ok((time[at - 1] + share * (time[at] - time[at - 1])) * WAVE_SPEED / (2.0 * scene.grains[0].radius))
 }
 
-/// Delay from one disc to the next (d/c), mean from the second to the fourth.
+/// Returns the mean delay from one disc to the next (d/c), from the second to the fourth.
 fn delay(done: &Done) -> Result<f64, Missing> {
     Ok(0.5 * (arrival(done, 4)? - arrival(done, 2)?))
 }
@@ -114,7 +114,8 @@ pub(super) fn claims() -> Vec<Claim> {
                 .refuses(Control::scene("discs a fifth softer", |scene| crate::rows::elastic::stiffen(scene, 0.8))),
         );
     }
-    // Finer still, two implementations of it part by a fifteenth, and neither is near the finite elements.
+    // On still finer grids, two implementations of nodal contact differ by a fifteenth, and neither approaches the
+    // finite elements.
     let too_fast = "nodal contact joins discs over a region from the start: the wave is too fast, and slower with each \
                     refinement";
     claims.push(

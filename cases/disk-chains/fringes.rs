@@ -1,8 +1,8 @@
-//! Photoelastic fringes in the discs at the paper's frame times, and a film of the line.
+//! Photoelastic fringes in the discs at the paper's frame times, and an animation of the line.
 //!
-//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here it is
-//! fitted once, to the line as well: at the line's last frame the first grey fringe, cos(Δσ/c) = 0, stands at the
-//! centre of the fourth disc. The zig-zags keep that c.
+//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here c is
+//! fitted once, also to the line: in its last frame, the first grey fringe, cos(Δσ/c) = 0, is at the centre of the
+//! fourth disc. The zig-zags use the same c.
 
 use super::WAVE_SPEED;
 use super::elastic::{grid, principal_difference, run};
@@ -18,9 +18,9 @@ struct Chain {
     title: &'static str,
     /// Times of the frames in the paper's simulation, in transits of a disc.
     frames: [f64; 3],
-    /// The same in its experiment.
+    /// Times of the frames in the paper's experiment, in transits of a disc.
     experiment: [f64; 3],
-    /// What the paper sees in them.
+    /// The paper's observation in these frames.
     seen: &'static str,
 }
 
@@ -49,38 +49,38 @@ const CHAINS: [Chain; 3] = [
         seen: "As in the paper the load first goes from contact to contact, and to the walls later.",
     },
 ];
-/// Frames of the film, in quarters of a transit.
+/// Number of frames of the animation, a quarter of a transit apart.
 const FILM: u32 = 44;
 const PIXELS: u32 = 720;
 const FILM_PIXELS: u32 = 400;
 
-/// One transit of a disc, d/c (s).
+/// Returns the transit time of a disc, d/c (s).
 fn transit(scene: &Scene) -> f64 {
     2.0 * scene.grains[0].radius / WAVE_SPEED
 }
 
-/// When snapshots are wanted of a variant (s).
+/// Returns the times of the snapshots of a variant (s).
 pub(super) fn times(scene: &Scene, variant: &str) -> Vec<f64> {
     let frames = CHAINS.iter().filter(|chain| chain.variant == variant).flat_map(|chain| chain.frames);
     let film = (1..=FILM).map(|frame| 0.25 * f64::from(frame)).filter(|_| variant == "line");
     frames.chain(film).map(|transits| transits * transit(scene)).collect()
 }
 
-/// The snapshot nearest to a time in transits.
+/// Returns the snapshot nearest to a time in transits.
 fn at(done: &Done, transits: f64) -> Option<&Snapshot> {
     let time = transits * transit(&done.scene);
     let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
     done.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
-/// The fringe constant (Pa) from the line: see above.
+/// Returns the fringe constant (Pa) fitted to the line (see the head of this file).
 fn constant(line: &Done) -> f64 {
     let time = CHAINS[0].frames[2] * transit(&line.scene);
     let sample = line.series().time.iter().position(|&sampled| sampled >= time).unwrap_or_default();
     principal_difference(line, 4).map_or(f64::NAN, |difference| difference(sample)) / FRAC_PI_2
 }
 
-/// Fringes of all chains at the paper's times, and the film.
+/// Returns the fringes of all chains at the paper's times, and the animation.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let (cells, points) = if runner.is_thorough() { (20.0, 2) } else { (8.0, 2) };
     let done = |variant| runner.run(&run(variant, "mpm", grid(cells, points), 15.0));
@@ -131,7 +131,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(figures)
 }
 
-/// ρcv of the strike (Pa).
+/// Returns the impact stress ρcv of the striker (Pa).
 fn impact_stress(done: &Done) -> f64 {
     let scene = &done.scene;
     let density = scene.grains[0].mass / (std::f64::consts::PI * scene.grains[0].radius.powi(2));

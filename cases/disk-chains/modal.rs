@@ -1,40 +1,40 @@
-//! The exact motion of discs on linear springs, for displacements so small that the geometry stays as it is and for as
-//! long as no contact opens or slips: `M ü + K u = f V t`, by the eigenvectors of `M^{-1/2} K M^{-1/2}`.
+//! Exact motion of discs on linear springs by modal analysis, for displacements that leave the geometry unchanged and
+//! until a contact opens or slips: `M ü + K u = f V t`, by the eigenvectors of `M^{-1/2} K M^{-1/2}`.
 //!
-//! A contact at unit normal `e` (from i to j) with tangent `t = (e₂, −e₁)` is stretched by
+//! At a contact with unit normal `e` (from i to j) and tangent `t = (e₂, −e₁)`, the spring displacements are
 //!
 //! ```text
 //! overlap        e·(u_i − u_j)
 //! shear          t·(u_i − u_j) − s (R_i θ_i + R_j θ_j),   s = ω × e along t = −1 per unit of ω (counter-clockwise)
 //! ```
 //!
-//! and stores k/2 of its square; a wall is a disc that does not move, and has no shear here.
+//! and the energy is k/2 times their squares. A wall is a disc that does not move, here without shear.
 
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-/// One spring: what stretches it, as a row of coefficients on (x, y, θ) of every disc, and its stiffness.
+/// A spring: the coefficients of its displacement on (x, y, θ) of all discs, and its stiffness.
 struct Spring {
     stretch: DVector<f64>,
     stiffness: f64,
     is_shear: bool,
-    /// The two discs of a spring between discs.
+    /// The two discs, if the spring is between discs.
     pair: Option<[usize; 2]>,
     /// Overlap per unit of the striker's displacement.
     driven: f64,
 }
 
 impl Spring {
-    /// Stretch (m) at the displacements of the discs (m, rad) and of the striker (m).
+    /// Returns the spring displacement (m) from the displacements of the discs (m, rad) and of the striker (m).
     fn overlap(&self, displacement: &DVector<f64>, striker: f64) -> f64 {
         self.stretch.dot(displacement) + self.driven * striker
     }
 }
 
-/// The modes of a scene of touching discs, driven by its first wall.
+/// Modes of a scene of discs in contact, driven by its first wall.
 pub(super) struct Modes {
     springs: Vec<Spring>,
-    /// Columns M^{-1/2} v of every mode.
+    /// Columns M^{-1/2} v of all modes.
     shapes: DMatrix<f64>,
     frequency: Vec<f64>,
     /// Generalised force of the drive per unit of its displacement.
@@ -43,7 +43,7 @@ pub(super) struct Modes {
 }
 
 impl Modes {
-    /// Of the contacts that a scene starts with; all of them stick where the law has friction.
+    /// Computes the modes with the contacts at the start of a scene. All contacts stick if their law has friction.
     pub(super) fn of(scene: &Scene) -> Self {
         let count = scene.grains.len();
         let springs = springs(scene);
@@ -66,11 +66,11 @@ impl Modes {
         Self { springs, shapes, frequency, drive, speed }
     }
 
-    /// Displacements (m, rad) at a time (s): `q̈ + ω²q = gVt` gives `q = gV(t − sin ωt/ω)/ω²`.
+    /// Returns the displacements (m, rad) at a time (s): `q̈ + ω²q = gVt` gives `q = gV(t − sin ωt/ω)/ω²`.
     fn displacement(&self, time: f64) -> DVector<f64> {
         let fastest = self.frequency.iter().copied().fold(0.0, f64::max);
         let amplitudes = self.frequency.iter().zip(&self.drive).map(|(&frequency, &drive)| {
-            // Rotations that stretch nothing are not driven either.
+            // Rotations without spring displacements are not driven.
             if frequency < 1e-6 * fastest {
                 0.0
             } else {
@@ -80,31 +80,31 @@ impl Modes {
         &self.shapes * DVector::from_iterator(self.frequency.len(), amplitudes)
     }
 
-    /// Normal force between two discs (N).
+    /// Returns the normal force between two discs (N).
     pub(super) fn force(&self, pair: [usize; 2], time: f64) -> f64 {
         let displacement = self.displacement(time);
         let spring = self.springs.iter().find(|spring| !spring.is_shear && spring.pair == Some(pair));
         spring.map_or(f64::NAN, |spring| spring.stiffness * spring.overlap(&displacement, self.speed * time))
     }
 
-    /// When a contact of the assembly first pulls, so that it opens (s), within `until` (s).
+    /// Returns the time at which a contact of the assembly first pulls and opens (s), within `until` (s).
     pub(super) fn first_opening(&self, until: f64) -> f64 {
         let pull = |time: f64| {
             let displacement = self.displacement(time);
             let normal = self.springs.iter().filter(|spring| !spring.is_shear);
-            // Far contacts pull a little before the force arrives: that much is no opening.
+            // Distant contacts pull slightly before the force arrives. This tolerance does not count it as opening.
             let felt = 1e-2 * self.speed * time;
             normal.map(|spring| -spring.overlap(&displacement, self.speed * time) - felt).fold(f64::MIN, f64::max)
         };
         first_above(pull, 0.0, until)
     }
 
-    /// When the normal force between two discs first exceeds a threshold (s), within `until` (s).
+    /// Returns the time at which the normal force between two discs first exceeds a threshold (s), within `until` (s).
     pub(super) fn arrival(&self, pair: [usize; 2], threshold: f64, until: f64) -> f64 {
         first_above(|time| self.force(pair, time), threshold, until)
     }
 
-    /// When a disc first moves along x faster than a threshold (m/s), within `until` (s).
+    /// Returns the time at which a disc first moves along x faster than a threshold (m/s), within `until` (s).
     pub(super) fn moving(&self, disc: usize, threshold: f64, until: f64) -> f64 {
         let tick = 1e-6 * until;
         let position = |time: f64| self.displacement(time)[3 * disc];
@@ -112,7 +112,7 @@ impl Modes {
     }
 }
 
-/// When a function of time first exceeds a threshold: by a scan and bisection.
+/// Returns the time at which a function of time first exceeds a threshold, by a scan and bisection.
 fn first_above(value: impl Fn(f64) -> f64, threshold: f64, until: f64) -> f64 {
     const SCAN: usize = 1000;
     let time = |step: usize| until * step as f64 / SCAN as f64;

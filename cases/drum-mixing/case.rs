@@ -1,4 +1,5 @@
-//! Two kinds of spheres in a rotating drum: from the published start, where the user has it, and from a small one of our own.
+//! Two kinds of spheres in a rotating drum: from the published start if the user has its data, and from a small start
+//! of our own.
 
 #[path = "ladder.rs"]
 mod ladder;
@@ -36,10 +37,10 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Our solver in LIGGGHTS' convention, and LIGGGHTS.
+/// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 
-/// The drum of the paper with its shared start.
+/// The paper's drum with its published start.
 static PUBLISHED: Data = Data {
     name: "published",
     needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` file of 38,000 grains; \
@@ -48,7 +49,7 @@ static PUBLISHED: Data = Data {
     scene: published,
 };
 
-/// The scene of the drum with the start that a folder holds.
+/// Returns the scene of the drum with the start in a folder.
 fn published(folder: &Path) -> Result<Scene, NotMade> {
     let start = start_in(folder).map_err(|error| NotMade::Wrong(format!("{}: {error}", folder.display())))?;
     let start = start.ok_or_else(|| {
@@ -60,7 +61,7 @@ fn published(folder: &Path) -> Result<Scene, NotMade> {
     made_of(&source, &files).map_err(NotMade::Wrong)
 }
 
-/// What was asked for before, and until when.
+/// Tolerances that were required beforehand, with the time up to which they apply.
 const EARLY: (f64, &str) = (0.005, "asked for before: .5 % of either code to .5 s");
 const LATE: (f64, &str) = (0.01, "asked for before: 1 % of either code to 1 s");
 
@@ -81,7 +82,7 @@ fn claims() -> Vec<Claim> {
     claims.extend(ladder::claims());
     for ours in [SIDES[0], "dem"] {
         let both = || [ours, SIDES[1]].map(|solver| Run::new(PLAIN, solver, LEVELS[0].resolution));
-        // One run that is wrong for both.
+        // One control run serves both claims.
         let smooth = || Control::ours(SMOOTH, |scene| rub(scene, 0.0));
         claims.push(mean("angular momentum", "kg m²/s", "all.angular_momentum_y", both(), smooth()));
         claims.push(mean("momentum along x", "kg m/s", "all.momentum_x", both(), smooth()));
@@ -89,7 +90,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Where the drum carries its grains from.
+/// Negative control: counts in the other lower quarter.
 fn beside() -> Control {
     Control::misread("counted on the other side, x > 0", zones::on_the_other_side)
 }
@@ -104,7 +105,7 @@ fn backwards(scene: &mut Scene) {
     }
 }
 
-/// Multiplies the friction of all that touches the drum.
+/// Multiplies the friction of all contacts with the drum.
 fn rub(scene: &mut Scene, factor: f64) {
     let Some(steel) = scene.materials.iter().position(|name| name == "steel") else { return };
     let count = scene.materials.len();
@@ -115,12 +116,13 @@ fn rub(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// The run from the published start.
+/// Returns the run from the published start.
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
 }
 
-/// Counts of M1 in zone 2 between two times, the worst of them beside the code that is farther off.
+/// Claims the counts of M1 in zone 2 between two times. The worst one decides, against the code with the larger
+/// difference.
 fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> Tolerated {
     claim(quantity, "1")
         .of(of_paper())
@@ -138,30 +140,32 @@ fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -
         .within(required(allowed, because))
 }
 
-/// M1 in zone 2 at a time.
+/// Returns the count of M1 in zone 2 at a time.
 fn counted(done: &Done, time: f64) -> Result<f64, Missing> {
     let table = done.table(zones::NAME)?;
     let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}`")));
     let times = column("time")?;
-    // A snapshot is taken at the step that is nearest.
+    // A snapshot is taken at the nearest step.
     let place = times.iter().position(|at| (at - time).abs() < 1e-5);
     place
         .map(|place| column(COUNTED).map(|counts| counts[place]))
         .unwrap_or_else(|| Err(Missing(format!("count at {time} s"))))
 }
 
-/// A grain beside LIGGGHTS, before rounding has grown: from then on tenfold in about a hundred steps.
+/// Claims the position of one grain against LIGGGHTS before rounding errors have grown. Afterwards they grow tenfold in
+/// about a hundred steps.
 fn beginning() -> Claim {
     let runs = SIDES.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
     bulk::beginning("position of a grain of the bed over .3 ms, worst", runs)
 }
 
-/// A mean from when the bed turns with the drum.
+/// Claims a time average from the time at which the bed moves with the drum.
 fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], control: Control) -> Claim {
     bulk::mean(&format!("mean {words} from .03 to .1 s"), unit, (column, 0.03), runs, control)
 }
 
-/// Counts in zone 2 over time beside the codes', where the published start is given; and how the small drum takes its bed along.
+/// Returns the counts in zone 2 over time with those of the codes, if the published start is given, and the
+/// acceleration of the small drum's bed.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = Vec::new();
     match runner.run(&of_paper()) {
@@ -171,7 +175,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     let mut curves = Vec::new();
     for (solver, stroke) in SIDES.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
-        // Without the program and without its stored run there is nothing to draw.
+        // Without the external solver and its stored run, there is no curve.
         if let Ok(done) = runner.run(&Run::new(PLAIN, solver, LEVELS[0].resolution)) {
             let values = done.column("all.angular_momentum_y").unwrap_or_default();
             let points = done.series().time.iter().zip(values).map(|(time, value)| (time * 1e3, -value * 1e6));

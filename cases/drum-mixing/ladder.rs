@@ -1,4 +1,4 @@
-//! What half the step and twice the step move the count by, beside what rounding does.
+//! Effect of half and twice the time step on the count, compared with the effect of rounding.
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
 use grainbench_harness::claim::Tolerated;
@@ -7,13 +7,13 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 use std::path::Path;
 
-/// Until when steps are compared (s).
+/// Time up to which runs are compared (s).
 const UNTIL: f64 = 0.5;
-/// Steps (s): half that of the case, one that differs from it in its last places, and twice that.
+/// Time steps (s): half the step of the case, a step that differs from it by a millionth, and twice the step.
 const HALF: f64 = 1.5e-6;
 const ROUNDED: f64 = 3.000_003e-6;
 const TWICE: f64 = 6e-6;
-/// The drum of the paper until then.
+/// The paper's drum up to this time.
 static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
 
 fn shorter(folder: &Path) -> Result<Scene, NotMade> {
@@ -24,7 +24,7 @@ fn with(step: f64) -> Run {
     Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER).read_by(ZONES).long().kept()
 }
 
-/// Counts with other steps beside those with that of the case.
+/// Claims the counts with other steps against the counts with the step of the case.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = [("half the step", HALF), ("a step longer by a millionth", ROUNDED), ("twice the step", TWICE)];
     steps.into_iter().map(|(words, step)| worst(words, with(step)).refuses(beside())).collect()

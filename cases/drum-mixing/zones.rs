@@ -1,16 +1,16 @@
-//! Counts the small spheres in the lower quarters of the drum.
+//! Counting of the small spheres in the lower quarters of the drum.
 
 use grainbench_harness::reading::{Reader, Reading, Table};
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;
 
-/// The reading of every snapshot.
+/// Reading of each snapshot.
 pub(super) const ZONES: Reading = Reading { name: "zones of the drum", begin };
-/// Name of its table.
+/// Name of the table of the reading.
 pub(super) const NAME: &str = "zones";
 /// Column of M1 in zone 2: x < 0 and z < 0.
 pub(super) const COUNTED: &str = "zone_2";
-/// Columns: beside it M1 with x > 0 and z < 0.
+/// Columns of the table; `beside` is M1 with x > 0 and z < 0.
 const COLUMNS: [&str; 3] = ["time", COUNTED, "beside"];
 
 struct Zones {
@@ -38,7 +38,7 @@ impl Reader for Zones {
     }
 }
 
-/// Takes the quarter beside zone 2 for it.
+/// Negative control: swaps zone 2 and the other lower quarter.
 pub(super) fn on_the_other_side(tables: &mut [Table]) {
     for table in tables.iter_mut().filter(|table| table.name == NAME) {
         table.values.swap(1, 2);

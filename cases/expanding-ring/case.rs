@@ -1,4 +1,4 @@
-//! A ring breathes: the exact frequency of a ring of any thickness.
+//! Breathing mode of a ring: the exact frequency at any thickness.
 
 use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 const LEVELS: &[Level] = &[cells("t/2", 2.0, 2), cells("t/4", 4.0, 2), cells("t/8", 8.0, 2)];
 const THIN: &str = "thin";
 const THICK: &str = "thick";
-/// Cells through a thick ring, half the thin ring's thickness wide.
+/// Resolution of a thick ring: cells of half the thin ring's thickness.
 const THROUGH_THICK: Resolution = Resolution::grid(8.0, 2);
 
 const SOURCE: Source = Source::Derived("u = A J₁(kr) + B Y₁(kr), no traction at both radii (derivation)");
@@ -36,7 +36,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The breathing mode U(r) = s_Y(b) J₁(kr) − s_J(b) Y₁(kr) of a ring.
+/// Breathing mode of a ring, U(r) = s_Y(b) J₁(kr) − s_J(b) Y₁(kr).
 #[derive(Clone, Copy, Debug)]
 struct Mode {
     /// Inner and outer radius (m).
@@ -47,7 +47,7 @@ struct Mode {
     speed: f64,
     /// k (1/m).
     wave_number: f64,
-    /// s: the velocity at the start over the radius (1/s).
+    /// s: initial velocity over the radius (1/s).
     stretch: f64,
 }
 
@@ -67,7 +67,7 @@ impl Mode {
         Some(mode)
     }
 
-    /// σ_rr of J₁ and of Y₁ at a radius.
+    /// Returns σ_rr of J₁ and of Y₁ at a radius.
     fn traction(&self, wave_number: f64, radius: f64) -> [f64; 2] {
         let [long, shear] = self.moduli;
         let x = wave_number * radius;
@@ -75,7 +75,7 @@ impl Mode {
             .map(|(zeroth, first)| long * wave_number * zeroth - 2.0 * shear * first / radius)
     }
 
-    /// The root within a half of a guess.
+    /// Returns the root within half of a guess.
     fn root(&self, guess: f64) -> Option<f64> {
         let free = |wave_number: f64| {
             let [[ja, ya], [jb, yb]] = self.radii.map(|radius| self.traction(wave_number, radius));
@@ -107,14 +107,15 @@ impl Mode {
         0.5 * (self.radii[0] + self.radii[1])
     }
 
-    /// ∫ f dr through the ring, by the midpoint rule.
+    /// Integrates ∫ f dr through the ring, by the midpoint rule.
     fn through(&self, of: impl Fn(f64) -> f64) -> f64 {
         const PARTS: u32 = 200;
         let part = (self.radii[1] - self.radii[0]) / f64::from(PARTS);
         (0..PARTS).map(|at| of(self.radii[0] + (f64::from(at) + 0.5) * part) * part).sum()
     }
 
-    /// Velocity (m/s) with which the mode starts in the middle of the ring, and the share of the energy that other modes have.
+    /// Returns the mode's initial velocity in the middle of the ring (m/s), and the fraction of the energy in other
+    /// modes.
     fn start(&self) -> (f64, f64) {
         let own = self.through(|r| r * self.shape(r).powi(2));
         let common = self.through(|r| r * r * self.shape(r));
@@ -127,14 +128,15 @@ impl Mode {
     }
 }
 
-/// Radial displacement of the middle of the ring (m): the mean along an axis and across the corner of a cell.
+/// Returns the radial displacement of the middle of the ring (m): the mean of a point along an axis and a point at the
+/// corner of a cell.
 fn radial(done: &Done) -> Result<Vec<f64>, Missing> {
     let [side, x, y] = ["side.ux", "corner.ux", "corner.uy"].map(|column| done.column(column));
     let corner = x?.iter().zip(y?).map(|(x, y)| (x + y) * FRAC_1_SQRT_2);
     Ok(side?.iter().zip(corner).map(|(side, corner)| 0.5 * (side + corner)).collect())
 }
 
-/// The period (s) from the first to the last passage inwards through the middle of the swing.
+/// Returns the period (s), from the first to the last inward zero crossing of the displacement.
 fn period(done: &Done) -> Result<f64, Missing> {
     let (time, place) = (&done.series().time, radial(done)?);
     let inwards: Vec<f64> = (1..place.len())
@@ -155,7 +157,7 @@ fn softer() -> Control {
     Control::scene("four per cent softer", |scene| stiffen(scene, 0.96))
 }
 
-/// In plane stress (E, 4.6 % slower) or with another contraction across.
+/// Negative control: plane stress (E, 4.6 % slower), or another transverse contraction.
 fn no_contraction() -> Control {
     Control::scene("no contraction across: E in place of E/(1 − ν²)", |scene| {
         for material in scene.deformable.iter_mut().flatten() {
@@ -173,7 +175,7 @@ fn claims() -> Vec<Claim> {
         claim(name, "s")
             .of(run)
             .equals(SOURCE, |done| {
-                // The expectation is of the ring that was asked for, whatever a control makes of it.
+                // The expected value belongs to the ring of the claim, also under a control.
                 let exact = 2.0 * PI / mode(&done[0])?.frequency();
                 Ok(Measured::new(period(&done[0])?, exact, exact))
             })
@@ -181,7 +183,7 @@ fn claims() -> Vec<Claim> {
             .refuses(control)
             .fair_to_any_continuum()
     };
-    // Two per cent of two cells through the thickness, and what a method of second order leaves of it.
+    // Two per cent for two cells through the thickness, and a second-order decrease.
     let mut claims: Vec<Claim> = LEVELS
         .iter()
         .zip([2e-2, 5e-3, 1.25e-3])
@@ -241,8 +243,8 @@ mod tests {
 
     use super::*;
 
-    /// σ_rr at the outer radius over that of a ring of the same stretch, by Runge and Kutta from the inner one, where there is
-    /// none: u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
+    /// Returns σ_rr at the outer radius over the stress of a ring of the same strain. It integrates by Runge-Kutta from
+    /// the inner radius, where σ_rr = 0: u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
     fn left_over(mode: &Mode, frequency: f64) -> f64 {
         const STEPS: u32 = 4000;
         let [long, shear] = mode.moduli;
@@ -277,11 +279,11 @@ mod tests {
         }
     }
 
-    /// As the derivation prints them (rad/s).
+    /// Frequencies as in the derivation (rad/s).
     const THIN_RING: f64 = 333.00;
     const THICK_RING: f64 = 356.14;
 
-    /// E/((1 − ν²) ρ R²), approached by the square of the thickness.
+    /// E/((1 − ν²) ρ R²) is the limit, with an error proportional to the square of the thickness.
     #[test]
     fn a_thin_ring_has_the_hoops_frequency() {
         let thin = (1e6_f64 / (0.91 * 1000.0)).sqrt() / 0.1;

@@ -1,4 +1,4 @@
-//! A cantilever bends far under its own weight.
+//! Large deflection of a cantilever under its own weight.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
@@ -30,21 +30,21 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The elastica under its own weight, in units of its length.
+/// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]
 struct Elastica {
     /// Curvature at the clamp.
     curvature: f64,
     /// Displacement of the tip below the clamp.
     sinking: f64,
-    /// Angle of the tip below the level (rad).
+    /// Angle of the tip below the horizontal (rad).
     angle: f64,
-    /// Curvature at the tip, which is none of the solution.
+    /// Curvature at the tip; zero for the solution.
     left: f64,
 }
 
 impl Elastica {
-    /// The solution for γ = w L³/EI.
+    /// Solves for γ = w L³/EI by bisection of the curvature at the clamp.
     fn under(weight: f64) -> Self {
         let (mut low, mut high) = (0.0, weight);
         for _ in 0..60 {
@@ -54,7 +54,7 @@ impl Elastica {
         Self::shot(weight, 0.5 * (low + high))
     }
 
-    /// From the clamp on with a curvature, by Runge and Kutta.
+    /// Integrates from the clamp with a curvature, by Runge-Kutta.
     fn shot(weight: f64, curvature: f64) -> Self {
         const STEPS: u32 = 1000;
         let step = 1.0 / f64::from(STEPS);
@@ -74,7 +74,7 @@ impl Elastica {
     }
 }
 
-/// Length and thickness (m), and γ.
+/// Returns length and thickness (m), and γ.
 fn strip(scene: &Scene) -> Option<[f64; 3]> {
     let beam = scene.bodies.first()?;
     let BlockShape::Box { low, high } = beam.shape else { return None };
@@ -121,7 +121,7 @@ fn claims() -> Vec<Claim> {
 mod tests {
     use super::*;
 
-    /// As the derivation prints them.
+    /// Values as in the derivation.
     #[test]
     fn the_elastica_is_that_of_the_derivation() {
         let Elastica { curvature, sinking, angle, left } = Elastica::under(10.0);
@@ -130,7 +130,7 @@ mod tests {
         assert!((Elastica::under(9.0).sinking - 0.673_08).abs() < 5e-6);
     }
 
-    /// w L⁴/8EI, but for the square of the angle.
+    /// The deflection is w L⁴/8EI up to the square of the angle.
     #[test]
     fn a_light_cantilever_bends_as_a_beam() {
         let weight = 1e-3;

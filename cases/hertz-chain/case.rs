@@ -7,11 +7,11 @@ use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
-/// The discrete chain's coefficient, from its travelling wave: the test solves for it.
+/// Coefficient of the discrete chain, from its travelling wave, which the test computes.
 const COEFFICIENT: f64 = 0.688_672_8;
 /// Speeds of the striker (m/s).
 const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
-/// Beads between the two contacts that are watched.
+/// Number of beads between the two probed contacts.
 const BEADS: f64 = 40.0;
 
 pub(crate) static CASE: Case = Case {
@@ -30,8 +30,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// A strike at a speed, for as long as the wave takes. The step follows the stiffness at the wave's own overlap, a
-/// fraction of a hundredth of R: Δt ∝ v^{-1/5}.
+/// Returns the run of a strike at a speed, as long as the wave takes. The step follows the stiffness at the wave's own
+/// overlap, which is a fraction of R/100: Δt ∝ v^{-1/5}.
 fn strike(speed: f64) -> Run {
     let resolution = Resolution::CriticalFraction(0.02 * speed.powf(-0.2));
     Run::new(PLAIN, "dem", resolution).adjusted(&format!("striker at {speed} m/s"), move |scene| {
@@ -44,7 +44,7 @@ fn strike(speed: f64) -> Run {
     })
 }
 
-/// When and how high a force peaks: the parabola through the highest sample and its neighbours.
+/// Returns time and height of the peak of a force, by a parabola through the highest sample and its neighbours.
 fn peak(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
@@ -54,14 +54,14 @@ fn peak(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
     Ok((time[at] + shift * (time[at] - time[at - 1]), top - 0.25 * (left - right) * shift))
 }
 
-/// Speed of the wave (m/s) and its force (N).
+/// Returns the speed of the wave (m/s) and its force (N).
 fn wave(done: &Done) -> Result<(f64, f64), Missing> {
     let (near, far) = (peak(done, "near.normal_force")?, peak(done, "far.normal_force")?);
     let distance = BEADS * 2.0 * done.scene.grains[0].radius;
     Ok((distance / (far.0 - near.0), 0.5 * (near.1 + far.1)))
 }
 
-/// (2E/(2Rρ^{3/2}(1−ν²)))^{1/3}, with E/(1−ν²) = 2E* between equal spheres.
+/// Returns the scale (2E/(2Rρ^{3/2}(1−ν²)))^{1/3}, with E/(1−ν²) = 2E* between equal spheres.
 fn scale(scene: &Scene) -> f64 {
     let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
     let grain = &scene.grains[0];
@@ -69,7 +69,7 @@ fn scale(scene: &Scene) -> f64 {
     (4.0 * law.effective_modulus() / (2.0 * grain.radius * density.powf(1.5))).cbrt()
 }
 
-/// What the speed is over its scale and the sixth root of the force.
+/// Returns the wave speed over its scale and over the sixth root of the force.
 fn coefficient(done: &Done) -> Result<f64, Missing> {
     let (speed, force) = wave(done)?;
     Ok(speed / (scale(&done.scene) * force.powf(1.0 / 6.0)))
@@ -98,7 +98,7 @@ fn claims() -> Vec<Claim> {
         "momentum passes through rigid beads in one step: there is no wave whose force could peak",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );
-    // Forces over the passage of the wave; where it is no more, the beads part and touch nothing.
+    // Forces until the wave has passed. Afterwards the beads separate and have no contacts.
     let sampled = |solver| {
         Run { solver, ..strike(1.0) }.adjusted("until the wave has passed, every 20 cycles", |scene| {
             scene.sampling = Sampling::Cycles(20);
@@ -108,8 +108,8 @@ fn claims() -> Vec<Claim> {
         })
     };
     let programs = forces(sampled, &["near.normal_force", "far.normal_force"], |scene, _| {
-        // A contact of the wave bears about this: k δ^{3/2} at the overlap of two beads that meet at the striker's
-        // speed.
+        // Typical force of a contact in the wave: k δ^{3/2} at the largest overlap of two beads that collide at the
+        // striker's speed.
         let (law, grain) = (scene.laws.iter().flatten().next().copied().unwrap_or_default(), &scene.grains[0]);
         let k = 4.0 / 3.0 * law.effective_modulus() * (0.5 * grain.radius).sqrt();
         let speed = scene.grains.last().map_or(0.0, |striker| striker.velocity.norm());
@@ -144,8 +144,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 mod tests {
     use super::*;
 
-    /// Sites per unit of time of the wave whose largest force is 1, k = m = 1: its overlap r(ξ) obeys
-    /// c² r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1, and is found by iteration on `cells` points a site.
+    /// Returns the sites per unit of time of the wave with the largest force 1 and k = m = 1. Its overlap r(ξ) obeys c²
+    /// r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1. The solution is by iteration on `cells` points a site.
     fn sites_per_time(cells: usize) -> f64 {
         let step = 1.0 / cells as f64;
         let mut overlap: Vec<f64> = (0..=6 * cells).map(|at| (-(at as f64 * step).powi(2)).exp()).collect();

@@ -8,14 +8,14 @@ use std::f64::consts::PI;
 
 const LEVELS: &[Level] =
     &[cells("b", 1.0, POINTS), cells("b/2", 2.0, POINTS), cells("b/4", 4.0, POINTS), cells("b/8", 8.0, POINTS)];
-/// Allowed errors of half-width and peak pressure with cells as wide as the half-width b.
+/// Largest errors of half-width and peak pressure with cells as wide as the half-width b.
 const COARSEST: [f64; 2] = [0.15, 0.12];
-/// (b/R)², R = 8 b: what bodies that are no half-spaces leave on any grid.
+/// (b/R)², R = 8 b: the error on any grid, because the bodies are not half-spaces.
 const NO_HALF_SPACE: f64 = 1.0 / 64.0;
 /// Points per cell and axis.
 const POINTS: u32 = 2;
-/// Points that keep velocities of their own, as those of the best setting do, go on trembling under a load that rests,
-/// and their stresses with them; those of APIC come to rest.
+/// In the best setting, points keep their own velocities and oscillate under a static load, and so do their stresses.
+/// With APIC they come to rest.
 const SOLVER: &str = "mpm+apic";
 const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");
@@ -52,8 +52,8 @@ impl Hertz {
         Self { half_width, peak: 2.0 * load / (PI * half_width) }
     }
 
-    /// Pressure −σ_yy (Pa) at a depth below the surface of a half-space: (p₀/b) m (1 − (z² + n²)/(m² + n²)) with
-    /// m², n² = ½(√((b² − x² + z²)² + 4x²z²) ± (b² − x² + z²)) (McEwen 1949; Johnson, eq. 4.49b).
+    /// Returns the pressure −σ_yy (Pa) at a depth below the surface of a half-space: (p₀/b) m (1 − (z² + n²)/(m² + n²))
+    /// with m², n² = ½(√((b² − x² + z²)² + 4x²z²) ± (b² − x² + z²)) (McEwen 1949; Johnson, eq. 4.49b).
     fn pressure_below(&self, x: f64, depth: f64) -> f64 {
         let side = self.half_width * self.half_width - x * x + depth * depth;
         let root = (side * side + 4.0 * x * x * depth * depth).sqrt();
@@ -62,12 +62,12 @@ impl Hertz {
     }
 }
 
-/// Line load P (N/m): the cylinder's weight.
+/// Returns the line load P (N/m): the cylinder's weight.
 fn weight(scene: &Scene) -> f64 {
     scene.grains[0].mass * scene.gravity.norm()
 }
 
-/// A material point of the block: place along and below the surface (m), and pressure −σ_yy (Pa).
+/// A material point of the block: position along and below the surface (m), and pressure −σ_yy (Pa).
 #[derive(Clone, Copy, Debug)]
 struct Pressed {
     x: f64,
@@ -75,8 +75,8 @@ struct Pressed {
     pressure: f64,
 }
 
-/// Material points of the block at the end whose depth at the start was between `from` and `to` cells and which are not
-/// farther from the middle than 1.5 b.
+/// Returns the material points of the block at the end whose initial depth was between `from` and `to` cells and whose
+/// distance from the middle is below 1.5 b.
 fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
     let snapshots = &done.record.snapshots;
     let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));
@@ -95,8 +95,8 @@ fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
     Ok(chosen.collect())
 }
 
-/// Half-width and peak pressure of the contact whose stress in a half-space, two layers of cells below the uppermost,
-/// is nearest to that of the material points: least squares by Gauss–Newton over both.
+/// Fits half-width and peak pressure of the contact. The half-space solution is compared with the stress of the
+/// material points in two layers of cells below the uppermost. Least squares over both by Gauss–Newton.
 fn measured(done: &Done) -> Result<Hertz, Missing> {
     let points = pressed(done, 1.0, 3.0)?;
     let mut found = Hertz::of(&done.scene);
@@ -105,7 +105,7 @@ fn measured(done: &Done) -> Result<Hertz, Missing> {
         for point in &points {
             let now = found.pressure_below(point.x, point.depth);
             let wider = Hertz { half_width: found.half_width * (1.0 + 1e-6), ..found };
-            // By relative changes of the half-width and of the peak, in which the stress is linear.
+            // Derivatives by relative changes of the half-width and of the peak. The stress is linear in the peak.
             let by = Vector2::new((wider.pressure_below(point.x, point.depth) - now) / 1e-6, now);
             curvature += by * by.transpose();
             slope += by * (point.pressure - now);
@@ -118,7 +118,7 @@ fn measured(done: &Done) -> Result<Hertz, Missing> {
     Ok(found)
 }
 
-/// What is allowed with so many cells a half-width, from what is with one.
+/// Returns the tolerance for `cells` cells a half-width, from the tolerance for one cell.
 fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
     if cells > 1.0 {
         judged(
@@ -134,11 +134,12 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
     }
 }
 
-/// What is left of the cylinder's swings about its equilibrium when its force is read, over the weight.
+/// Returns the remaining oscillation of the cylinder's force about equilibrium at the time of the reading, over the
+/// weight.
 ///
-/// With a little more load dP the half-width grows as √P, so that the centre of the cylinder comes nearer to the base of the
-/// block, d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]: Johnson, Contact
-/// Mechanics, eqs. 5.57 and 5.58, which hold for a cylinder and for a layer on a base. Steel on aluminium, R = d = .05 m.
+/// The half-width grows as √P. A small additional load dP therefore moves the centre of the cylinder towards the base
+/// of the block, d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]. See Johnson,
+/// Contact Mechanics, eqs. 5.57 and 5.58, for a cylinder and for a layer on a base. Steel on aluminium, R = d = 0.05 m.
 fn swings() -> f64 {
     let (radius, half_width, poisson, damping) = (0.05_f64, 6.2146e-3, 0.3, 40_000.0_f64);
     let [steel, aluminium] = [210e9, 70e9].map(|young| young / (1.0 - poisson * poisson));
@@ -246,7 +247,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 mod tests {
     use super::*;
 
-    /// The figures of the printed example, and the stress on the axis, p₀/√(1 + z²/b²).
+    /// Checks the values of the printed example, and the stress on the axis, p₀/√(1 + z²/b²).
     #[test]
     fn hertz_is_as_printed() {
         let scene = CASE.variant(PLAIN).unwrap_or_else(|error| panic!("{error}"));

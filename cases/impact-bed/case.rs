@@ -1,4 +1,4 @@
-//! A ball of steel falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
+//! A steel ball falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
 
 #[path = "hundred_thousand.rs"]
 mod hundred_thousand;
@@ -22,7 +22,7 @@ const LEVELS: &[Level] = &[
     Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) },
 ];
 
-/// The derivation, and what the published data says of itself.
+/// Derivation, followed by the description of the published data.
 const DERIVATION: &str = {
     const OWN: &str = include_str!("derivation.md");
     const SAID: &str = grainbench_reference::round_robin::SAID;
@@ -56,26 +56,26 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The step that is judged, and the paper's.
+/// Time step of the claims, and the paper's time step.
 const STEP: Resolution = LEVELS[0].resolution;
 const FINE: Resolution = LEVELS[1].resolution;
-/// The beds: variants.
+/// Variants of the beds.
 const OWN: [&str; 5] = [PLAIN, "bed-2", "bed-3", "bed-4", "bed-5"];
 /// Times of the rebound (s).
 const REBOUND: [f64; 2] = [0.038, 0.050];
 /// Time at which depths are compared (s).
 const DEEP: f64 = 0.030;
 
-/// From when to when all of the ball's course is placed among the codes (ms): before, beds are told by their tops.
+/// Times between which the ball's whole path is compared with the codes (ms). Before, beds differ mainly by their top.
 const SURE: (f64, f64) = (24.999, 50.001);
 
-/// How far one bed, or the mean of five, may be off.
+/// Reason for the tolerance of one bed, and of the mean of five beds.
 const BECAUSE: &str =
     "our packing is one more draw: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 bed of ours, n = 10 published";
 const BECAUSE_FIVE: &str =
     "our packings are five more draws: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 beds of ours, n = 10 published";
 
-/// How far two beds of one code may be apart at 30 ms (mm), and why.
+/// Returns the largest difference between two beds of one code at 30 ms (mm), and its reason.
 fn of_two_beds() -> (f64, &'static str) {
     let apart = 2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value;
     (apart, "two draws among beds, 2 √2 s_bed: what a change moves is told from another bed only above it")
@@ -89,7 +89,7 @@ fn on_all() -> [Run; 5] {
     OWN.map(on)
 }
 
-/// The height of the ball at a time (mm).
+/// Returns the height of the ball at a time (mm).
 fn height(done: &Done, time: f64) -> Result<f64, Missing> {
     let heights = done.column("ball.z")?;
     let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9);
@@ -100,7 +100,7 @@ fn deepest(done: &Done) -> Result<f64, Missing> {
     Ok(done.column("ball.z")?.iter().copied().fold(f64::INFINITY, f64::min) * 1e3)
 }
 
-/// The mean velocity while it rebounds (m/s).
+/// Returns the mean velocity of the rebound (m/s).
 fn rebound(done: &Done) -> Result<f64, Missing> {
     Ok((height(done, REBOUND[1])? - height(done, REBOUND[0])?) * 1e-3 / (REBOUND[1] - REBOUND[0]))
 }
@@ -113,7 +113,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The value that is farthest from an expected one.
+/// Returns the value with the largest difference from an expected value.
 fn farthest(values: &[f64], expected: f64) -> f64 {
     values.iter().copied().max_by(|a, b| (a - expected).abs().total_cmp(&(b - expected).abs())).unwrap_or(f64::NAN)
 }
@@ -182,15 +182,16 @@ fn claims() -> Vec<Claim> {
     all_claims
 }
 
-/// What the beds show together: a value of theirs all, by what is expected, and how far it may be off.
+/// Two functions for several beds: one combines their values, given the expected value; the other returns the
+/// tolerance.
 type Together = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
-/// The mean of five beds is where codes are.
+/// The mean of five beds agrees with the codes.
 const MEAN: Together = (|values, _| mean(values), |spread| computed(spread.allowed(OWN.len()), BECAUSE_FIVE));
-/// Each of five beds is where one bed of a code may be.
+/// Each of five beds is within the range of one bed of a code.
 const EACH: Together = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
 
-/// What is known of single beds that send the ball back more slowly than the codes' do.
+/// Known deviation: from single beds, the ball rebounds more slowly than from those of the codes.
 const SLOW: &str = "the ball leaves two of five beds at 1.11 and 1.19 m/s, below the range for one more code and bed; the \
                     lowest published bed has 1.14 m/s. Without friction all five are in the range";
 
@@ -208,10 +209,11 @@ fn of_beds(
         .within(tolerance(spread))
 }
 
-/// When runs of one bed begin (s), before the ball meets anything.
+/// Start time of the runs on one bed (s), before the ball hits the bed.
 const MET: f64 = 0.020;
 
-/// One bed from 20 ms on: the default part, until 50 ms in LIGGGHTS' convention, until 30 ms in ours and of whoever is asked.
+/// Claims one bed from 20 ms on: the default part of the case. It ends at 50 ms in the convention of LIGGGHTS, and at
+/// 30 ms in ours and for external solvers.
 fn early(variant: &'static str, solver: &'static str) -> Claim {
     let spread = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
     claim("height of the ball at 30 ms, one bed, from 20 ms on", "mm")
@@ -225,7 +227,7 @@ fn half_the_density() -> Control {
     Control::scene("half the density of the ball", lighten)
 }
 
-/// Half the mass and half the moment of inertia of the ball.
+/// Negative control: half the mass and half the moment of inertia of the ball.
 fn lighten(scene: &mut Scene) {
     let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
     (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
@@ -239,7 +241,7 @@ fn smooth() -> Control {
     Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
 }
 
-/// The ball and the walls meet grains as these meet one another.
+/// Negative control: ball and walls have the contact law between grains.
 fn pair_of_m1() -> Control {
     Control::scene("the pair of M1 for steel", |scene| {
         let place = |name: &str| scene.materials.iter().position(|known| known == name);
@@ -250,7 +252,7 @@ fn pair_of_m1() -> Control {
     })
 }
 
-/// The height over time and the deviation from the codes' mean.
+/// Returns the figures of the height over time and of the deviation from the codes' mean.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<Done> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);

@@ -1,13 +1,13 @@
-//! What a longer time step, and a softer wall, move the ball by.
+//! Effect of a longer time step, and of a softer wall, on the ball.
 
 use super::{DEEP, MET, half_the_density, height, of_two_beds};
 use grainbench_harness::prelude::*;
 
-/// The beds that are hit with every step, from 20 ms on.
+/// Beds for the comparison of time steps, from 20 ms on.
 const BEDS: [&str; 3] = ["down", "down-2", "down-3"];
-/// Steps (s), of which the finest is the paper's.
+/// Time steps (s); the finest is the paper's.
 const STEPS: [f64; 4] = [5e-7, 1e-6, 2e-6, 4e-6];
-/// Young's moduli of steel (GPa), of ball and walls.
+/// Young's moduli (GPa) of the steel of ball and walls.
 const STEEL: [(f64, &str); 3] = [(210.0, "down"), (21.0, "down-21-gpa"), (2.1, "down-2-gpa")];
 
 fn on(variant: &'static str, step: f64) -> Run {
@@ -18,7 +18,7 @@ fn at_30_ms(done: &Done) -> Result<f64, Missing> {
     height(done, DEEP - MET)
 }
 
-/// Every step beside the paper's, and softer steel beside steel.
+/// Claims each step against the paper's step, and softer steel against steel.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = STEPS[1..].iter().map(|&step| {
         let runs = BEDS.into_iter().flat_map(|bed| [on(bed, step), on(bed, STEPS[0]).aside()]);
@@ -33,7 +33,7 @@ pub(super) fn claims() -> Vec<Claim> {
     steps.chain(steel).collect()
 }
 
-/// Runs and what they are compared with, in turn.
+/// Compares runs with their reference runs, in alternating order.
 fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::Tolerated {
     let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
@@ -48,7 +48,7 @@ fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_har
         .within(computed(allowed, because))
 }
 
-/// Heights over the time step, bed by bed.
+/// Returns the figure of heights over the time step, for each bed.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (number, bed) in BEDS.into_iter().enumerate() {

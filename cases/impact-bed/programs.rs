@@ -1,4 +1,4 @@
-//! LIGGGHTS on the same beds as ours.
+//! LIGGGHTS on our beds.
 
 use super::{DEEP, FINE, MET, STEP, height, lighten, of_two_beds};
 use crate::rows::programs::row;
@@ -13,7 +13,8 @@ pub(super) fn claims() -> Vec<Claim> {
     vec![beginning(), after_the_horizon(), on_the_bed()]
 }
 
-/// A thousand grains, until what LIGGGHTS keeps of contacts that open and close again is felt: the ball meets the bed at .24 ms.
+/// Claims agreement on a thousand grains, until the contact history that LIGGGHTS keeps over an opening has an effect.
+/// The ball hits the bed at 0.24 ms.
 fn beginning() -> Claim {
     const UNTIL: f64 = 2.5e-4;
     let runs = SIDES.map(|solver| Run::new("thousand", solver, FINE));
@@ -27,7 +28,7 @@ fn beginning() -> Claim {
     })
 }
 
-/// The same thousand when no run can be foretold any more, which is so from 3.7 ms on, while grains fly and fall back.
+/// Claims agreement on the thousand grains after the predictability horizon at 3.7 ms, while grains fly and fall back.
 fn after_the_horizon() -> Claim {
     const MOTION: Sum = Sum {
         column: "all.kinetic_energy",
@@ -42,7 +43,7 @@ fn after_the_horizon() -> Claim {
     perturbed::statistics(PARTING, MOTION, [SIDES.map(on), perturbed].concat(), control)
 }
 
-/// Twenty-five thousand grains, from just before the ball meets them.
+/// Claims agreement on twenty-five thousand grains, from just before the impact.
 fn on_the_bed() -> Claim {
     let runs = SIDES.map(|solver| Run::new("down", solver, STEP).slow());
     let (allowed, because) = of_two_beds();

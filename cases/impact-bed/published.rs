@@ -1,12 +1,13 @@
-//! What seven codes found on ten beds, and where ours are in it.
+//! Published results of seven codes on ten beds, and the comparison of ours with them.
 
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-/// Beds that are published.
+/// Number of published beds.
 const PUBLISHED: usize = 10;
 
-/// Means and deviations of the ball's height over time (s, mm): derived from the published data.
+/// Rows of time (s), mean height of the ball (mm) and its deviations between codes and between beds (mm), derived from
+/// the published data.
 pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock::new(|| {
     let mut table = csv::Reader::from_reader(grainbench_reference::round_robin::IMPACT.as_bytes());
     let number = |row: &csv::StringRecord, place: usize| row.get(place)?.parse().ok();
@@ -14,7 +15,7 @@ pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock
     table.records().flatten().filter_map(row).collect()
 });
 
-/// A quantity's mean and its deviations between codes and between beds.
+/// Mean of a quantity, and its deviations between codes and between beds.
 #[derive(Clone, Copy)]
 pub(super) struct Spread {
     pub(super) mean: f64,
@@ -27,13 +28,14 @@ impl Spread {
         Self { mean: mean.value, of }
     }
 
-    /// What so many beds of ours may be off by.
+    /// Returns the largest error of the mean over a number of our beds.
     pub(super) fn allowed(&self, own: usize) -> f64 {
         self.of.allowed(own, PUBLISHED)
     }
 }
 
-/// How many deviations the mean of our beds is off the codes' mean, at every published time (ms) at which codes and beds differ.
+/// Returns time (ms) and deviation of our beds' mean from the codes' mean, in standard deviations, at each published
+/// time at which codes and beds differ.
 pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, Missing> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let told = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
@@ -46,7 +48,7 @@ pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, 
     published.iter().filter(told).map(score).collect()
 }
 
-/// A text, a line end and another text.
+/// Joins a text, a line end and another text.
 pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N] {
     let (first, second) = (first.as_bytes(), second.as_bytes());
     let mut both = [b'\n'; N];
@@ -62,7 +64,8 @@ pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N]
     both
 }
 
-/// Heights of our beds beside the codes' mean, and our code as a whole in the spread: how many of its deviations it is off.
+/// Returns the figures of the heights on our beds with the codes' mean, and of the deviation of our code in standard
+/// deviations.
 pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
     let course = |done: &Done| -> Vec<(f64, f64)> {
         let heights = done.column("ball.z").unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The impact on the beds that are shared by the round robin, where the user has them.
+//! The impact on the shared beds of the round robin, if the user has them.
 
 use super::{DEEP, half_the_density, height};
 use crate::registry::made_of;
@@ -10,7 +10,7 @@ use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
-/// When the ball has come to rest in a hundred thousand grains (s).
+/// Time at which the ball is at rest in a hundred thousand grains (s).
 const REST: f64 = 0.06;
 
 /// The impact on the shared bed of fifty thousand grains.
@@ -28,7 +28,7 @@ static HUNDRED: Data = Data {
     scene: |folder| shared(folder, 100, REST),
 };
 
-/// The scene of the case with the ball and the bed of a shared start, for so long (s).
+/// Returns the scene of the case with the ball and the bed of a shared start, for a duration (s).
 fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, NotMade> {
     let path = bed_in(folder, thousands).ok_or_else(|| {
         let [name, other] = bed_names(thousands);
@@ -43,7 +43,8 @@ fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, NotMa
     made_of(&source, &[("bed.data", bed.data())]).map_err(NotMade::Wrong)
 }
 
-/// Where LIGGGHTS and MUSEN have the ball on the same bed, one more code may be off by 2 s_code: no spread between beds is in it.
+/// Claims agreement with LIGGGHTS and MUSEN on the same bed. One more code may differ by 2 s_code, because there is no
+/// spread between beds.
 fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (Cited, Cited)) -> Claim {
     let code = half.value * std::f64::consts::SQRT_2;
     let allowed = Spread { mean: cited.value, code, bed: 0.0 }.allowed(1, 1);

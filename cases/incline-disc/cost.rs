@@ -1,4 +1,4 @@
-//! Rolling and slipping down a plane, over stiffness.
+//! Target quantity of accuracy: rolling and slipping down a plane, over stiffness.
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;

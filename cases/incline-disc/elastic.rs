@@ -1,10 +1,10 @@
-//! The disc as an elastic body, set down on the plane and let go: what the material point method gives.
+//! The disc as an elastic body that is set down on the plane and released, with the material point method.
 //!
-//! The disc rests on the plane under g cos θ, damped, and is released at t = 0. An elastic disc is no rigid one: it
-//! sticks, and stretches, before it slips, and rolls on a flattened side; its displacement differs from the rigid one
-//! by a few per cent that no resolution takes away. The expected values are an independent prototype's, extrapolated
-//! from four resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli need no reference: they
-//! lead to the rigid answer.
+//! The disc rests on the plane under g cos θ, damped, and is released at t = 0. An elastic disc is not rigid: it sticks
+//! and deforms before it slips, and rolls on a flattened side. Its displacement therefore differs from the rigid one by
+//! a few per cent at any resolution. The expected values are those of an independent prototype, extrapolated from four
+//! resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli lead to the rigid solution and need
+//! no reference.
 
 use crate::exact::one_grain::{State, course, last};
 use crate::rows::elastic::{Rest, excess, settle, stiffen};
@@ -14,19 +14,19 @@ use grainbench_harness::measure::slope as fitted;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-/// One slope with what is known of the elastic disc on it.
+/// One slope with the expected values of the elastic disc on it.
 #[derive(Clone, Copy)]
 struct Elastic {
     variant: &'static str,
-    /// When it is measured (s).
+    /// Time of the reading (s).
     time: f64,
-    /// Displacement over the rigid one, less one, of the converged elastic disc.
+    /// Displacement of the converged elastic disc over the rigid one, minus one.
     reference: Cited,
-    /// Allowed deviation from it, in fractions of the rigid displacement, by cells per radius.
+    /// Largest deviation from the reference, in fractions of the rigid displacement, by cells per radius.
     allowed: &'static [(f64, f64)],
-    /// Whether these deviations were asked for before the solver existed.
+    /// True if these deviations were required before the solver existed.
     asked: bool,
-    /// What the kinematic nodal contact of the 2000 paper gives, touching at the start, by cells per radius.
+    /// Results of the kinematic nodal contact of the 2000 paper, initially in contact, by cells per radius.
     kinematic: [(f64, Cited); 3],
     sticks: bool,
 }
@@ -80,7 +80,7 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
     stiffened(slope, solver, cells, 1.0)
 }
 
-/// The moduli times a factor.
+/// Returns the run with the moduli times a factor.
 fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> Run {
     let name = format!("elastic and settled, moduli × {factor}");
     Run::new(slope.variant, solver, Resolution::grid(cells, POINTS)).adjusted(&name, move |scene| {
@@ -89,11 +89,11 @@ fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> R
     })
 }
 
-/// Time at the end over which rolling is averaged (s): about one period of the disc rocking on its contact, which
-/// nothing damps and which swings ΩR/v by four hundredths.
+/// Time at the end over which rolling is averaged (s): about one period of the disc's undamped rocking on its contact,
+/// which changes ΩR/v by 4 %.
 const ROCKS: f64 = 0.1;
 
-/// Mean ΩR over mean v at the end.
+/// Returns mean ΩR over mean v at the end.
 fn rolling(done: &Done) -> Result<f64, Missing> {
     let (end, _) = last(done)?;
     let states: Vec<State> =
@@ -137,7 +137,7 @@ fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Claim {
         .refuses(telling(slope))
 }
 
-/// What a disc may deviate from the elastic one, of any contact.
+/// Returns the tolerance for the deviation of a disc with any contact from the elastic reference.
 fn asked(slope: Elastic, allowed: f64) -> Tolerance {
     let allowed = allowed + slope.reference.uncertainty;
     if slope.asked {
@@ -147,7 +147,8 @@ fn asked(slope: Elastic, allowed: f64) -> Tolerance {
     }
 }
 
-/// The same to a hundredth, of any solver whose disc deforms: contact that acts at nodes is of first order in the cell.
+/// Claims the reference within one per cent, for any solver with a deformable disc. Contact at nodes is of first order
+/// in the cell.
 fn to_a_hundredth(slope: Elastic) -> Claim {
     const PART: f64 = 0.3;
     claim(format!("{}, to a hundredth", excess_words(slope, 8.0)), "1")
@@ -165,7 +166,7 @@ fn excess_words(slope: Elastic, cells: f64) -> String {
     format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time)
 }
 
-/// How fast the deviation from the elastic disc falls with the cell.
+/// Claims the order at which the deviation from the elastic disc decreases with the cell.
 fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
         .of_all(LEVELS.map(|cells| run(slope, "mpm", cells)))
@@ -181,10 +182,10 @@ fn order(slope: Elastic) -> Claim {
         .refuses(telling(slope))
 }
 
-/// Moduli ten and a hundred times larger: nearer to the rigid answer, which needs no reference.
+/// Claims with moduli ten and a hundred times larger: closer to the rigid solution, which needs no reference.
 fn stiff(slope: Elastic, factor: f64) -> Claim {
     let run = stiffened(slope, "mpm", 8.0, factor);
-    // Where it hardly slips (tan 60° against 3μ = 1.5) it sticks for long first, and 3.75 % fall by √10 to 1.2 %.
+    // At tan 60° against 3μ = 1.5, the disc hardly slips: it sticks for long first, and 3.75 % falls by √10 to 1.2 %.
     let (run, allowed) = match factor > 10.0 {
         true => (run.long(), 8e-3),
         false if slope.variant == "60deg-mu.5" => (run.slow(), 0.016),
@@ -206,7 +207,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
     .refuses(telling(slope))
 }
 
-/// The 2000 paper's contact gives what it is known to give.
+/// Claims that the contact of the 2000 paper gives its known result.
 fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
     let control = if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling(slope) };
     claim(excess_words(slope, cells), "1")
@@ -221,7 +222,7 @@ fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
         .refuses(control)
 }
 
-/// Its error against the elastic disc, shown for what it is.
+/// Claims the known error of the 2000 contact against the elastic disc.
 fn known(slope: Elastic) -> Claim {
     let (cells, allowed) = slope.allowed[1];
     let run = run(slope, "mpm:2000", cells).known(
@@ -235,7 +236,7 @@ fn known(slope: Elastic) -> Claim {
         .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(cells, POINTS)))
 }
 
-/// At two cells a radius a disc in nodal contact does not roll, as the 2001 paper found of the sphere.
+/// Claims that at two cells a radius a disc in nodal contact does not roll, as the 2001 paper found for the sphere.
 fn does_not_roll() -> Claim {
     claim("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1")
         .of(run(SLOPES[3], "mpm:2000", 2.0))
@@ -244,7 +245,7 @@ fn does_not_roll() -> Claim {
         .refuses(Control::solver("springs at the surface", "mpm"))
 }
 
-/// Our own extrapolation, by the order seen over 4, 8 and 16 cells a radius, beside the reference.
+/// Claims our own extrapolation, by the order observed over 4, 8 and 16 cells a radius, against the reference.
 fn extrapolated(slope: Elastic) -> Claim {
     claim(
         format!(
@@ -267,7 +268,7 @@ fn extrapolated(slope: Elastic) -> Claim {
     .refuses(telling(slope))
 }
 
-/// ΩR/v at 8 cells a radius against the finest level.
+/// Claims ΩR/v at 8 cells a radius against the finest level.
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .of_all([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))

@@ -1,4 +1,4 @@
-//! Rolling and slipping down a plane in space, over stiffness.
+//! Target quantity of accuracy: rolling and slipping down a plane in three dimensions, over stiffness.
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;

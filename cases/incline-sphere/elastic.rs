@@ -1,8 +1,8 @@
-//! The sphere as an elastic body on a rigid plane, set down and let go: what the material point method gives.
+//! The sphere as an elastic body that is set down on a rigid plane and released, with the material point method.
 //!
-//! As with the disc, the rigid answer is off by what elasticity does: the sphere flattens, rolls at a smaller height
-//! and is stretched before it slips. The expected values are an independent prototype's (quadratic B-splines, APIC,
-//! springs at the surface), extrapolated from R/2, R/4 and R/8.
+//! As for the disc, elasticity changes the rigid solution: the sphere flattens, rolls at a smaller height and deforms
+//! before it slips. The expected values are those of an independent prototype (quadratic B-splines, APIC, springs at
+//! the surface), extrapolated from R/2, R/4 and R/8.
 
 use crate::exact::one_grain::last;
 use crate::rows::elastic::{Rest, excess, settle};
@@ -11,13 +11,13 @@ use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-/// One slope with what is known of the elastic sphere on it.
+/// One slope with the expected values of the elastic sphere on it.
 #[derive(Clone, Copy)]
 struct Elastic {
     variant: &'static str,
-    /// Displacement after a second over the rigid one, less one.
+    /// Displacement after one second over the rigid one, minus one.
     reference: Cited,
-    /// Deviation at R/4 and R/8 that was asked for before the solver existed.
+    /// Deviations at R/4 and R/8 that were required before the solver existed.
     allowed: [f64; 2],
 }
 
@@ -26,7 +26,7 @@ const SLOPES: [Elastic; 2] = [
     Elastic { variant: "60deg-mu2_7", reference: elastic_sphere::SLIPS_60, allowed: [0.005, 0.003] },
 ];
 const REST: Rest = Rest { duration: 0.6, damping: 20.0 };
-/// Points per cell and axis: 8 a cell, as in the paper.
+/// Points per cell and axis: 8 points a cell, as in the paper.
 const POINTS: u32 = 2;
 
 fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {

@@ -1,4 +1,4 @@
-//! Janssen's silo: how much of the weight of a column comes down to its floor, and how much hangs on its side.
+//! Janssen's silo: the parts of the weight of a column that floor and side wall carry.
 
 #[path = "column.rs"]
 mod column;
@@ -35,17 +35,17 @@ pub(crate) static CASE: Case = Case {
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");
 
-/// What fillings of other seeds give: made by `examples/seeds.rs`.
+/// Results for fillings with other random seeds, made by `examples/seeds.rs`.
 const PACKINGS: &str = include_str!("packings.csv");
 
-/// Variants, and the friction of the side.
+/// Variants with the friction of the side wall.
 const SIDES: [(&str, &str); 2] = [(PLAIN, ".5"), ("half", ".25")];
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[0].resolution).read_by(COLUMN).long().kept()
 }
 
-/// Sets the friction of the side.
+/// Sets the friction of the side wall.
 fn side_friction(scene: &mut Scene, friction: f64) {
     let count = scene.materials.len();
     if let Some(place) = scene.materials.iter().position(|name| name == "side") {
@@ -58,7 +58,7 @@ fn side_friction(scene: &mut Scene, friction: f64) {
     }
 }
 
-/// The friction of the side.
+/// Returns the friction of the side wall.
 fn friction(scene: &Scene) -> f64 {
     let place = |name: &str| scene.materials.iter().position(|known| known == name).map(|place| place as u16);
     let law = place("side").zip(place("grain")).and_then(|(side, grain)| scene.law(side, grain));
@@ -69,14 +69,14 @@ fn weight(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.mass).sum::<f64>() * scene.gravity.norm()
 }
 
-/// A column of the series in the steady descent.
+/// Returns a column of the series during the steady descent.
 fn descending(done: &Done, name: &str) -> Result<Vec<f64>, Missing> {
     let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
     let values: Vec<f64> = values.map(|(_, value)| *value).collect();
     if values.is_empty() { Err(Missing(format!("samples of `{name}`"))) } else { Ok(values) }
 }
 
-/// Its mean.
+/// Returns the mean of a column during the steady descent.
 fn steady(done: &Done, name: &str) -> Result<f64, Missing> {
     Ok(mean(&descending(done, name)?))
 }
@@ -85,19 +85,19 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Part of the weight that stands on the floor.
+/// Returns the part of the weight on the floor.
 fn on_floor(done: &Done) -> Result<f64, Missing> {
     Ok(-steady(done, "floor.force_z")? / weight(&done.scene))
 }
 
-/// Height of the filling (d), from the heights of the slices' middles and the weight over height in each: as high as all of it
-/// would be in slices as heavy as the heaviest.
+/// Returns the height of the filling (d), from the middle heights of the slices and the weight over height in each. It
+/// is the height of the total weight at the largest weight over height.
 fn top(heights: &[f64], weights: &[f64]) -> f64 {
     let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
     weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max)
 }
 
-/// The middle of the column: means of a quantity over its slices.
+/// Means of quantities over the slices in the middle of the column.
 struct Middle {
     vertical: f64,
     normal: f64,
@@ -106,7 +106,7 @@ struct Middle {
 }
 
 impl Middle {
-    /// Of the slices between a quarter and three quarters of the height, which the weight over height of the filling tells.
+    /// Averages over the slices between a quarter and three quarters of the height of the filling.
     fn of(done: &Done) -> Result<Self, Missing> {
         let table = done.table("slices")?;
         let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}` of the slices")));
@@ -126,8 +126,8 @@ impl Middle {
         })
     }
 
-    /// Part of the weight that stands on the floor where the side bears `ratio` times the vertical stress: (λ/H)(1 −
-    /// e^(−H/λ)) with λ = D/(4 ratio).
+    /// Returns the part of the weight on the floor if the shear stress on the side is `ratio` times the vertical
+    /// stress: (λ/H)(1 − e^(−H/λ)) with λ = D/(4 ratio).
     fn left_over(&self, scene: &Scene, ratio: f64) -> f64 {
         let (_, _, radius) = side(scene);
         let (length, height) = (2.0 * radius / (4.0 * ratio), weight(scene) / self.weight);
@@ -145,13 +145,13 @@ fn claims() -> Vec<Claim> {
     all
 }
 
-/// What the mean over the steady descent may be off.
+/// Returns the tolerance of a mean over the steady descent.
 fn known() -> Tolerance {
     one_interval("in units of half the 99 % confidence interval of the mean, from the means over 8 blocks of time")
 }
 
-/// The mean of some columns over the steady descent, as parts of the weight that are borne, beside all of it; in units of half
-/// the confidence interval of that mean.
+/// Returns the mean over the steady descent of the sum of some force columns over the weight, against 1, in units of
+/// half the confidence interval of the mean.
 fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
     let weight = weight(&done.scene);
     let mut borne = Vec::new();
@@ -165,7 +165,7 @@ fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
     Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
 }
 
-/// Floor and side bear the weight.
+/// Claims that floor and side carry the weight.
 fn balance() -> Claim {
     claim("weight that floor and side bear, over the weight", "1")
         .of(run(PLAIN, "dem"))
@@ -176,7 +176,7 @@ fn balance() -> Claim {
         .refuses(Control::scene("gravity 1 % larger", |scene| scene.gravity *= 1.01))
 }
 
-/// Without friction the floor bears all.
+/// Claims that without friction the floor carries the whole weight.
 fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
         .of(run("smooth", "dem"))
@@ -187,7 +187,7 @@ fn smooth() -> Claim {
         .refuses(Control::scene("a friction of .02 at the side", |scene| side_friction(scene, 0.02)))
 }
 
-/// A side bears no more than Coulomb allows.
+/// Claims that the shear stress on the side does not exceed the Coulomb limit.
 fn mobilised() -> Claim {
     claim("part of the friction of the side that is at work half-way up, friction .25", "1")
         .of(run("half", "dem"))
@@ -213,7 +213,7 @@ fn twice(tables: &mut [Table]) {
     }
 }
 
-/// Janssen's law with the friction that is measured at work, for grains roll along a side as well as slide.
+/// Claims Janssen's law with the measured mobilised friction, because grains roll along a side as well as slide.
 fn law(variant: &'static str, about: &str) -> Claim {
     claim(format!("part of the weight on the floor, friction {about} at the side"), "1")
         .of(run(variant, "dem"))
@@ -226,7 +226,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread(TWICE, twice))
 }
 
-/// Deep down the stress no longer rises.
+/// Claims that the stress saturates with depth.
 fn saturates() -> Claim {
     claim("vertical stress a quarter up over that half-way up", "1")
         .of(run(PLAIN, "dem"))
@@ -253,7 +253,7 @@ fn saturates() -> Claim {
         .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
 }
 
-/// Our solver in LAMMPS' convention and LAMMPS, from the same fall.
+/// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same fall.
 fn beside(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("part of the weight on the floor, friction {about} at the side");
     let because =
@@ -266,7 +266,7 @@ fn beside(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// The stress over the height, with Janssen's.
+/// Returns the figure of the stress over the height, with Janssen's law.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&run(PLAIN, "dem"))?;
     Ok(profile(&done).into_iter().collect())
@@ -297,7 +297,7 @@ fn profile(done: &Done) -> Option<Figure> {
     ))
 }
 
-/// Heights from the floor to the top.
+/// Returns heights from the floor to the top.
 fn heights_of(top: f64) -> impl Iterator<Item = f64> {
     (0..=100).map(move |part| top * f64::from(part) / 100.0)
 }

@@ -1,4 +1,4 @@
-//! What is read of a filled cylinder, slice by slice, in the mean over the snapshots of its descent.
+//! Reading of a filled cylinder, slice by slice, averaged over the snapshots of its descent.
 
 use grainbench_fields::contact_stress::{Stress, contact_stress};
 use grainbench_fields::grid::Grid;
@@ -7,22 +7,21 @@ use grainbench_scene::record::{Partner, Snapshot};
 use grainbench_scene::scene::WallShape;
 use nalgebra::Vector3;
 
-/// The reading.
+/// Reading of the slices.
 pub(super) const COLUMN: Reading = Reading { name: "slices of a silo", begin };
 
-/// Height of a slice (d), and how many there are.
+/// Height of a slice (d), and number of slices.
 const SLICE: f64 = 2.0;
 const SLICES: usize = 20;
 
-/// From when on the column descends steadily (τ): the floor has gone down by a sixth of a diameter.
+/// Time from which the column descends steadily (τ). The floor has then moved down by a sixth of a diameter.
 pub(super) const STEADY: f64 = 45.0;
 
-/// Height of the middle of a slice over the floor; vertical stress of the grains, normal stress and vertical shear stress on
-/// the side,
-/// compression and a side that bears being positive; weight over height.
+/// Middle height of a slice over the floor; vertical stress of the grains, normal stress and vertical shear stress on
+/// the side; weight over height. Compression and an upward force of the side are positive.
 const COLUMNS: [&str; 5] = ["height", "vertical", "normal", "shear", "weight"];
 
-/// The side: its place among the walls, its axis and its radius (d).
+/// Returns the index of the side among the walls, its axis and its radius (d).
 pub(super) fn side(scene: &Scene) -> (usize, Vector3<f64>, f64) {
     let round = |(number, wall): (usize, &grainbench_scene::scene::Wall)| match wall.shape {
         WallShape::Round { axis, radii } => Some((number, axis[0], radii[0])),

@@ -1,4 +1,4 @@
-//! A sphere on meshes of triangles: over seams that are none, and at edges and corners that are.
+//! A sphere on triangle meshes: across seams of coplanar triangles, and at edges and corners.
 
 #[path = "floors.rs"]
 mod floors;
@@ -9,7 +9,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
-/// Time step (s): a sixty-fifth of the critical one.
+/// Time step (s): 1/65 of the critical time step.
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
@@ -38,7 +38,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// The sphere stays at its static overlap.
+/// Claims that the sphere keeps its static overlap.
 fn level(floor: &'static str) -> Claim {
     let control = match floor {
         "two-triangles" => {
@@ -58,7 +58,7 @@ fn level(floor: &'static str) -> Claim {
         .refuses(control)
 }
 
-/// It ends at 5/7 of its velocity.
+/// Claims that the final velocity is 5/7 of the initial velocity.
 fn rolls(floor: &'static str) -> Claim {
     claim(format!("velocity at 1 s, {floor}"), "m/s")
         .of(Run::new(floor, "dem:lammps", STEP))
@@ -73,7 +73,7 @@ fn rolls(floor: &'static str) -> Claim {
         }))
 }
 
-/// All of it turned, so that nothing is flat in any bit: as over the plane.
+/// Claims agreement with a plane. Everything is rotated, so that no coordinate of the mesh is exactly flat.
 fn as_plane(floor: &'static str) -> Claim {
     let of = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
@@ -83,12 +83,12 @@ fn as_plane(floor: &'static str) -> Claim {
         .refuses(Control::scene("a step of 1e-3 R in the mesh", floors::with_a_step))
 }
 
-/// A place at the cube, and the directions in which its surface is a distance away (m).
+/// A position of the sphere at the cube, and the contact points of the surface there.
 struct At {
     words: &'static str,
     /// Centre (m).
     centre: [f64; 3],
-    /// Vectors from each point that is touched to the centre (m).
+    /// Vectors from each contact point to the centre (m).
     away: &'static [[f64; 3]],
 }
 
@@ -104,7 +104,7 @@ const PLACES: [At; 5] = [
     },
 ];
 
-/// The force on the sphere where it is held.
+/// Claims the force on the sphere at a fixed position.
 fn held(at: &'static At) -> Claim {
     let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
@@ -133,12 +133,12 @@ fn held(at: &'static At) -> Claim {
         ))
         .refuses(Control::scene("the plane of the face above for the cube", move |scene| {
             floors::of_a_plane(scene);
-            // Over the face the plane is the answer; there the sphere is a hair off.
+            // On the upper face, the plane gives the right force, so the control also raises the sphere by 1e-9 m.
             scene.grains[0].position.z += 1e-9;
         }))
 }
 
-/// As LIGGGHTS has it, over the same triangles.
+/// Claims agreement with LIGGGHTS over the same triangles.
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
     let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {

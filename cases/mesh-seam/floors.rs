@@ -1,11 +1,11 @@
-//! Floors of the case that are made of others.
+//! Floors of the case that are changed copies of others.
 
 use grainbench_scene::mesh::stl::{Facet, Place};
 use grainbench_scene::mesh::{Mesh, Reading, Surface};
 use grainbench_scene::nalgebra::{Rotation3, Unit, Vector3};
 use grainbench_scene::scene::{Scene, WallShape};
 
-/// A mesh whose triangles have been changed; as it was where they then are none.
+/// Returns a mesh with changed triangles, or the old mesh if they no longer form one.
 fn rebuilt(mesh: &Mesh, change: impl Fn([Vector3<f64>; 3]) -> [Vector3<f64>; 3]) -> Mesh {
     let facet = |(number, corners): (usize, &[Vector3<f64>; 3])| Facet {
         corners: change(*corners),
@@ -17,7 +17,8 @@ fn rebuilt(mesh: &Mesh, change: impl Fn([Vector3<f64>; 3]) -> [Vector3<f64>; 3])
     Surface::new(&facets, reading).map_or_else(|_| mesh.clone(), Mesh::at_rest)
 }
 
-/// Turns everything, gravity too, by 20° about an axis that is none of the box: coordinates of what is flat are rounded then.
+/// Rotates everything including gravity by 20° about an axis that is not along the box, so that flat coordinates are
+/// rounded.
 pub(super) fn turned(scene: &mut Scene) {
     let axis = Unit::new_normalize(Vector3::new(0.6, 0.7, 0.2));
     let turn = Rotation3::from_axis_angle(&axis, 20.0_f64.to_radians());
@@ -34,7 +35,7 @@ pub(super) fn turned(scene: &mut Scene) {
     }
 }
 
-/// Lifts the part of a floor beyond a line that the sphere crosses by a thousandth of its radius.
+/// Negative control: lifts the part of a floor beyond a line on the sphere's path by a thousandth of its radius.
 pub(super) fn with_a_step(scene: &mut Scene) {
     let height = 1e-3 * scene.grains[0].radius;
     for wall in &mut scene.walls {
@@ -48,7 +49,8 @@ pub(super) fn with_a_step(scene: &mut Scene) {
     }
 }
 
-/// Takes two rectangles for the floor, each a wall of its own, which meet where the sphere passes.
+/// Negative control: replaces the floor by two rectangles, each a wall of its own, with their common edge on the
+/// sphere's path.
 pub(super) fn of_two_rectangles(scene: &mut Scene) {
     let Some(mut second) = scene.walls.first().cloned() else { return };
     second.name.push_str(", again");
@@ -59,7 +61,7 @@ pub(super) fn of_two_rectangles(scene: &mut Scene) {
     scene.walls.push(second);
 }
 
-/// Takes the plane of the cube's upper face for the cube.
+/// Negative control: replaces the cube by the plane of its upper face.
 pub(super) fn of_a_plane(scene: &mut Scene) {
     for wall in &mut scene.walls {
         wall.shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };

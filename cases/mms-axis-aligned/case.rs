@@ -1,4 +1,4 @@
-//! A manufactured motion along an axis: order of accuracy.
+//! Manufactured solution along an axis: order of convergence.
 
 use crate::exact::manufactured::error;
 use grainbench_harness::measure::slope;
@@ -8,13 +8,13 @@ const LEVELS: &[Level] = &[cells("1/16", 16.0, 2), cells("1/32", 32.0, 2), cells
 const GIMP: &str = "mpm+gimp+flip";
 const SPLINES: &str = "mpm+flip";
 const HATS: &str = "mpm+linear+flip";
-/// Points per cell and axis that B-splines need: the sum over moving points is a quadrature, whose error does not fall
-/// with the cell and takes over with fewer (order 1.3 with four, 1.8 with six).
+/// Points per cell and axis for B-splines. The sum over moving points is a quadrature whose error does not decrease
+/// with the cell. With fewer points this error dominates (order 1.3 with four, 1.8 with six).
 const POINTS_OF_SPLINES: u32 = 10;
-/// And that uGIMP needs for the same reason.
+/// Points per cell and axis for uGIMP, for the same reason.
 const POINTS_OF_GIMP: u32 = 4;
-/// Fraction of Courant's step at which the error in time stays below that of the cell: with .4 both orders fall to 1.6 and 1.7
-/// between 32 and 128 cells, with .1 that of uGIMP rises on to 1.99.
+/// Fraction of the Courant limit at which the error in time is below the error of the cell. With 0.4, both orders fall
+/// to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
 const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
@@ -38,13 +38,13 @@ fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()
 }
 
-/// In steps so small that the cell alone is seen.
+/// Returns runs with such small steps that only the error of the cell matters.
 fn in_small_steps(solver: &'static str, points: u32) -> Vec<Run> {
     let resolution = |cells| Resolution::Grid { cells, points, courant: SMALL_STEP };
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, resolution(cells))).to_vec()
 }
 
-/// Order in the cell, fitted over three resolutions.
+/// Returns the order in the cell, fitted over three resolutions.
 fn order(done: &[Done]) -> Result<f64, Missing> {
     let points: Result<Vec<(f64, f64)>, Missing> =
         done.iter().zip([16.0, 32.0, 64.0]).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
@@ -52,7 +52,7 @@ fn order(done: &[Done]) -> Result<f64, Missing> {
 }
 
 fn claims() -> Vec<Claim> {
-    // Wrong moduli would not do: the body force follows them, and the motion stays.
+    // Wrong moduli would have no effect, because the body force follows them and the motion is the same.
     let wrong = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
     let second = |quantity, runs: Vec<Run>| {
         claim(quantity, "1").of_all(runs).converges(2.0, SOURCE, order).within(asymptotic(2.0)).refuses(wrong())

@@ -1,4 +1,4 @@
-//! A manufactured vortex: large rotation and shear.
+//! Manufactured vortex with large rotation and shear.
 
 use crate::exact::manufactured::error;
 use grainbench_harness::measure::slope;
@@ -16,7 +16,7 @@ const SOLVERS: [(&str, &str); 3] = [
 const KEEPS_NO_NOISE: &str = "mpm+apic";
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
-/// Small steps: the error in time must stay below that of the grid.
+/// Returns a level with small steps, because the error in time must be below the error of the grid.
 const fn level(name: &'static str, cells: f64) -> Level {
     Level { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
 }
@@ -37,7 +37,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Up to the largest turn.
+/// Ends the run at the largest rotation.
 fn half(scene: &mut Scene) {
     scene.duration = Duration::Seconds(0.5);
 }

@@ -19,11 +19,11 @@ use modal::{Inward, Modal, RAMP_TIME, law};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
-/// Over which the order is fitted.
+/// Levels over which the order is fitted.
 const ORDER: &[Level] = &[LEVELS[0], LEVELS[1], LEVELS[2], fraction("dt=.0125", 0.0125)];
-/// A step at which the residual oscillation of the paper's Fig. 6, .15 F_eq, is met with 40 cycles at κ = 1.
+/// Time step at which the residual oscillation of the paper's Fig. 6, 0.15 F_eq, occurs with 40 cycles at κ = 1.
 const FIGURE_STEP: Resolution = Resolution::CriticalFraction(0.0854);
-/// Cycles of the ramp in the plain scene.
+/// Number of cycles of the ramp in the plain scene.
 const RAMP: u64 = 40;
 const MODAL: [&str; 3] = ["kappa-0", "kappa-2_3", "kappa-1"];
 const MODES: Source =
@@ -67,12 +67,12 @@ fn claims() -> Vec<Claim> {
     .concat()
 }
 
-/// Printed in the paper.
+/// Returns the paper as source of a printed value.
 fn printed(what: &'static str) -> Source {
     Source::Printed(&cundall_strack_1979::WORK, what)
 }
 
-/// Static forces at every named contact, damped.
+/// Claims the static forces at each named contact of the damped packing.
 fn static_forces() -> Vec<Claim> {
     type Force = fn(&Modal) -> f64;
     let contacts: [(&str, &str, Force); 6] = [
@@ -109,7 +109,8 @@ fn static_forces() -> Vec<Claim> {
                 }))
                 .fair_to_any()
             } else {
-                // With friction the forces depend on how a contact remembers: its control is a defect of ours.
+                // With friction, the forces depend on the history of a contact, so the control is lost history in our
+                // solver.
                 row.refuses(Control::forgets_history())
             });
         }
@@ -117,8 +118,8 @@ fn static_forces() -> Vec<Claim> {
     claims
 }
 
-/// What the static forces leave out, in units of k_n δ: the force b that turns by (a − b)/2R with its contact, none at
-/// κ = 0, and rounding of the walls' places, by ε 3R in each cycle in which they move.
+/// Returns the error of the static forces, in units of k_n δ. It is the force b that rotates by (a − b)/2R with its
+/// contact, zero at κ = 0, plus rounding of the walls' positions by ε 3R in each cycle of motion.
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let over_radius = over_radius(variant);
@@ -128,27 +129,27 @@ fn left_out(variant: &str) -> f64 {
     0.5 * rest.corner * (rest.edge - rest.corner) * over_radius + rounding
 }
 
-/// δ/R: the walls' travel over the radius, with steps of a tenth of the critical one.
+/// Returns δ/R, the walls' travel over the radius, with steps of a tenth of the critical time step.
 fn over_radius(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
     phase.velocity.norm() * phase.stop.seconds(step) / scene.grains[0].radius
 }
 
-/// Rounding of the discs' places over the 400 cycles, in units of the walls' travel.
+/// Returns the rounding error of the discs' positions over the 400 cycles, in units of the walls' travel.
 fn rounded(variant: &str) -> Tolerance {
     let places = f64::EPSILON * 3.0 / over_radius(variant);
     let because = "places round by ε 3R in each of 400 cycles: three standard deviations of their sum, 3 √400 ε 3R/δ";
     computed(3.0 * 400.0_f64.sqrt() * places, because)
 }
 
-/// How far each wall of a run travels in its first phase (m).
+/// Returns the travel of each wall in its first phase (m).
 fn travel(done: &Done) -> f64 {
     let phase = &done.scene.walls[0].motion.phases[0];
     phase.velocity.norm() * phase.stop.seconds(done.record.provenance.time_step)
 }
 
-/// Inward displacements at every sample as fractions of the wall travel.
+/// Returns the inward displacements at each sample as fractions of the walls' travel.
 fn inward(done: &Done) -> Result<Vec<Inward>, Missing> {
     let start = |at: usize| done.scene.grains[at].position;
     let travel = travel(done);
@@ -157,7 +158,7 @@ fn inward(done: &Done) -> Result<Vec<Inward>, Missing> {
     Ok(edge.zip(corner).map(|(edge, corner)| Inward { edge, corner }).collect())
 }
 
-/// The worse of both discs over a run: value and expectation at the worst sample.
+/// Returns value and expected value of the disc and sample with the largest error.
 fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Result<Measured, Missing> {
     let pick = |list: &[Inward], of: fn(&Inward) -> f64| list.iter().map(of).collect::<Vec<f64>>();
     let judge = |of: fn(&Inward) -> f64| Measured::worst_of(time, &pick(values, of), &pick(exact, of), 1.0);
@@ -171,18 +172,18 @@ fn exact_cycles(done: &Done) -> Vec<Inward> {
     done.series().step.iter().map(|&cycle| modal.discrete(cycle, RAMP, time_step)).collect()
 }
 
-/// A run of a modal variant with the walls' speed multiplied.
+/// Returns a run of a modal variant with the walls' speed times a factor.
 fn at_speed(variant: &'static str, factor: f64) -> Run {
     Run::new(variant, "dem", LEVELS[0].resolution).adjusted(&format!("wall speed × {factor}"), move |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= factor);
     })
 }
 
-/// Speeds of the walls, in units of the scene's, from which what geometry makes of a finite overlap is taken out.
+/// Speeds of the walls in units of the scene's speed, for the extrapolation to zero overlap.
 const SPEEDS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Inward displacements of one run as they are, of runs at three speeds in the limit δ → 0: what is of first and second order
-/// in δ cancels in the sum with the weights 1/3, −2 and 8/3.
+/// Returns the inward displacements of one run, or the limit δ → 0 from runs at three speeds. Errors of first and
+/// second order in δ cancel in the sum with the weights 1/3, −2 and 8/3.
 fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
     let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
     let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
@@ -194,7 +195,7 @@ fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
     Ok((0..samples).map(limit).collect())
 }
 
-/// Against the answer of the calculation cycle itself, over 400 cycles.
+/// Claims the discrete solution of the calculation cycle, over 400 cycles.
 fn discrete() -> Vec<Claim> {
     let of = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
@@ -220,7 +221,7 @@ fn discrete() -> Vec<Claim> {
     MODAL.map(of).to_vec()
 }
 
-/// What the linear answer leaves out is geometry: it falls with the first power of the overlap.
+/// Claims that the deviation from the linear solution is geometric: it is of first order in the overlap.
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .of_all(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
@@ -238,7 +239,8 @@ fn geometry() -> Claim {
         }))
 }
 
-/// The ramp lasts as long as 40 steps of fraction .1, whatever the step; ten periods of the slow mode are run.
+/// Sets a ramp that lasts 40 steps of 0.1 of the critical step, independent of the step of the run, and a run of ten
+/// periods of the slow mode.
 fn fixed_ramp(scene: &mut Scene) {
     let modal = Modal::of(scene);
     let ramp = RAMP_TIME / modal.rate.sqrt();
@@ -254,7 +256,7 @@ fn modal_run(variant: &'static str, level: Level, speed: f64) -> Run {
     })
 }
 
-/// The worst deviation from the continuous answer over ten periods, of runs at one speed or at all three.
+/// Returns the largest deviation from the continuous solution over ten periods, for runs at one speed or at all three.
 fn modal_error(done: &[Done]) -> Result<Measured, Missing> {
     let modal = Modal::of(&done[0].scene);
     let ramp = done[0].scene.walls[0].motion.phases[0].stop.seconds(0.0);
@@ -262,8 +264,9 @@ fn modal_error(done: &[Done]) -> Result<Measured, Missing> {
     worst(&done[0].series().time, &without_geometry(done)?, &exact)
 }
 
-/// What the phase of central differences, fast by ω³Δt²/24 in a unit of time, makes of the displacement from the middle of
-/// the ramp to ten periods after it, of each level, as a fraction of the wall travel: at κ = 0, where it is largest, rounded up.
+/// Errors of the displacement at each level by the phase error of central differences, as fractions of the walls'
+/// travel. The phase is too fast by ω³Δt²/24 per unit of time, from the middle of the ramp to ten periods after it.
+/// Values are for κ = 0, where they are largest, and rounded up.
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {
@@ -284,7 +287,8 @@ fn continuous() -> Vec<Claim> {
                      7.4e-4 at κ = 0, where it is largest, rounded up to hold what geometry adds",
                 ))
                 .refuses(lighter());
-            // Coarser steps tell the phase error of central differences and no other's.
+            // At coarser steps, the tolerance is the phase error of central differences, which other schemes do not
+            // have.
             claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
         }
         claims.push(
@@ -305,12 +309,12 @@ fn continuous() -> Vec<Claim> {
     claims
 }
 
-/// The largest magnitude; what is not a number is larger than any.
+/// Returns the largest magnitude; NaN if any value is NaN.
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(f64::abs).max_by(f64::total_cmp).unwrap_or(f64::NAN)
 }
 
-/// Mean and amplitude of a column after the walls have stopped.
+/// Returns mean and amplitude of a column after the walls have stopped.
 fn residual(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
     let stop = match done.scene.walls[0].motion.phases[0].stop {
         Moment::Cycle(cycle) => cycle as usize,
@@ -438,8 +442,8 @@ fn damping() -> Vec<Claim> {
     claims
 }
 
-/// Rate (1/s) at which the slow mode p = a + √2 b dies away once the walls have stopped: x, its distance from where it
-/// ends, follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
+/// Returns the decay rate (1/s) of the slow mode p = a + √2 b after the walls have stopped. Its distance x from the
+/// final value follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
 fn decay(done: &Done) -> Result<f64, Missing> {
     let scene = &done.scene;
     let time_step = done.record.provenance.time_step;
@@ -461,10 +465,10 @@ fn decay(done: &Done) -> Result<f64, Missing> {
 
 const DISTORTION: [&str; 4] =
     ["distortion-15deg-2_3", "distortion-15deg-1", "distortion-30deg-2_3", "distortion-30deg-1"];
-/// Cycle at which the walls begin to turn.
+/// Cycle at which the walls begin to rotate.
 const TURN: usize = 1500;
 
-/// Which contacts slip under slow compression: the eight at walls and corners at 15°, none at 30°.
+/// Claims the number of slipping contacts in slow compression: the eight at walls and corners at 15°, none at 30°.
 fn slip_in_compression() -> Vec<Claim> {
     let of = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {
@@ -487,17 +491,17 @@ fn slip_in_compression() -> Vec<Claim> {
     DISTORTION.map(of).to_vec()
 }
 
-/// F_n between centre and edge from the cycle at which the walls begin to turn.
+/// Returns F_n between centre and edge from the cycle at which the walls begin to rotate.
 fn turning(done: &Done) -> Result<&[f64], Missing> {
     Ok(&done.column("centre-edge.normal_force")?[TURN..])
 }
 
-/// The largest F_n from there on (N).
+/// Returns the largest F_n from that cycle on (N).
 fn largest_turning(done: &Done) -> Result<f64, Missing> {
     Ok(largest(turning(done)?.iter().copied()))
 }
 
-/// Largest difference of the curves of two runs over the largest value of the first.
+/// Returns the largest difference between the curves of two runs over the largest value of the first.
 fn apart(a: &Done, b: &Done) -> Result<f64, Missing> {
     let differences = turning(a)?.iter().zip(turning(b)?).map(|(a, b)| a - b);
     Ok(largest(differences) / largest_turning(a)?)
@@ -571,7 +575,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// None is wider than the formula by more than its rounding.
+    /// Each constant is the formula's value, rounded up by less than 10 %.
     #[test]
     fn what_is_allowed_is_the_phase_error_rounded_up() {
         let scene = CASE.variant("kappa-0").unwrap();

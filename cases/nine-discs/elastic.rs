@@ -1,15 +1,15 @@
-//! The discs as elastic bodies: contact force at rest, the frequency at which they ring, and the spring that they show.
+//! The discs as elastic bodies: contact force at rest, frequency of free vibration, and apparent spring stiffness.
 //!
-//! Without friction. The walls move in by d = .01 R and stop; a row of three diameters is shortened by 2d, with as much
-//! across. Rigid discs on springs k_n have the force k_n d/2 everywhere and ring with ω² = 2 k_n/m. Elastic ones have
-//! F(2d/3) in closed form, and ring as discs do whose mean moves against a wall and against a neighbour (derivation):
-//! ω² = 3πE'/(m (2u + v − w²/(2(u − v)))), less what their inertia stirs.
+//! There is no friction. The walls move in by d = 0.01 R and stop: a row of three diameters is shortened by 2d in both
+//! directions. Rigid discs on springs k_n have the force k_n d/2 at all contacts and ω² = 2 k_n/m. Elastic discs have
+//! the force F(2d/3) in closed form. Their means vibrate against a wall and against a neighbour (derivation): ω² =
+//! 3πE'/(m (2u + v − w²/(2(u − v)))), reduced by the added mass of their deformation.
 
 use crate::rows::elastic::{Gives, Pressed};
 use crate::rows::ringing::{Ringing, Rung};
 use std::f64::consts::PI;
 
-/// Discs of E' = 1.6 GPa, ν = 1/4, whose ringing has periods of some .5 s.
+/// Discs of E' = 1.6 GPa, ν = 1/4, with a period of vibration of about 0.5 s.
 pub(super) const DISCS: Ringing = Ringing {
     variant: "kappa-0",
     column: "wall-edge.normal_force",
@@ -26,7 +26,7 @@ pub(super) const DISCS: Ringing = Ringing {
         let Gives { u, v, w } = disc.gives(force);
         let compliance = 2.0 * u + v - w * w / (2.0 * (u - v));
         let restoring = 3.0 * PI * disc.modulus / compliance;
-        // Under a force of one on a disc, whose way is x: loads at wall and neighbour, in outer rows and in middle ones.
+        // Unit force on a disc whose displacement is x: forces at wall and neighbour, in outer rows and in middle rows.
         let x = compliance / 3.0;
         let inner = (x - (u - 0.5 * w)) / (u - v - w);
         let differs = -w / (2.0 * (u - v));
@@ -34,9 +34,9 @@ pub(super) const DISCS: Ringing = Ringing {
         let edge = disc.stirred([middle[0], middle[1], outer[1], outer[1]]);
         let corner = disc.stirred([outer[0], outer[1], outer[0], outer[1]]);
         let centre = disc.stirred([middle[1]; 4]);
-        // Four edges move along one axis, four corners along both.
+        // Four edge discs move along one axis, four corner discs along both.
         let stirred = (4.0 * (edge + corner) + centre) / (12.0 * x * x);
-        // The neighbour bears half of what the wall does: (1 + 1/4)/(3/2)² of both contacts, of compliance/3.
+        // The neighbour's force is half of the wall's: (1 + 1/4)/(3/2)² of both contacts, of compliance/3.
         Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
     },
     springs: 2.0,

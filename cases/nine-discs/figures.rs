@@ -1,4 +1,4 @@
-//! Figures of the nine discs, after Figs 5-9 of the paper.
+//! Figures of the nine discs, like Figs 5-9 of the paper.
 
 use super::modal::{Modal, law};
 use super::{DISTORTION, FIGURE_STEP, LEVELS, MODAL, ORDER, SPEEDS, TURN, modal_error, modal_run};
@@ -49,7 +49,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(all)
 }
 
-/// Force between centre and edge over its rest value, by cycles from the stop of the walls.
+/// Returns the force between centre and edge over its static value, by cycles from the stop of the walls.
 fn after_stop(done: &Done, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
@@ -100,7 +100,7 @@ fn speed(
     ))
 }
 
-/// Amplitude left after 40 cycles against the step, which the paper does not print.
+/// Returns the figure of the remaining amplitude after 40 cycles over the step, which the paper does not print.
 fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
     let scene = runner.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
     let modal = Modal::of(&scene);

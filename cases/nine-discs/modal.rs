@@ -1,4 +1,4 @@
-//! The nine discs without slip, as two oscillators: static forces, the continuous answer, and the answer of the cycle.
+//! The nine discs without slip as two oscillators: static forces, the continuous solution and the discrete solution.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
@@ -32,20 +32,20 @@ impl Modal {
         }
     }
 
-    /// At rest.
+    /// Returns the displacements at rest.
     pub(crate) fn at_rest(&self) -> Inward {
         let k = self.kappa;
         let below = 2.0 + 4.0 * k + k * k;
         Inward { edge: (1.0 + 2.0 * k) / below, corner: (2.0 + 3.0 * k) / (2.0 * below) }
     }
 
-    /// ω₋ and ω₊ (rad/s).
+    /// Returns ω₋ and ω₊ (rad/s).
     pub(crate) fn frequencies(&self) -> [f64; 2] {
         let k = self.kappa;
         [-1.0, 1.0].map(|sign| (self.rate * (2.0 + 2.0 * k + sign * SQRT_2 * k)).sqrt())
     }
 
-    /// Both displacements when each mode has come to a fraction of its rest value.
+    /// Returns both displacements when each mode is at a fraction of its static value.
     fn combine(&self, fractions: [f64; 2]) -> Inward {
         let rest = self.at_rest();
         let slow = (rest.edge + SQRT_2 * rest.corner) * fractions[0];
@@ -53,7 +53,7 @@ impl Modal {
         Inward { edge: 0.5 * (slow + fast), corner: (slow - fast) / (2.0 * SQRT_2) }
     }
 
-    /// The continuous answer for a ramp of duration `ramp` (s).
+    /// Returns the continuous solution at t (s) for a ramp of duration `ramp` (s).
     pub(crate) fn continuous(&self, t: f64, ramp: f64) -> Inward {
         self.combine(self.frequencies().map(|omega| {
             if t < ramp {
@@ -64,7 +64,7 @@ impl Modal {
         }))
     }
 
-    /// The answer of the calculation cycle itself, for a ramp of `ramp` cycles of `time_step` (s).
+    /// Returns the solution of the discrete calculation cycle, for a ramp of `ramp` cycles of `time_step` (s).
     pub(crate) fn discrete(&self, cycle: u64, ramp: u64, time_step: f64) -> Inward {
         self.combine(self.frequencies().map(|omega| {
             let theta = 2.0 * (0.5 * omega * time_step).asin();
@@ -74,9 +74,10 @@ impl Modal {
         }))
     }
 
-    /// Rate γ (1/s) at which the slow mode dies away in the calculation cycle, once the walls stand, damped by α
-    /// (global) and by β k (contacts). A cycle takes velocity and place of a mode to `v' = [v(1 − αΔt/2) − ω²Δt(x +
-    /// βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`; its eigenvalues multiply to `(1 − αΔt/2 − βω²Δt)/(1 + αΔt/2) = exp(−2γΔt)`.
+    /// Returns the decay rate γ (1/s) of the slow mode in the calculation cycle after the walls have stopped. α is the
+    /// global damping, β k the contact damping. A cycle changes velocity and position of a mode to `v' = [v(1 − αΔt/2)
+    /// − ω²Δt(x + βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`. The product of its eigenvalues is `(1 − αΔt/2 − βω²Δt)/(1 +
+    /// αΔt/2) = exp(−2γΔt)`.
     pub(crate) fn decay(&self, scene: &Scene, time_step: f64) -> f64 {
         let (alpha, beta) = (scene.global_damping, law(scene).stiffness_damping);
         let omega = self.frequencies()[0];
@@ -84,8 +85,8 @@ impl Modal {
         -((1.0 - half - beta * omega * omega * time_step) / (1.0 + half)).ln() / (2.0 * time_step)
     }
 
-    /// Amplitude of the force between centre and edge after the ramp, as a fraction of its rest value: sum of both
-    /// modes.
+    /// Returns the amplitude of the force between centre and edge after the ramp, as a fraction of its static value. It
+    /// is the sum over both modes.
     pub(crate) fn residual(&self, ramp: u64, time_step: f64) -> f64 {
         let rest = self.at_rest();
         let parts = [rest.edge + SQRT_2 * rest.corner, rest.edge - SQRT_2 * rest.corner].map(|part| 0.5 * part);
@@ -99,7 +100,7 @@ impl Modal {
     }
 }
 
-/// The one law of the scene.
+/// Returns the only contact law of the scene.
 pub(crate) fn law(scene: &Scene) -> ContactLaw {
     scene.laws.iter().flatten().next().copied().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! A disc meets a frictional wall at an angle and slips throughout: exact velocities after it.
+//! A disc hits a frictional wall at an angle and slips throughout: exact final velocities.
 
 use crate::exact::dashpot::lag;
 use crate::rows::incline::stronger_friction;
@@ -24,17 +24,17 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// What is left after the impact.
+/// Velocities after the impact.
 struct Exit {
-    /// Along the wall (m/s).
+    /// Velocity along the wall (m/s).
     along: f64,
-    /// Across it (m/s).
+    /// Velocity across the wall (m/s).
     across: f64,
     /// Angular velocity (rad/s).
     spin: f64,
 }
 
-/// By quadrature along the closed form of the overlap (derivation).
+/// Computes the exact velocities by quadrature over the closed form of the overlap (derivation).
 fn exact(scene: &Scene) -> Exit {
     const PARTS: u32 = 100_000;
     let law = scene.laws[0].unwrap_or_default();
@@ -44,7 +44,7 @@ fn exact(scene: &Scene) -> Exit {
     let omega = (law.normal_stiffness() / grain.mass - decay * decay).sqrt();
     let interval = std::f64::consts::PI / omega / f64::from(PARTS);
     let turning = grain.mass * grain.radius * grain.radius / grain.inertia;
-    // Slip velocity, stretch of the tangential spring and impulse along the wall over the mass.
+    // Slip velocity, tangential spring displacement, and impulse along the wall over the mass.
     let (mut slip, mut stretch, mut impulse) = (along - grain.spin.z * grain.radius, 0.0, 0.0);
     for part in 0..PARTS {
         let time = (f64::from(part) + 0.5) * interval;
@@ -65,17 +65,17 @@ fn exact(scene: &Scene) -> Exit {
     }
 }
 
-/// What finite steps and the arm of the torque may change.
+/// Errors due to finite steps and the lever arm of the torque.
 struct Off {
-    /// Normal impulse over the mass (m/s).
+    /// Error of the normal impulse over the mass (m/s).
     impulse: f64,
-    /// The same of the impulse along the wall over μ (m/s).
+    /// Error of the impulse along the wall over the mass and μ (m/s).
     along: f64,
     /// Overlap over the radius.
     overlap: f64,
 }
 
-/// Velocity across the wall before the impact (m/s).
+/// Returns the velocity across the wall before the impact (m/s).
 fn across(scene: &Scene) -> f64 {
     -scene.grains[0].velocity.y
 }
@@ -84,8 +84,9 @@ fn friction(scene: &Scene) -> f64 {
     scene.laws[0].map_or(f64::NAN, |law| law.friction)
 }
 
-/// Touch and release fall within a step, which gives or takes half a step of the dashpot's force each, and it is half a step
-/// late, as in the collision of two discs; what is left is of second order.
+/// Returns the tolerance for finite steps. Contact begins and ends within a step, which adds or removes half a step of
+/// the dashpot's force each time. The dashpot is half a step late, as in the collision of two discs. The remainder is
+/// of second order.
 fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
     let of = |scene: Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
@@ -157,7 +158,8 @@ fn claims() -> Vec<Claim> {
                     })
                     .within(within_a_step(variant, allowed))
                     .refuses(control.clone());
-                // One row is enough for strangers, whose dashpots need not end and be limited as the two programs' are.
+                // One solver-independent claim is enough: dashpots of other solvers may have another release and
+                // another Coulomb limit than both external solvers here.
                 claims.push(if solver == "dem:lammps" && variant == "elastic" { row.fair_to_any() } else { row });
             }
         }
@@ -193,7 +195,7 @@ mod tests {
 
     use super::*;
 
-    /// It slips from the first moment to the last: 4 − μ·2 v_n along the wall, and R ω = 2 μ·2 v_n.
+    /// Slip lasts for the whole impact: 4 − μ·2 v_n along the wall, and R ω = 2 μ·2 v_n.
     #[test]
     fn the_quadrature_has_the_elastic_answer() {
         let exit = exact(&CASE.variant("elastic").unwrap());

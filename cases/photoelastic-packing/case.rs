@@ -17,7 +17,7 @@ use grainbench_scene::motion::Moment;
 use nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells("R/2", 2.0, 3)];
-/// The time step of the programs (s): the walls stop between no two steps.
+/// Time step of the external solvers (s). The walls stop at the end of a step.
 const STEP: Resolution = Resolution::TimeStep(5e-3);
 
 pub(crate) static CASE: Case = Case {
@@ -38,7 +38,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Packings with the numbers of each table of the paper, of ten those that come down to the ratio of stage A
+/// Packings with the parameters of each table of the paper: of ten packings, those that reach the ratio of stage A
 /// (derivation).
 const TABLES: [&[&str]; 3] = [
     &[
@@ -56,18 +56,18 @@ const TABLES: [&[&str]; 3] = [
     &[PLAIN, "seed-2", "seed-3", "seed-4", "seed-5", "seed-6", "seed-7", "seed-8", "seed-9", "seed-11"],
     &["table-3", "table-3-seed-2", "table-3-seed-3", "table-3-seed-4", "table-3-seed-8", "table-3-seed-9"],
 ];
-/// F_H/F_V that the paper prints for stage B with the numbers of Tables 1 and 2. In its Table 3 stage A stands at .46
-/// already.
+/// F_H/F_V that the paper prints for stage B with the parameters of Tables 1 and 2. In its Table 3, stage A is already
+/// at 0.46.
 const PRINTED: [Cited; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "how near the search for the motion of the walls ends";
 
 fn run(variant: &'static str) -> Run {
-    // The paper's rule: the motion of the walls was found with it.
+    // The paper's convention, with which the wall motion was found.
     Run::new(variant, "dem:1979", LEVELS[0].resolution)
 }
 
-/// Stages A and B.
+/// Returns stages A and B.
 fn stages(done: &Done) -> Result<[Stage; 2], Missing> {
     match &done.record.snapshots[..] {
         [_, a, b] => Ok([Stage::of(a), Stage::of(b)]),
@@ -75,10 +75,10 @@ fn stages(done: &Done) -> Result<[Stage; 2], Missing> {
     }
 }
 
-/// What is read from the stages of a packing.
+/// Function that reads a value from the stages of a packing.
 type Read = fn(&[Stage; 2]) -> f64;
 
-/// The packing that is farthest from a value: what is not a number is.
+/// Returns the packing value with the largest difference from `from`. NaN counts as the largest.
 fn farthest(done: &[Done], from: f64, read: Read) -> Result<f64, Missing> {
     let found: Vec<Measured> =
         done.iter().map(|done| Ok(Measured::new(read(&stages(done)?), from, 1.0))).collect::<Result<_, Missing>>()?;
@@ -106,14 +106,14 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Walls that go a tenth too far after stage A.
+/// Negative control: walls that move a tenth too far after stage A.
 fn further_to_b() -> Control {
     Control::scene("walls that go a tenth further from stage A to stage B", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity *= 1.1);
     })
 }
 
-/// What any packing on springs must do; of several the worst counts.
+/// Claims that every packing on springs must satisfy; the worst of several decides.
 fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     let growth: Read = |[a, b]| b.vertical / a.vertical - 1.0;
     let mut claims = equilibrium(packings, words);
@@ -127,12 +127,12 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     claims
 }
 
-/// That a quantity is what is imposed, or nothing, in units of a scale; of several packings the worst counts.
+/// Expects a quantity to have an imposed value, in units of a scale; the worst of several packings decides.
 fn held(expected: f64, scale: f64, read: Read) -> impl Fn(&[Done]) -> Result<Measured, Missing> {
     move |done| Ok(Measured::new(farthest(done, expected, read)?, expected, scale))
 }
 
-/// What any packing must be like at its stages; of several the worst counts.
+/// Claims on the equilibrium at both stages; the worst of several packings decides.
 fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
     let quantity = |quantity: &str| claim(format!("{quantity}, {words}"), "1").of_all(packings.to_vec());
     let smooth = || Control::without(Effect::Friction);
@@ -183,7 +183,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
     ]
 }
 
-/// What the paper prints for its one packing, as one more of them.
+/// Claims that the paper's printed value belongs to the distribution of our packings.
 fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
     claim(format!("F_H/F_V at stage B, mean of {words}"), "1")
         .of_all(packings)
@@ -197,7 +197,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Half the time step leads to the same stage B.
+/// Claims that half the time step leads to the same stage B.
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
         .of_all([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
@@ -208,25 +208,25 @@ fn step() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// What perturbed runs are watched by, and programs.
+/// Columns that compare perturbed runs and external solvers.
 const PARTING: Parting =
     Parting { columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"] };
 
-/// The predictability horizon (steps): discs that only touch meet and part many times before they bear.
+/// The predictability horizon (steps). Discs at first contact separate and touch many times before they carry force.
 const HORIZON: u64 = 620;
 
-/// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
+/// Reason why our solver cannot follow LIGGGHTS in each digit.
 const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0. It keeps the tangential spring displacement \
                              of an opened contact while the pair is on its neighbour list (plane-shear), and here discs \
                              separate and touch again";
 
-/// A run that both programs can do. LIGGGHTS moves walls in three dimensions only.
+/// Returns a run that both external solvers support. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
     let run = Run::new(variant, solver, STEP).slow();
     if program == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
 }
 
-/// Ours, a disc moved by one unit in the last place.
+/// Returns our run with one disc moved by one unit in the last place.
 fn perturbed(variant: &'static str, disc: usize) -> Run {
     Run::new(variant, PAIRS[0][0], STEP).slow().adjusted(&format!("disc {} moved by 1 ulp", disc + 1), move |scene| {
         let place = &mut scene.grains[disc].position.x;
@@ -234,8 +234,8 @@ fn perturbed(variant: &'static str, disc: usize) -> Run {
     })
 }
 
-/// Both programs from the same start, with dashpots that both have: sample by sample for as long as perturbed runs are together,
-/// stage by stage after it.
+/// Claims on both external solvers from the same start, with dashpots that both have: sample by sample up to the
+/// predictability horizon, and at the stages afterwards.
 fn programs() -> Vec<Claim> {
     let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
         scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
@@ -277,8 +277,8 @@ fn programs() -> Vec<Claim> {
     claims
 }
 
-/// F_H/F_V from the series, in the last sample before the end of one of so many equal parts of the run, where all
-/// rests: of a stored run not every sample is kept.
+/// Returns F_H/F_V from the series at the end of the first of `parts` equal parts of the run, when all discs rest. It
+/// uses the last sample before that time, because a stored run does not contain each sample.
 fn ratio_in(done: &Done, parts: u64) -> Result<f64, Missing> {
     let steps = &done.series().step;
     let end = steps.last().map_or(0, |last| last / parts);
@@ -288,7 +288,8 @@ fn ratio_in(done: &Done, parts: u64) -> Result<f64, Missing> {
     Ok((right? - left?) / (top? - bottom?))
 }
 
-/// Vertical strain of the box at a time (s): how far top and bottom have come in over the height at the start.
+/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom over the initial
+/// height.
 fn vertical_strain(done: &Done, time: f64) -> f64 {
     let [_, _, bottom, top] = &done.scene.walls[..] else { return f64::NAN };
     let moved = |wall: &grainbench_scene::scene::Wall| wall.motion.displacement(time, 0.0).translation.y;
@@ -296,7 +297,7 @@ fn vertical_strain(done: &Done, time: f64) -> f64 {
     (moved(bottom) - moved(top)) / (at(top) - at(bottom))
 }
 
-/// The time of stage A (s): when the walls start again.
+/// Returns the time of stage A (s), when the walls start again.
 fn time_of_a(done: &Done) -> f64 {
     match done.scene.walls.first().and_then(|wall| wall.motion.phases.get(1)).map(|phase| phase.start) {
         Some(Moment::Seconds(time)) => time,

@@ -1,4 +1,4 @@
-//! Fifty of the discs as elastic bodies, whose contacts have no stiffness of their own.
+//! Fifty of the discs as elastic bodies, whose contacts have no contact stiffness parameter.
 
 use super::{FOUND, IMPOSED, LEVELS, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
 use crate::stage::NEAR_IN_GROWTH;
@@ -6,22 +6,22 @@ use grainbench_harness::prelude::*;
 use nalgebra::Vector3;
 
 const VARIANT: &str = "fifty-elastic";
-/// Two cells in the smallest radius.
+/// Index of the level with two cells in the smallest radius.
 const HALF: usize = 2;
 
-/// The elastic discs.
+/// Returns the run of elastic discs.
 pub(super) fn discs() -> Run {
     Run::new(VARIANT, "mpm", LEVELS[HALF].resolution).long()
 }
 
-/// The same, left alone from stage A on.
+/// Returns the run of elastic discs whose walls stop at stage A.
 fn alone() -> Run {
     discs().adjusted("walls that stay at stage A", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity = Vector3::zeros());
     })
 }
 
-/// F_V at stages A and B.
+/// Returns F_V at stages A and B.
 fn vertical(done: &Done) -> Result<[f64; 2], Missing> {
     Ok(stages(done)?.map(|stage| stage.vertical))
 }

@@ -1,4 +1,4 @@
-//! Force plots of both stages, and F_H/F_V on the way.
+//! Figures of the forces at both stages, and F_H/F_V over the strain.
 
 use super::{PAIRS, STEP, elastic, experiment, run, time_of_a, vertical_strain};
 use grainbench_fields::picture::{Shot, fringe_constant, pictures};
@@ -7,24 +7,24 @@ use grainbench_harness::figure::Field;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
 
-/// Pixels along the longer side of a picture, and fringes in it.
+/// Pixels along the longer side of a picture, and number of fringes in it.
 const PIXELS: u32 = 900;
 const FRINGES: f64 = 3.0;
 
-/// F_H/F_V against the vertical strain (%).
+/// Returns F_H/F_V over the vertical strain (%).
 fn path(done: &Done) -> Vec<(f64, f64)> {
     let force = |name: &str| done.series().column(name).unwrap_or_default();
     let sides = force("left.force_x").iter().zip(force("right.force_x"));
     let ends = force("bottom.force_y").iter().zip(force("top.force_y"));
     let ratios = sides.zip(ends).map(|((left, right), (bottom, top))| (right - left) / (top - bottom));
-    // Before they bear, discs that only touch meet the walls one by one.
+    // At first, discs reach the walls one by one and the ratio is not meaningful.
     let bearing = force("top.force_y").last().map_or(0.0, |last| 0.02 * last);
     let times = done.series().time.iter().copied().zip(force("top.force_y"));
     let points = times.zip(ratios).filter(|((_, top), _)| **top > bearing);
     points.map(|((time, _), ratio)| (100.0 * vertical_strain(done, time), ratio)).collect()
 }
 
-/// Fringes of discs on springs and of elastic discs, at both stages.
+/// Returns the figure of fringes in discs on springs and in elastic discs, at both stages.
 fn side_by_side(springs: &Done, elastic: &Done) -> Figure {
     let mut shots = Vec::new();
     for (words, done) in [("on springs", springs), ("elastic", elastic)] {
@@ -67,7 +67,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                  contact forces, bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress \
                  that a fiftieth of the discs is above."
             ),
-            // The paper's lengths have no unit: a bar of metres would be ours.
+            // The paper's lengths have no unit, so there is no scale bar in metres.
             Field { pixel: 0.0, ..pictures(Quantity::Fringes(constant), &shots, PIXELS, None) },
         ));
     }
@@ -83,7 +83,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves =
         vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
     for [_, program] in PAIRS {
-        // Without the program and without its stored run there is nothing to draw.
+        // Without the external solver and its stored run, there is no curve.
         if let Ok(theirs) = runner.run(&Run::new("programs", program, STEP)) {
             let label = format!("{program}, dashpots at contacts only");
             curves.push(Curve::new(label, Stroke::Markers, path(&theirs).into_iter().step_by(10).collect()));

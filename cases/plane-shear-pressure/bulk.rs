@@ -1,5 +1,5 @@
-//! What is read of the middle of the layer, snapshot by snapshot. Where runs tell the stress of grains in the mean over the time
-//! between snapshots, it is that: stress of the instant swings by a third.
+//! Reading of the middle of the layer, snapshot by snapshot. If a run records the grains' time-averaged stress between
+//! snapshots, the reading uses it, because the instantaneous stress fluctuates by a third.
 
 use grainbench_fields::contact_stress::{Stress, contact_stress, tells_interval};
 use grainbench_fields::grid::Grid;
@@ -8,15 +8,14 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
-/// The reading.
+/// Reading of the bulk.
 pub(super) const BULK: Reading = Reading { name: "bulk of a sheared layer", begin };
 
-/// Columns: packing fraction, rate of shear, normal stress across the layer and shear stress with their momentum flux, and
-/// the shear
-/// stress of the instant, whole and of normal forces alone.
+/// Columns: time, packing fraction, shear rate, normal and shear stress with their momentum flux, instantaneous shear
+/// stress, and the part of it from normal forces.
 const COLUMNS: [&str; 7] = ["time", "packing", "rate", "normal", "shear", "instant", "frictionless"];
 
-/// Part of the height at the start between which is the bulk: neither walls nor what they order is near.
+/// Limits of the bulk over the initial height, away from the walls and from the layers that they order.
 const HEIGHTS: [f64; 2] = [0.25, 0.7];
 
 fn begin(scene: &Scene) -> Box<dyn Reader> {

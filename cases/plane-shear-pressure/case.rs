@@ -1,4 +1,4 @@
-//! Plane shear of discs under a lid that is pressed: friction and packing fraction over the inertial number.
+//! Plane shear of discs under a lid with a prescribed pressure: friction and packing fraction over the inertial number.
 
 #[path = "bulk.rs"]
 mod bulk;
@@ -32,28 +32,28 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Variants, and what the inertial number is about.
+/// Variants with their approximate inertial number.
 const RATES: [(&str, &str); 5] =
     [("i-.003", ".003"), ("i-.01", ".01"), ("i-.03", ".03"), ("i-.1", ".1"), ("i-.3", ".3")];
 
-/// What packings of other seeds give: made by `examples/seeds.rs`.
+/// Results for packings with other random seeds, made by `examples/seeds.rs`.
 const PACKINGS: &str = include_str!("packings.csv");
 
-/// Where tolerances come from.
+/// Reason for the tolerances.
 const BECAUSE: &str =
     "a sheared packing is one draw of many: the 99 % interval of the difference of two, from packings of four seeds";
 
-/// Part of the run after which the flow is steady: the walls have then dragged the middle along (derivation).
+/// Part of the run after which the flow is steady: the walls have then accelerated the middle (derivation).
 const STEADY: f64 = 0.25;
 
-/// How much more the lid presses in the partner runs, and the root of it, by which its walls are faster.
+/// Ratio of the lid's pressure in the comparison runs. The speed of their walls is larger by its square root.
 const PRESSED: f64 = 4.0;
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[0].resolution).read_by(BULK).long().kept()
 }
 
-/// Ours, with the stress of grains in the mean over the time between snapshots.
+/// Returns our run, which records the grains' stress averaged over the time between snapshots.
 fn ours(variant: &'static str) -> Run {
     run(variant, "dem").adjusted("mean stress", average)
 }
@@ -62,13 +62,13 @@ fn average(scene: &mut Scene) {
     scene.columns = Columns { chosen: vec![Chosen::Contacts, Chosen::MeanVirial], digits: None, mean_every: 10 };
 }
 
-/// The same at the same inertial number and four times the pressure.
+/// Returns the run at the same inertial number and four times the pressure.
 fn pressed(variant: &'static str) -> Run {
     run(variant, "dem").adjusted("four times the pressure, twice the speed", |scene| {
         average(scene);
         press(scene, PRESSED);
         hasten(scene, PRESSED.sqrt());
-        // What is read of it is read of its snapshots.
+        // Its quantities come from its snapshots, so it has no probes.
         scene.probes.clear();
         if let Duration::Seconds(time) = &mut scene.duration {
             *time /= PRESSED.sqrt();
@@ -91,7 +91,7 @@ fn hasten(scene: &mut Scene, times: f64) {
     scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.velocity *= times);
 }
 
-/// The pressure of the lid (N/m).
+/// Returns the pressure of the lid (N/m).
 fn pressure(scene: &Scene) -> f64 {
     let force: f64 = scene.walls.iter().filter_map(|wall| wall.piston).map(|piston| piston.force).sum();
     force / width(scene)
@@ -101,7 +101,7 @@ fn width(scene: &Scene) -> f64 {
     scene.domain.map_or(f64::NAN, |domain| domain.high.x - domain.low.x)
 }
 
-/// The mean of what is read of the bulk, over the steady flow.
+/// Returns the mean of a bulk quantity over the steady flow.
 fn bulk(done: &Done, name: &str) -> Result<f64, Missing> {
     let table = done.table("bulk")?;
     let missing = || Missing(format!("column `{name}` of the bulk"));
@@ -110,14 +110,15 @@ fn bulk(done: &Done, name: &str) -> Result<f64, Missing> {
     mean(times, values, from).ok_or_else(missing)
 }
 
-/// The mean of a column of the series, over the steady flow.
+/// Returns the mean of a column of the series over the steady flow.
 fn series(done: &Done, name: &str) -> Result<f64, Missing> {
     let times = &done.series().time;
     let from = STEADY * times.last().copied().unwrap_or(0.0);
     mean(times, done.column(name)?, from).ok_or_else(|| Missing(format!("samples of `{name}`")))
 }
 
-/// A program may leave no contacts of its last step, and then no stress; of nearly all others there must be one.
+/// Returns the mean of the finite values. An external solver may omit the contacts of a step, which then has no stress;
+/// at least 98 % must have one.
 fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
     let steady: Vec<f64> =
         times.iter().zip(values).filter(|(time, _)| **time >= from).map(|(_, value)| *value).collect();
@@ -126,7 +127,7 @@ fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
     enough.then(|| told.iter().sum::<f64>() / told.len() as f64)
 }
 
-/// Shear over normal stress of the bulk.
+/// Returns the ratio of shear to normal stress in the bulk.
 fn friction(done: &Done) -> Result<f64, Missing> {
     Ok(bulk(done, "shear")? / bulk(done, "normal")?)
 }
@@ -135,17 +136,17 @@ fn packing(done: &Done) -> Result<f64, Missing> {
     bulk(done, "packing")
 }
 
-/// I = γ̇ √(m/P) of the bulk, with the mass of the disc of mean diameter, which is 1.
+/// Returns I = γ̇ √(m/P) of the bulk, with the mass of the disc of mean diameter, which is 1.
 fn inertia(done: &Done) -> Result<f64, Missing> {
     Ok(bulk(done, "rate")? / pressure(&done.scene).sqrt())
 }
 
-/// Shear stress of both walls (N/m).
+/// Returns the mean shear stress on both walls (N/m).
 fn of_walls(done: &Done) -> Result<f64, Missing> {
     Ok(0.5 * (series(done, "on-bottom.force_x")? - series(done, "on-lid.force_x")?) / width(&done.scene))
 }
 
-/// A quantity that is read of a run, and its name.
+/// Name of a quantity and the function that reads it from a run.
 type Quantity = (&'static str, fn(&Done) -> Result<f64, Missing>);
 
 const FRICTION: Quantity = ("friction σ_xy/σ_yy", friction);
@@ -163,7 +164,7 @@ fn claims() -> Vec<Claim> {
     all
 }
 
-/// The lid is at rest in the mean, so that the layer carries its pressure.
+/// Claims the lid's mean equilibrium: the layer carries its pressure.
 fn normal(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
     let allowed = apart(PACKINGS, &quantity);
@@ -176,7 +177,7 @@ fn normal(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
 }
 
-/// Shear stress is one through the layer.
+/// Claims that shear stress is uniform through the layer.
 fn shear(variant: &'static str, about: &str) -> Claim {
     fn bare(tables: &mut [Table]) {
         for table in tables {
@@ -203,7 +204,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread("tangential forces left out of the stress", bare))
 }
 
-/// At four times the pressure and twice the speed nothing is another.
+/// Claims that four times the pressure and twice the speed change nothing.
 fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     const LAW: &str =
         "the run at four times the pressure and twice the speed: of rigid grains I alone counts (derivation)";
@@ -216,8 +217,9 @@ fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
 
-/// Where the inertial number tells, four times the pressure at the same speed; where it hardly does, no friction; and where draws
-/// of it differ by half of it, a speed that makes it four times as large.
+/// Returns the control: four times the pressure at the same speed, if the quantity depends on the inertial number. If
+/// it hardly does, no friction. If the packings' spread is half of the inertial number, a speed that makes it four
+/// times as large.
 fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     let is_pressed = |scene: &mut Scene| pistons(scene).any(|piston| piston.force > 40.0);
     if is_slow && is_inertia {
@@ -241,7 +243,7 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     })
 }
 
-/// Our solver in LAMMPS' convention and LAMMPS, from the same start.
+/// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same start.
 fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
@@ -253,13 +255,13 @@ fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
     })
 }
 
-/// What draws of a quantity differ by, in units of their mean, and that mean.
+/// Returns the tolerance from the spread of a quantity over packings, in units of its mean, and the mean.
 fn of_draws(quantity: &str) -> (Tolerance, f64) {
     let mean = mean_of(PACKINGS, quantity);
     (computed(apart(PACKINGS, quantity) / mean, format!("{BECAUSE}; in units of the mean of the packings")), mean)
 }
 
-/// Friction and packing fraction over the inertial number, of ours and of LAMMPS.
+/// Returns the figures of friction and packing fraction over the inertial number, for ours and for LAMMPS.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (solver, stroke) in [("dem", Stroke::MarkedLine), ("lammps", Stroke::Markers)] {

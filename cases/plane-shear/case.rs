@@ -1,5 +1,5 @@
-//! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: moment by moment for as long as that can be
-//! foretold, by means over time after it.
+//! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: sample by sample up to the predictability horizon,
+//! by time averages afterwards.
 
 use crate::rows::programs::{PAIRS, row};
 use crate::rows::rigid;
@@ -37,7 +37,7 @@ const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> S
     Sum { column, words, unit, logarithm: false }
 }
 
-/// What has means after the horizon. The energy rises and falls by factors as the shear waves come and go.
+/// Quantities with time averages after the horizon. The energy varies by factors as shear waves pass.
 const SUMS: [Sum; 5] = [
     Sum { logarithm: true, ..sum(ENERGY, "logarithm of the kinetic energy", "1") },
     sum("packing.sigma_xx", "stress σ_xx", "Pa"),
@@ -46,26 +46,26 @@ const SUMS: [Sum; 5] = [
     sum("packing.coordination", "coordination number", "1"),
 ];
 
-/// What keeps LIGGGHTS' own arithmetic from being followed in every digit.
+/// Reason why our solver cannot follow LIGGGHTS in each digit.
 const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential spring displacement of an opened contact while the pair is on \
                              its neighbour list, and continues with it when the contact closes again (derivation)";
 
-/// The run of the beginning, at a fine step.
+/// Returns the run of the beginning, with a fine step.
 fn short(solver: &'static str) -> Run {
     Run::new(PLAIN, solver, LEVELS[1].resolution)
 }
 
-/// The run up to the first contact that closes again, sampled often.
+/// Returns the run up to the first contact that closes again, with frequent samples.
 fn first(solver: &'static str) -> Run {
     Run::new("first", solver, LEVELS[1].resolution)
 }
 
-/// The run that goes on until it cannot be foretold.
+/// Returns the run beyond the predictability horizon.
 fn long(solver: &'static str) -> Run {
     Run::new("long", solver, LEVELS[0].resolution)
 }
 
-/// How perturbed runs part: of our solver in LAMMPS' convention.
+/// Columns that compare perturbed runs of our solver in the convention of LAMMPS.
 const PARTING: Parting = Parting { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
@@ -98,7 +98,7 @@ fn claims() -> Vec<Claim> {
 /// The predictability horizon (steps of 1e-3).
 const HORIZON: u64 = 800;
 
-/// Kinetic energy over the first steps, where nothing has had time to become chaotic.
+/// Claims the kinetic energy over the first steps, before motion becomes chaotic.
 fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
     let allowed = rounding(2.0, "the same cycle but for the order of sums; of an energy twice that of velocities");
     let quantity = format!("kinetic energy of translation over {steps} steps, worst");
@@ -113,7 +113,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut courses = Vec::new();
     for [ours, program] in PAIRS {
         let ours = runner.run(&long(ours))?;
-        // Without the program and without its stored run there is nothing to draw.
+        // Without the external solver and its stored run, there is no curve.
         if let Ok(theirs) = runner.run(&long(program)) {
             courses.push((program.to_owned(), Stroke::Markers, theirs.clone()));
             partings.push((format!("{program} and ours"), ours.clone(), theirs));

@@ -1,4 +1,4 @@
-//! A slab of 369 grains in shear: grains that yield against grains on springs.
+//! A slab of 369 grains in shear: plastic grains against grains on springs.
 
 #[path = "chains.rs"]
 mod chains;
@@ -22,7 +22,7 @@ mod yielding;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
-/// Cells across the slab, two points a cell and axis, as in the paper.
+/// Returns a grid with `cells` cells across the slab and two points a cell and axis, as in the paper.
 const fn grid(cells: f64) -> Resolution {
     Resolution::Grid { cells, points: 2, courant: 0.4 }
 }
@@ -56,24 +56,24 @@ fn claims() -> Vec<Claim> {
     [coarse::claims(), springs::claims(), paper::claims(), yielding::claims()].concat()
 }
 
-/// Snapshots on the way to the end, every 2.5 % of shear.
+/// Number of snapshots during the run, every 2.5 % of shear.
 const FRAMES: u32 = 31;
 /// Mean shear at which the paper shows force chains.
 const CHAINS: [f64; 2] = [0.63, 0.71];
 
-/// The run to a mean shear, with so many snapshots on the way.
+/// Returns the run up to a mean shear, with a number of snapshots during it.
 fn to_shear(run: Run, shear: f64, snapshots: u32) -> Run {
     run.adjusted(&format!("to {:.0} % shear", 100.0 * shear), move |scene| sheared(scene, shear, snapshots))
 }
 
-/// Time until a mean shear (s).
+/// Returns the time of a mean shear (s).
 fn time_of(scene: &Scene, shear: f64) -> f64 {
     let speed = scene.driven.iter().map(|driven| driven.velocity.y).fold(0.0, f64::max);
     let width = scene.domain.map_or(0.0, |domain| domain.high.x - domain.low.x);
     shear * width / speed
 }
 
-/// Ends at a mean shear; where there are snapshots on the way, there are those of the paper's force chains too.
+/// Ends the run at a mean shear. With snapshots, it adds those of the paper's force chains.
 fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
     scene.duration = Duration::Seconds(time_of(scene, shear));
     scene.snapshots = snapshots;
@@ -81,18 +81,18 @@ fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
     scene.snapshot_times = on_the_way.map(|at| time_of(scene, at)).collect();
 }
 
-/// An entry of the energy budget at the end (J).
+/// Returns an entry of the energy budget at the end (J).
 fn entry(done: &Done, name: &str) -> Result<f64, Missing> {
     done.last(&format!("budget.{name}"))
 }
 
-/// What an entry has gained since the start (J).
+/// Returns the increase of an entry of the energy budget since the start (J).
 fn gained(done: &Done, name: &str) -> Result<f64, Missing> {
     let column = done.column(&format!("budget.{name}"))?;
     Ok(column[column.len() - 1] - column[0])
 }
 
-/// Change of momentum less the impulse given, of the largest impulse so far.
+/// Compares the change of momentum with the impulse, in units of the largest impulse.
 fn momentum(done: &Done) -> Result<Measured, Missing> {
     let of = |name: &str| done.column(&format!("budget.{name}"));
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

@@ -1,36 +1,36 @@
-//! Force chains: quasi-linear rows of grains that carry more than the mean, after Peters, Muthuswamy, Wibowo &
+//! Force chains: quasi-linear rows of grains that carry more than the mean stress, after Peters, Muthuswamy, Wibowo &
 //! Tordesillas, Physical Review E 72 (2005) 041307.
 //!
-//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, r from its centre. A grain is stressed when its
-//! largest principal compression is above the mean of all grains; two stressed grains that touch are linked when the
-//! line between them is within 45° of the direction of that compression in both; a chain is three or more that hang
-//! together.
+//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, with r from its centre. A grain is stressed if its
+//! largest principal compression exceeds the mean over all grains. Two stressed grains in contact are linked if the
+//! line between them is within 45° of the direction of this compression in both. A chain is a connected group of three
+//! or more grains.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
 use std::collections::BTreeSet;
 
-/// The force chains of a snapshot.
+/// Force chains of a snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chains {
     /// Part of the grains that are stressed.
     pub(crate) stressed: f64,
-    /// Grains of every chain.
+    /// Number of grains in each chain.
     pub(crate) lengths: Vec<usize>,
     /// Mean direction of compression of grains in chains, from the x axis (degrees, from −90 to 90).
     pub(crate) direction_deg: f64,
-    /// Pairs of grains that are linked in chains.
+    /// Linked pairs of grains in chains.
     pub(crate) links: BTreeSet<(u32, u32)>,
 }
 
 impl Chains {
-    /// Part of the links that are still there in another snapshot.
+    /// Returns the part of the links that still exist in another snapshot.
     pub(crate) fn surviving(&self, later: &Self) -> f64 {
         self.links.intersection(&later.links).count() as f64 / self.links.len() as f64
     }
 }
 
-/// The chains of a snapshot with contacts; none are linked without them.
+/// Finds the chains of a snapshot. Without contacts, no grains are linked.
 pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
     let count = snapshot.grains.len();
     let nearest = |mut between: Vector3<f64>| {
@@ -78,7 +78,7 @@ pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
     let size = |root: usize| groups.iter().filter(|&&other| other == root).count();
     let sizes: Vec<usize> = (0..count).map(|grain| if groups[grain] == grain { size(grain) } else { 0 }).collect();
     let in_chain = |id: u32| sizes[groups[id as usize - 1]] >= 3;
-    // Directions have no sign: twice their angle is averaged.
+    // Directions have no sign, so the mean is over the doubled angle.
     let double = (1..=count as u32).filter(|&id| in_chain(id)).fold(Vector2::zeros(), |sum, id| {
         let (compression, along) = principal[id as usize - 1];
         let twice = 2.0 * along.y.atan2(along.x);
@@ -92,7 +92,7 @@ pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
     }
 }
 
-/// The root of the group that each of `count` grains is in.
+/// Returns the root of the group of each of `count` grains (union-find).
 fn groups(count: usize, links: &[(u32, u32)]) -> Vec<usize> {
     let mut roots: Vec<usize> = (0..count).collect();
     let find = |roots: &[usize], mut at: usize| {
@@ -116,7 +116,7 @@ mod tests {
     use grainbench_scene::record::{ContactState, GrainState};
     use grainbench_scene::scene::Grain;
 
-    /// Four discs in a row that are pressed along it, and one that leans on them lightly.
+    /// A row of four discs compressed along its axis, and one disc that leans on it with a small force.
     #[test]
     fn a_pressed_row_is_a_chain() {
         let grain = |id: u32, x: f64, y: f64| {
@@ -135,7 +135,7 @@ mod tests {
             vec![grain(1, 0.5, 0.5), grain(2, 1.5, 0.5), grain(3, 2.5, 0.5), grain(4, 3.5, 0.5), grain(5, 1.0, 1.4)];
         let touch = |a: u32, b: u32, force: f64| {
             let [from, to] = [a, b].map(|id| grains[id as usize - 1].position);
-            // The row closes on itself across the periodic face.
+            // The row is closed across the periodic boundary.
             let mut between = to - from;
             between.x -= 4.0 * (between.x / 4.0).round();
             ContactState {

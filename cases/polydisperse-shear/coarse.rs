@@ -1,4 +1,4 @@
-//! What deformable grains must keep: a coarse slab, sheared a little.
+//! Conservation laws and invariances of deformable grains: a coarse slab with small shear.
 
 use super::measures::{deviator_squared, mean_stress, plastic_strain, with_their_start};
 use super::paper::FIGURE_6;
@@ -8,15 +8,15 @@ use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::record::Partner;
 use grainbench_scene::scene::Duration;
 
-/// Cells across.
+/// Cells across the slab.
 const CELLS: f64 = 75.0;
 /// Mean shear of the coarse slab.
 const SHEAR: f64 = 0.08;
-/// Steps to that shear, of .4 of a cell at the speed of sound, 3356 m/s; the side moves at 100 m/s.
+/// Number of steps to that shear: 0.4 of a cell at the speed of sound, 3356 m/s, while the side moves at 100 m/s.
 const STEPS: f64 = SHEAR * CELLS * 3356.0 / (0.4 * 100.0);
-/// Mean shear after which two slabs are compared that are one.
+/// Mean shear after which two slabs that must agree are compared.
 const BEGINNING: f64 = 0.01;
-/// How far the slab is moved along its period: a third, which is a whole number of cells.
+/// Displacement of the slab along its period: a third, which is a whole number of cells.
 const MOVED: f64 = 1.0 / 3.0;
 
 pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains vibrate in \
@@ -26,7 +26,7 @@ fn slab(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(CELLS)), SHEAR, 0).slow()
 }
 
-/// The constants of von Mises' law in the scene as the case means it.
+/// Returns the law and the two constants of the von Mises law in the scene without the control.
 fn yielding(done: &Done) -> Result<(Deformable, f64, f64), Missing> {
     let deformable = done.scene.deformable.first().copied().flatten();
     match deformable.map(|deformable| (deformable, deformable.constitutive)) {
@@ -37,12 +37,12 @@ fn yielding(done: &Done) -> Result<(Deformable, f64, f64), Missing> {
     }
 }
 
-/// A scene whose grains are made of something else.
+/// Returns a change of the material of all grains.
 fn made_of(change: impl Fn(&mut Deformable) + Copy) -> impl Fn(&mut Scene) + Copy {
     move |scene| scene.deformable.iter_mut().flatten().for_each(change)
 }
 
-/// The same wrong physics on part of the way: it shows long before the end.
+/// Returns a change that also shortens the run, because its effect is visible long before the end.
 fn early(change: impl Fn(&mut Scene) + Send + Sync + 'static) -> impl Fn(&mut Scene) + Send + Sync + 'static {
     move |scene| {
         change(scene);
@@ -62,8 +62,8 @@ fn with_yield(
     })
 }
 
-/// Work of the walls less all that it became, over the work: stored and plastic energy from the state of every point by
-/// the constants of the scene, s:s/4G + σ_m²/2K and Y ε_p + H ε_p²/2 a volume.
+/// Compares the work of the walls with the energy balance, over the work. Elastic and plastic energy come from the
+/// state of each point with the constants of the scene: s:s/4G + σ_m²/2K and Y ε_p + H ε_p²/2 per volume.
 fn unaccounted(done: &Done) -> Result<Measured, Missing> {
     let (deformable, yield_stress, hardening) = yielding(done)?;
     let snapshot = measures::end(done)?;
@@ -86,7 +86,7 @@ fn unaccounted(done: &Done) -> Result<Measured, Missing> {
     Ok(Measured::new(sum - work, 0.0, work))
 }
 
-/// The work of the walls is found again, as a part of it.
+/// Claims that the energy balance accounts for the work of the walls, in units of the work.
 pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control) -> Claim {
     claim(quantity, "J")
         .of(run)
@@ -98,7 +98,7 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
         .refuses(control)
 }
 
-/// Kinetic, elastic and plastic energy gained are no more than the work of the walls.
+/// Claims that the increase of kinetic, elastic and plastic energy does not exceed the work of the walls.
 pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
         .of(run)
@@ -114,7 +114,7 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
         .refuses(control)
 }
 
-/// Largest and mean overlap of contacts at the end, in cells of this slab.
+/// Returns the largest and the mean overlap of contacts at the end, in cells of this slab.
 fn overlaps(done: &Done) -> Result<[f64; 2], Missing> {
     let cell = measures::width(done) / CELLS;
     let overlaps: Vec<f64> =
@@ -125,7 +125,8 @@ fn overlaps(done: &Done) -> Result<[f64; 2], Missing> {
     Ok([overlaps.iter().copied().fold(0.0, f64::max), overlaps.iter().sum::<f64>() / overlaps.len() as f64])
 }
 
-/// Largest shear over normal force of the contacts between grains that carry more than the mean.
+/// Returns the largest ratio of shear to normal force, over the contacts between grains with more than the mean normal
+/// force.
 fn steepest(done: &Done) -> Result<f64, Missing> {
     let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));
@@ -135,7 +136,7 @@ fn steepest(done: &Done) -> Result<f64, Missing> {
     steepest.ok_or_else(|| Missing("contacts between grains".to_owned()))
 }
 
-/// Largest stress of von Mises over the flow stress Y + H ε_p, of points that have flowed by more than a hundredth.
+/// Returns the largest von Mises stress over the flow stress Y + H ε_p, of points with a plastic strain above 0.01.
 fn on_the_yield_surface(done: &Done) -> Result<f64, Missing> {
     let (_, yield_stress, hardening) = yielding(done)?;
     let flowed = measures::end(done)?.points.iter().filter(|point| point.plastic_strain > 0.01);
@@ -144,8 +145,8 @@ fn on_the_yield_surface(done: &Done) -> Result<f64, Missing> {
     ratio.reduce(f64::max).ok_or_else(|| Missing("points that have flowed".to_owned()))
 }
 
-/// Change of volume that pressure does not account for, |ln J − σ_m/K| with J = V/V₀, mean over the points: plastic
-/// flow changes no volume.
+/// Returns the mean over the points of the volume change without a pressure change, |ln J − σ_m/K| with J = V/V₀.
+/// Plastic flow does not change the volume.
 fn volume(done: &Done) -> Result<f64, Missing> {
     let (deformable, ..) = yielding(done)?;
     let points = with_their_start(done, measures::end(done)?)?;
@@ -164,7 +165,7 @@ fn moved(scene: &mut Scene) {
     }
 }
 
-/// Plastic strain at the end.
+/// Returns the plastic strain at the end.
 fn yielded(done: &Done) -> Result<f64, Missing> {
     Ok(plastic_strain(done, measures::end(done)?))
 }

@@ -1,4 +1,4 @@
-//! Graphs of grains on springs, and beside them of those that yield where minutes may be spent.
+//! Graphs of grains on springs, and in the long tier also of plastic grains.
 
 use super::chains::{Chains, chains};
 use super::measures;
@@ -10,7 +10,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slabs = pictures::slabs(runner)?;
     let mut all = vec![displacement(&slabs)];
     all.extend(over_shear(&slabs));
-    // Grains on springs come last and are always there.
+    // Grains on springs are always the last slab.
     if let Some((_, done)) = slabs.last() {
         all.extend(of_springs(done));
     }
@@ -18,7 +18,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(all)
 }
 
-/// Profiles of displacement across the slab, a colour for every shear.
+/// Returns the figure of displacement profiles across the slab, with one colour for each mean shear.
 fn displacement(slabs: &[Slab]) -> Figure {
     let mut curves = vec![Curve::new("uniform shear", Stroke::Dashed, vec![(0.0, 0.0), (1.0, 1.0)])];
     for (words, done) in slabs.iter().filter(|slab| pictures::has_friction(slab)) {
@@ -39,7 +39,7 @@ fn displacement(slabs: &[Slab]) -> Figure {
     )
 }
 
-/// What grows with the shear, of every slab.
+/// Returns the figures of quantities over the mean shear, for each slab.
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     let graph = |name: &str, title: &str, caption: &str, label: &str, of: &dyn Fn(&Done, &Snapshot) -> f64| {
         let curve = |(words, done): &Slab| {
@@ -78,7 +78,7 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     figures
 }
 
-/// Stress, energy and chains of grains on springs.
+/// Returns the figures of stress, energy and chains of grains on springs.
 fn of_springs(done: &Done) -> Vec<Figure> {
     let mut all = Vec::new();
     let named = |name: &str| done.series().column(name).unwrap_or_default().to_vec();
@@ -117,7 +117,7 @@ fn of_springs(done: &Done) -> Vec<Figure> {
     all
 }
 
-/// Force chains over the shear.
+/// Returns the figures of force chains over the mean shear.
 fn of_chains(done: &Done) -> [Figure; 3] {
     let looked: Vec<(f64, Chains)> = done
         .record

@@ -1,5 +1,5 @@
-//! What the paper found, over five packings to the end: of grains on springs, and of grains that yield on half of the
-//! paper's grid.
+//! Results of the paper, over five packings to the end of shear: for grains on springs, and for plastic grains on half
+//! of the paper's grid.
 
 use super::chains::chains;
 use super::coarse::MAKES_ENERGY;
@@ -13,7 +13,7 @@ use grainbench_harness::statistics::interval;
 use grainbench_scene::record::Snapshot;
 
 const PACKINGS: [&str; 5] = ["seed-1", "seed-2", "seed-3", "seed-4", "seed-5"];
-// What is printed are words: the bounds that are read into them are ours.
+// The paper prints words; the bounds that follow from them are ours.
 pub(super) const FIGURE_6: Source = Source::Printed(
     &PAPER,
     "Fig. 6, 75 % shear: extensive plastic deformation and large voids without slip, fairly little plastic \
@@ -24,7 +24,7 @@ const FIGURE_7: Source =
 const FIGURE_8: Source =
     Source::Printed(&PAPER, "Fig. 8: motion of the grains is concentrated near the moving boundary");
 
-/// The other side moves instead.
+/// Negative control: the other side moves instead.
 fn other_side(scene: &mut Scene) {
     let velocity = scene.driven[1].velocity;
     for (driven, velocity) in scene.driven.iter_mut().zip([velocity, velocity * 0.0]) {
@@ -33,7 +33,7 @@ fn other_side(scene: &mut Scene) {
     }
 }
 
-/// Chains that stay: nothing moves but what swells.
+/// Negative control: constant chains. The walls are at rest and the grains are slightly enlarged.
 fn swollen(scene: &mut Scene) {
     Effect::MovingWalls.switch_off(scene);
     for grain in &mut scene.grains {
@@ -41,30 +41,31 @@ fn swollen(scene: &mut Scene) {
     }
 }
 
-/// Deformable grains, whose sides are open, fly apart when they swell, unless that comes to rest, within a hundredth of
-/// the time.
+/// Negative control for deformable grains. Because their sides are open, enlarged grains fly apart unless they come to
+/// rest within 1 % of the time.
 fn at_rest(scene: &mut Scene) {
     swollen(scene);
     scene.global_damping = 1e7;
 }
 
-/// Lower end of the confidence interval of a value over packings.
+/// Returns the lower end of the confidence interval of a value over packings.
 fn lower(values: &[f64]) -> Result<f64, Missing> {
     let (mean, half) = interval(values).ok_or_else(|| Missing("packings enough for an interval".to_owned()))?;
     Ok(mean - half)
 }
 
-/// The same of a ratio: of its logarithm, for it is positive, and one over it is as good.
+/// Returns the lower end of the confidence interval of a ratio over packings. It is the interval of the logarithm,
+/// because a ratio is positive and symmetric to its inverse.
 fn lower_of_ratios(ratios: &[f64]) -> Result<f64, Missing> {
     Ok(lower(&ratios.iter().map(|ratio| ratio.ln()).collect::<Vec<f64>>())?.exp())
 }
 
-/// The least of the values.
+/// Returns the smallest value.
 fn least(values: &[f64]) -> Result<f64, Missing> {
     Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }
 
-/// Part of the links of some force chains that are gone later.
+/// Returns the part of the force chain links that no longer exist in a later snapshot.
 fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, Missing> {
     let first = chains(first);
     if first.links.is_empty() {
@@ -73,15 +74,16 @@ fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, Missing> {
     Ok(1.0 - first.surviving(&chains(second)))
 }
 
-/// Between the moments that the paper shows.
+/// Returns the part of the links that disappear between the moments that the paper shows.
 fn gone_in_the_paper(done: &Done) -> Result<f64, Missing> {
     gone(at(done, CHAINS[0])?, at(done, CHAINS[1])?)
 }
 
-/// After this much shear.
+/// Mean shear after which the links are counted again.
 const LIFE: f64 = 0.075;
 
-/// After that much shear, mean over all times from 20 % of shear on.
+/// Returns the part of the links that disappear over a shear of [`LIFE`], averaged over all times from 20 % of shear
+/// on.
 fn gone_in_the_mean(done: &Done) -> Result<f64, Missing> {
     let snapshots = &done.record.snapshots;
     let started = snapshots.iter().filter(|snapshot| shear(done, snapshot.time) >= 0.2);
@@ -90,7 +92,7 @@ fn gone_in_the_mean(done: &Done) -> Result<f64, Missing> {
     Ok(gone.iter().sum::<f64>() / gone.len() as f64)
 }
 
-/// What is held against the bound, of the values of all packings, and why.
+/// Function that reduces the values of all packings to the value compared with the bound, and the reason.
 type Held = (fn(&[f64]) -> Result<f64, Missing>, &'static str);
 const VALUES: Held =
     (lower, "the lower end of the interval (99 %, Student's t) over the packings holds the bound, which is ours");
@@ -100,7 +102,7 @@ const RATIOS: Held = (
     "the lower end of the interval (99 %, Student's t, of logarithms) over the packings holds the bound, which is ours",
 );
 
-/// A value of each packing, and a bound on what is held against it.
+/// Claims a bound on the reduced value over all packings.
 fn over_packings(
     (quantity, source): (&str, Source),
     runs: Vec<Run>,
@@ -119,25 +121,25 @@ fn over_packings(
         .refuses(control)
 }
 
-/// Force chains come and go.
+/// Claims that force chains form and disappear.
 fn chains_go_on(runs: Vec<Run>, of: &str, control: Control) -> Claim {
     let quantity =
         format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{of}");
     over_packings((&quantity, FIGURE_7), runs, VALUES, 0.4, control, |done| gone_in_the_mean(&done[0]))
 }
 
-/// Force chains at the paper's moments are others.
+/// Claims that the force chains differ between the paper's moments.
 fn chains_of_the_paper(runs: Vec<Run>, of: &str, control: Control) -> Claim {
     let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{of}, least");
     over_packings((&quantity, FIGURE_7), runs, EACH, 0.2, control, |done| gone_in_the_paper(&done[0]))
 }
 
-/// Width of the band of the first run over that of the second, at their ends.
+/// Returns the band width at the end of the first run over the band width at the end of the second run.
 pub(super) fn bands(done: &[Done]) -> Result<f64, Missing> {
     Ok(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?))
 }
 
-/// Grains on springs.
+/// Returns the claims on grains on springs.
 fn on_springs() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| springs::to(packing, 0.8, FRAMES).slow()).to_vec();
     let staying =
@@ -166,7 +168,7 @@ fn on_springs() -> Vec<Claim> {
     ]
 }
 
-/// Grains that yield.
+/// Returns the claims on plastic grains.
 fn yielding() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| whole(packing, "mpm")).to_vec();
     let beside = |of: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(of).collect::<Vec<Run>>();

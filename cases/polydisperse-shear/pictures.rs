@@ -1,4 +1,4 @@
-//! Grains as pictures: what yields beside springs, at equal strain.
+//! Pictures of the grains: plastic grains next to grains on springs, at equal shear.
 
 use super::measures::at;
 use super::{CHAINS, FRAMES, springs, yielding};
@@ -14,18 +14,19 @@ use std::sync::Arc;
 pub(super) const PROFILES: [f64; 3] = [0.25, 0.5, 0.75];
 const PIXELS: u32 = 400;
 const FILM_PIXELS: u32 = 300;
-/// Rotations beyond this have the colour of its end (rad).
+/// Range of rotations in the colour scale (rad).
 const TURNED: (f64, f64) = (-2.0, 2.0);
 
-/// Cells of means (m), and the values that their colours span: pressures (Pa) and rates of shear (1/s).
+/// Size of the averaging cells (m), and colour ranges of pressure (Pa) and shear rate (1/s).
 const CELL: f64 = 2e-4;
 const PRESSURES: (f64, f64) = (0.0, 1e8);
 const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 
-/// A slab and what its grains are, in words.
+/// A slab with a description of its grains.
 pub(super) type Slab = (&'static str, Done);
 
-/// Grains on springs; and those that yield, with friction and without slip, where minutes may be spent.
+/// Returns the slab of grains on springs; in the long tier also those of plastic grains, with friction and without
+/// slip.
 pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
     if runner.is_thorough() {
@@ -36,7 +37,7 @@ pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     Ok(slabs)
 }
 
-/// A row of panels for every slab, a panel for every mean shear.
+/// Returns a row of panels for each slab, with one panel for each mean shear.
 fn shots<'a>(slabs: &[&'a Slab], shears: &[f64]) -> Vec<Shot<'a>> {
     let shot = |slab: &&'a Slab, shear: f64| {
         let (words, done) = *slab;
@@ -45,18 +46,18 @@ fn shots<'a>(slabs: &[&'a Slab], shears: &[f64]) -> Vec<Shot<'a>> {
     slabs.iter().flat_map(|slab| shears.iter().filter_map(move |&shear| shot(slab, shear))).collect()
 }
 
-/// Snapshots of even steps of shear.
+/// Returns snapshots at equal steps of shear.
 fn frames(done: &Done) -> Vec<(f64, &Snapshot)> {
     let shears = (0..=FRAMES + 1).map(|frame| 0.8 * f64::from(frame) / f64::from(FRAMES + 1));
     shears.filter_map(|shear| Some((shear, at(done, shear).ok()?))).collect()
 }
 
-/// Whether grains of a slab can slip.
+/// Returns true if grains of a slab can slip.
 pub(super) fn has_friction((words, _): &Slab) -> bool {
     !words.contains("no slip")
 }
 
-/// The slab without grains that have been pushed out between those that its sides cut: they are nowhere.
+/// Returns the slab without grains that have been pushed out between the cut grains at its sides.
 fn within((words, done): &Slab) -> Slab {
     let mut record = Record::clone(&done.record);
     let [low, high] = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.high.x]);
@@ -122,7 +123,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     figures
 }
 
-/// Means over cells, the same for points and for grains, at half of the way.
+/// Returns figures of averages over cells, the same for points and for grains, at a shear of 0.5.
 fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     const SHEAR: f64 = 0.5;
     let shots: Vec<element_picture::Shot<'_>> = slabs
@@ -143,7 +144,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     ]
 }
 
-/// The film of rotations.
+/// Returns the animation of the rotations.
 fn moving(slabs: &[&Slab]) -> Figure {
     let clock: Vec<f64> = frames(&slabs[0].1).into_iter().map(|(shear, _)| shear).collect();
     let shots: Vec<Shot<'_>> = slabs

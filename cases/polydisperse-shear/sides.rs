@@ -1,20 +1,19 @@
-//! Sides that grains on springs do not get out through.
+//! Closed sides for grains on springs.
 //!
-//! At a side there are the grains that it cuts and pores between them, through which others are pushed out. The grid of
-//! the paper ends at the sides, and nothing passes. Here walls without friction stand there. Grains that the sides cut
-//! reach through the walls from the start: they are of a material of their own, the same but that it has no law with
-//! the walls.
+//! A side of the slab consists of cut grains with pores between them, through which other grains are pushed out. The
+//! paper's grid ends at the sides, so nothing passes there. Here frictionless walls replace the end of the grid. Cut
+//! grains overlap the walls from the start, so they have copies of the materials without a contact law with the walls.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::motion::Motion;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
 use nalgebra::Vector3;
 
-/// Walls at both sides, for all grains but those that are driven.
+/// Adds walls at both sides, for all grains except those with prescribed motion.
 pub(super) fn close(scene: &mut Scene) {
     let Some(domain) = scene.domain else { return };
     let count = scene.materials.len() as u16;
-    // As many again for driven grains, and the walls'.
+    // One copy of each material for grains with prescribed motion, and the walls' material.
     let side = 2 * count;
     let of = |material: u16| material % count;
     let law = |a: u16, b: u16| -> Option<ContactLaw> {

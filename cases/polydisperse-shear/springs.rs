@@ -1,4 +1,4 @@
-//! The same slab of grains on springs: its budget, and the programs.
+//! The same slab with grains on springs: its energy budget, and comparisons with external solvers.
 
 use super::{entry, gained, measures, to_shear};
 use crate::rows::programs::{PAIRS, row};
@@ -6,13 +6,13 @@ use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
-/// Step at which programs are followed sum by sum, and the mean shear to which they are. LIGGGHTS parts when a contact
-/// closes again, for it keeps the stretch of those that open (see the derivation of `plane-shear`); before that there
-/// are sixteen digits.
+/// Time step of the pointwise comparison with external solvers, and the mean shear at its end. LIGGGHTS differs once a
+/// contact closes again, because it keeps the tangential displacement of opened contacts (derivation of `plane-shear`).
+/// Before, sixteen digits agree.
 const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
 
-/// A packing of grains on springs between closed sides, to a mean shear.
+/// Returns the run of a packing of grains on springs with closed sides, to a mean shear.
 pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
     let name = format!("sides closed, to {:.0} % shear", 100.0 * shear);
     Run::new(packing, "dem", STEP).adjusted(&name, move |scene| {
@@ -21,13 +21,13 @@ pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
     })
 }
 
-/// The first packing to the end.
+/// Returns the run of the first packing to the end.
 pub(super) fn slab() -> Run {
     to("seed-1", 0.8, super::FRAMES)
 }
 
-/// Momentum of the grains, by the masses of the scene as the case means it, gained since the start along the slab, less
-/// the impulse of the driven grains.
+/// Compares the momentum increase of the grains along the slab with the impulse of the grains with prescribed motion.
+/// The masses are those of the scene without the control.
 fn momentum(done: &Done) -> Result<Measured, Missing> {
     let start: f64 = done.scene.grains.iter().map(|grain| grain.mass * grain.velocity.y).sum();
     let masses = done.scene.grains.iter().map(|grain| grain.mass);

@@ -1,5 +1,5 @@
-//! Grains that yield, one packing sheared as far as in the paper: energy, what other contacts make of it, and what a
-//! finer grid changes.
+//! Plastic grains, one packing sheared as far as in the paper: energy, results of other contact methods, and the effect
+//! of a finer grid.
 
 use super::coarse::{accounted, makes_none};
 use super::measures::{at, end, large_voids, plastic_strain, rotation_deg};
@@ -21,19 +21,19 @@ const OWN_NORMALS: &str = "each body has its own normal (2001): the impulses of 
 const PATCHES: &str = "grains yield at their contacts, in regions of one or two cells. A finer grid increases the plastic \
                        strain by 24 % from 75² to 150² and by 16 % from 150² to 300², and the motion is chaotic";
 
-/// A packing to the end on half of the paper's grid.
+/// Returns the run of a packing to the end on half of the paper's grid.
 pub(super) fn whole(packing: &'static str, solver: &'static str) -> Run {
     to_shear(Run::new(packing, solver, grid(75.0)), 0.8, FRAMES).long()
 }
 
-/// To the end on the paper's own grid, with a snapshot every 5 %.
+/// Returns the run to the end on the paper's own grid, with a snapshot every 5 % of shear.
 fn on_the_papers_grid() -> Run {
     to_shear(Run::new("seed-1", "mpm", grid(150.0)), 0.8, 15).long()
 }
 
 type Of = fn(&Done, &Snapshot) -> f64;
 
-/// A quantity of one run at a mean shear, over that of another.
+/// Returns a quantity of the first run at a mean shear, over the quantity of the second run.
 pub(super) fn over(done: &[Done], shear: f64, of: Of) -> Result<f64, Missing> {
     let of = |done: &Done| Ok(of(done, at(done, shear)?));
     Ok(of(&done[0])? / of(&done[1])?)
@@ -43,7 +43,8 @@ fn voids(done: &Done, snapshot: &Snapshot) -> f64 {
     large_voids(done, snapshot) as f64
 }
 
-/// Every second of the larger grains that move freely has a tenth of its area; smaller ones would be lost in a cell.
+/// Negative control: every second of the larger free grains has a tenth of its area. Smaller grains would be smaller
+/// than a cell.
 fn shrunk(scene: &mut Scene) {
     const LARGER: f64 = 2.6e-5;
     let groups = scene.driven_group_of_grains();
@@ -54,7 +55,7 @@ fn shrunk(scene: &mut Scene) {
     }
 }
 
-/// Pores without slip.
+/// Claims the number of voids without slip.
 fn pores() -> Claim {
     claim("large voids without slip over those with friction, or one, 80 % shear", "1")
         .of_all([whole("seed-1", "mpm:no-slip").known(NO_VOIDS), whole("seed-1", "mpm").aside()])
@@ -65,7 +66,7 @@ fn pores() -> Claim {
         .refuses(Control::scene("every second of the larger grains a tenth as large, so that there are voids", shrunk))
 }
 
-/// Other contacts in place of springs between surfaces.
+/// Claims on other contact methods instead of springs between surfaces.
 fn other_contacts() -> Vec<Claim> {
     let excess = 0.5 * (prototype::PLASTIC_STRAIN_RATIO_OF_2001.value - 1.0);
     vec![
@@ -87,7 +88,7 @@ fn other_contacts() -> Vec<Claim> {
     ]
 }
 
-/// Energy to the end.
+/// Claims on the energy balance to the end.
 fn energy() -> Vec<Claim> {
     const APPROACH: &str = "contact on approach (2000), which makes energy";
     let makes_energy = || Control::solver(APPROACH, "mpm:2000");
@@ -108,7 +109,7 @@ fn energy() -> Vec<Claim> {
     ]
 }
 
-/// Where grains move, and how load is carried.
+/// Claims on the shear band and on the force chains.
 fn motion() -> Vec<Claim> {
     let band_at = |variant| to_shear(Run::new(variant, "mpm", grid(75.0)), 0.25, 0).long();
     vec![
@@ -141,12 +142,12 @@ fn motion() -> Vec<Claim> {
                 },
             )
             .within(exactly("a load that all carry alike has a half above its mean"))
-            // One velocity field for all has no contacts to read.
+            // A single velocity field for all bodies has no contacts to read.
             .breaks(Control::solver("contacts glued: nothing is pressed", "mpm:no-slip")),
     ]
 }
 
-/// What a finer grid changes.
+/// Claims on the effect of a finer grid.
 fn refined() -> Vec<Claim> {
     type Quantity = (&'static str, Of, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =

@@ -1,12 +1,12 @@
-//! A block that yields is pressed between smooth sides.
+//! A plastic block is compressed between smooth sides.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::material::{Constitutive, Deformable};
 
 const LEVELS: &[Level] = &[cells("L/8", 8.0, 2), cells("L/16", 16.0, 2)];
 
-/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³), speed of the ram (m/s) and time (s) of the
-/// scene: tolerances are computed of them before there is a scene.
+/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³), speed of the ram (m/s) and time (s)
+/// of the scene. Tolerances need them before a scene exists.
 const BULK: f64 = 80.0;
 const SHEAR: f64 = 40.0;
 const YIELD: f64 = 0.4;
@@ -30,7 +30,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// What the middle half of the block has in the end, mean over its points, which are all of one mass.
+/// Means over the points in the middle half of the block at the end. All points have the same mass.
 #[derive(Default)]
 struct Middle {
     /// True strain e = −ln(V/V₀).
@@ -45,7 +45,7 @@ impl Middle {
     fn of(done: &Done) -> Result<Self, Missing> {
         let missing = || Missing("points in the middle of the block in the end".to_owned());
         let snapshot = done.record.snapshots.last().ok_or_else(missing)?;
-        // All points of the block, of 1 m², are of one volume at the start.
+        // All points of the block, 1 m², have the same initial volume.
         let start = 1.0 / snapshot.points.len() as f64;
         let is_inner = |x: f64| (x - 0.5).abs() < 0.25;
         let inner = snapshot.points.iter().filter(|point| is_inner(point.position.x) && is_inner(point.position.y));
@@ -62,23 +62,23 @@ impl Middle {
         Ok(Self { strain: sum.strain / count, plastic: sum.plastic / count, stress: sum.stress.map(|sum| sum / count) })
     }
 
-    /// ε_p = (2G e − Y)/(3G + H).
+    /// Returns the exact plastic strain ε_p = (2G e − Y)/(3G + H).
     fn flowed(&self) -> f64 {
         (2.0 * SHEAR * self.strain - YIELD) / (3.0 * SHEAR + HARDENING)
     }
 
-    /// Y + H ε_p, of the plastic strain that it has (Pa).
+    /// Returns the flow stress Y + H ε_p of the measured plastic strain (Pa).
     fn yielded(&self) -> f64 {
         YIELD + HARDENING * self.plastic
     }
 }
 
-/// Changes the material of the block.
+/// Returns a change of the block's material.
 fn material(change: impl Fn(&mut Deformable) + Send + Sync + 'static) -> impl Fn(&mut Scene) + Send + Sync + 'static {
     move |scene| scene.deformable.iter_mut().flatten().for_each(&change)
 }
 
-/// Another yield stress and hardening modulus (Pa).
+/// Returns a change of yield stress and hardening modulus (Pa).
 fn metal(yield_stress: f64, hardening_modulus: f64) -> impl Fn(&mut Scene) + Send + Sync + 'static {
     material(move |of| of.constitutive = Constitutive::VonMises { yield_stress, hardening_modulus })
 }
@@ -147,7 +147,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// The middle is strained as the way of the ram has it.
+/// Claims that the strain of the middle follows the displacement of the ram.
 fn follows_the_ram(level: &Level) -> Claim {
     const LAG: &str = "springs yield at the face, and its tracers sink into the block if the face moves a quarter of a cell \
                        from its initial nodes: by 0.008 of a cell with eight cells, and by 0.05 with sixteen";
@@ -164,5 +164,5 @@ fn follows_the_ram(level: &Level) -> Claim {
         .refuses(Control::without_the_error("springs four times as stiff", STIFF, LEVELS[0].resolution))
 }
 
-/// Springs between surfaces four times as stiff.
+/// Springs between surfaces that are four times as stiff.
 const STIFF: &str = "mpm+penalty=10.4";

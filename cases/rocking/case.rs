@@ -1,4 +1,4 @@
-//! A sphere rolls to rest and rocks on its rolling spring; a disc rocks between two others that run on.
+//! A sphere rolls to rest and rocks on its rolling spring. A disc rocks between two others that continue to spin.
 
 use grainbench_harness::prelude::*;
 
@@ -20,14 +20,14 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// A sphere that rolls to rest, in numbers of the scene.
+/// Parameters of a sphere that rolls to rest.
 struct ToRest {
     radius: f64,
     /// Angle at which the rolling spring yields (rad).
     yields: f64,
-    /// Way to rest (m).
+    /// Rolling distance (m).
     way: f64,
-    /// Part of the rocking, and of the way, that may be off.
+    /// Largest relative errors of the rocking and of the distance.
     off: [f64; 2],
 }
 
@@ -43,13 +43,13 @@ impl ToRest {
         let swing =
             2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
         let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
-        // A sample is taken every ten steps, a swing of 2Rθ is read at its ends.
+        // A sample is taken every ten steps; an oscillation of 2Rθ is read at its ends.
         let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
         Self { radius, yields, way, off: [soft + phase + swing * way / (radius * yields), 2.0 * swing + soft] }
     }
 }
 
-/// The largest place, and the smallest one after it (m).
+/// Returns the largest position, and the smallest one after it (m).
 fn turning_points(done: &Done) -> Result<[f64; 2], Missing> {
     let places = done.column("grain.x")?;
     let farthest = (0..places.len()).max_by(|&a, &b| places[a].total_cmp(&places[b])).unwrap_or(0);
@@ -100,7 +100,7 @@ fn way() -> Claim {
         .fair_to_any_springs()
 }
 
-/// Frequency at which the disc rocks between two (rad/s), and the part of the spin that may be off.
+/// Returns the frequency of the disc's rocking between two others (rad/s), and the largest relative error of the spin.
 fn rocks(scene: &Scene) -> [f64; 2] {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
     let each = |other: &grainbench_scene::scene::Grain| {

@@ -1,4 +1,4 @@
-//! A ball rolls off a fixed ball: where it leaves, and with which spin.
+//! A ball rolls off a fixed ball: its position and spin at separation.
 
 use grainbench_harness::prelude::*;
 
@@ -19,16 +19,16 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The balls, in numbers of the scene.
+/// Parameters of the balls.
 struct Balls {
     gravity: f64,
     friction: f64,
     radius: f64,
-    /// Distance of the centres while they touch (m).
+    /// Distance of the centres in contact (m).
     distance: f64,
     /// Angle at the start (rad).
     angle: f64,
-    /// Part of the velocity that may be off.
+    /// Largest relative error of the velocity.
     off: f64,
 }
 
@@ -49,19 +49,19 @@ impl Balls {
         Self { gravity, friction: law.friction, radius: ball.radius, distance, angle, off }
     }
 
-    /// Normal force over the mass (m/s²).
+    /// Returns the normal force over the mass (m/s²).
     fn press(&self, [angle, speed, _]: State) -> f64 {
         self.gravity * angle.cos() - speed * speed / self.distance
     }
 
-    /// Rates of a state, while it rolls or slips.
+    /// Returns the time derivatives of a state, for rolling or slipping.
     fn rates(&self, state: State, slips: bool) -> State {
         let down = self.gravity * state[0].sin();
         let friction = if slips { self.friction * self.press(state).max(0.0) } else { 2.0 / 7.0 * down };
         [state[1] / self.distance, down - friction, 2.5 * friction]
     }
 
-    /// The state in which it leaves.
+    /// Returns the state at separation.
     fn leaves(&self) -> State {
         let step = 1e-5;
         let mut state = [self.angle, 0.0, 0.0];
@@ -103,7 +103,7 @@ fn off(variant: &str, times: f64) -> Tolerance {
     )
 }
 
-/// The rough ball leaves at cos θ = (10/17) cos θ₀: ω²R² = g d cos θ.
+/// Claims that the rough ball leaves at cos θ = (10/17) cos θ₀: ω²R² = g d cos θ.
 fn angle() -> Claim {
     claim("cosine of the angle at which the rough ball leaves, from its spin", "1")
         .of(Run::new("rough", "dem", STEP.resolution))
@@ -151,7 +151,7 @@ mod tests {
 
     use super::*;
 
-    /// The integration has the closed form of the rough ball.
+    /// The integration reproduces the closed form of the rough ball.
     #[test]
     fn the_rough_ball_leaves_at_ten_seventeenths() {
         let balls = Balls::of(&CASE.variant("rough").unwrap());

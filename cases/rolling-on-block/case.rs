@@ -21,13 +21,13 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// One slope.
+/// One slope with its reference.
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement over the rigid one, less one, of the converged elastic disc on a rigid plane.
+    /// Displacement of the converged elastic disc on a rigid plane over the rigid one, minus one.
     reference: Cited,
-    /// Deviation by level that was asked for before the solver existed.
+    /// Deviations by level that were required before the solver existed.
     allowed: [f64; 3],
 }
 
@@ -36,7 +36,7 @@ const SLOPES: [Slope; 2] = [
     Slope { variant: "30deg-mu.5", reference: elastic_disc::ROLLS_30_MU_5, allowed: [0.05, 0.02, 0.005] },
 ];
 
-/// Displacement over (1/3) g t² sin θ, less one.
+/// Returns the displacement over (1/3) g t² sin θ, minus one.
 fn excess(done: &Done) -> Result<f64, Missing> {
     let (time, x) = (&done.series().time, done.column("grain.x")?);
     let end = x.len() - 1;

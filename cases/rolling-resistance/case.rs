@@ -30,7 +30,7 @@ fn rolling_friction(scene: &Scene) -> f64 {
     scene.laws.iter().flatten().map(|law| law.rolling_friction).fold(0.0, f64::max)
 }
 
-/// The acceleration of a grain that rolls against its resistance (m/s²).
+/// Returns the acceleration of a grain that rolls with rolling resistance (m/s²).
 fn acceleration(scene: &Scene) -> f64 {
     let grain = OneGrain::of(scene);
     (grain.along - rolling_friction(scene) * grain.onto) / (1.0 + grain.inertia_factor)
@@ -50,7 +50,7 @@ fn claims() -> Vec<Claim> {
     ours.chain(FLAT.into_iter().flat_map(beside_programs)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
 }
 
-/// The same by LAMMPS and LIGGGHTS.
+/// Claims agreement with LAMMPS and LIGGGHTS.
 fn beside_programs(variant: &'static str) -> Vec<Claim> {
     let time_step: f64 = 2e-5;
     let ahead = computed(
@@ -65,7 +65,7 @@ fn beside_programs(variant: &'static str) -> Vec<Claim> {
     programs::rolling(variant, Resolution::TimeStep(time_step), &ahead)
 }
 
-/// How long it is (s).
+/// Returns the duration of a scene (s).
 fn seconds(scene: &Scene) -> f64 {
     scene.duration.seconds().unwrap_or(f64::NAN)
 }
@@ -94,7 +94,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Mean acceleration over the second half of the run (m/s²), of the centre or of the surface RΩ.
+/// Returns the mean acceleration over the second half of the run (m/s²), of the centre or of the surface RΩ.
 fn slowing(done: &Done, of_spin: bool) -> Result<f64, Missing> {
     let course = course(done)?;
     let (half, end) = (&course[course.len() / 2], &course[course.len() - 1]);
@@ -103,7 +103,7 @@ fn slowing(done: &Done, of_spin: bool) -> Result<f64, Missing> {
     Ok((speed(end) - speed(half)) / (end.0 - half.0))
 }
 
-/// The slope at a factor times the threshold, at the static overlap.
+/// Returns the run on a slope of `factor` times the threshold, at the static overlap.
 fn tilted(variant: &'static str, factor: f64) -> Run {
     Run::new(variant, "dem", STEP.resolution).adjusted(&format!("tan θ = {factor} μ_r"), move |scene| {
         let angle = (factor * rolling_friction(scene)).atan();

@@ -1,4 +1,5 @@
-//! Two thousand spheres settle in a column: the weight is carried, and the packing is that of both programs.
+//! Two thousand spheres settle in a column. Walls and floor carry the weight, and the packing agrees with both external
+//! solvers.
 
 use crate::rows::programs::PAIRS;
 use grainbench_harness::prelude::*;
@@ -24,14 +25,14 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Columns of ours that give the spread.
+/// Our columns that give the spread.
 const COLUMNS: [&str; 4] = [PLAIN, "seed-12", "seed-13", "seed-14"];
 
 fn run(solver: &'static str) -> Run {
     Run::new(PLAIN, solver, LEVELS[0].resolution)
 }
 
-/// The mean of a column over the last fifth of the run.
+/// Returns the mean of a column over the last fifth of the run.
 fn settled(done: &Done, column: &str) -> Result<f64, Missing> {
     let values = done.column(column)?;
     let last = &values[values.len() - values.len().div_ceil(5)..];
@@ -58,7 +59,7 @@ fn coordination(done: &Done) -> Result<f64, Missing> {
     settled(done, "packing.coordination")
 }
 
-/// What all walls carry.
+/// Returns the vertical force on all walls (N).
 fn carried(done: &Done) -> Result<f64, Missing> {
     ["floor", "left", "right", "front", "back"]
         .iter()
@@ -85,7 +86,7 @@ fn claims() -> Vec<Claim> {
             let columns = COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside());
             claims.push(
                 claim(format!("{quantity}, against {program}"), "1")
-                    // Five runs of a second or two each.
+                    // Five runs of one to two seconds each.
                     .of_all([run(ours).slow(), run(program)])
                     .of_all(columns)
                     .agrees(Source::Program, move |done| {
@@ -110,7 +111,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut runs = Vec::new();
     for [ours, program] in PAIRS {
         runs.push((ours, Stroke::Line, runner.run(&run(ours))?));
-        // Without the program and without its stored run there is nothing to draw.
+        // Without the external solver and its stored run, there is no curve.
         if let Ok(theirs) = runner.run(&run(program)) {
             runs.push((program, Stroke::Markers, theirs));
         }

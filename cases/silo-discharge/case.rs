@@ -1,4 +1,4 @@
-//! A silo empties through two orifices: the rates of the round robin of bulk processes.
+//! A silo discharges through two orifices: the rates of the round robin of bulk processes.
 
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
@@ -29,16 +29,16 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The silo with the small orifice, and a lower filling for the time step.
+/// Variants: the silo with the small orifice, and a lower filling for the time step.
 const SMALL: &str = "small";
 const LOW: &str = "low";
-/// The lower filling, drawn by lot five times.
+/// The lower filling with five random seeds.
 const FILLINGS: [&str; 5] = [LOW, "low-2", "low-3", "low-4", "low-5"];
-/// When grains that are out are counted (s of flow).
+/// Time at which discharged grains are counted (s of flow).
 const COUNTED: f64 = 2.0;
-/// When both orifices are looked at (s of flow).
+/// Times between which both orifices are compared (s of flow).
 const BOTH: [f64; 2] = [0.5, 2.0];
-/// How far rates may be off.
+/// Largest relative error of rates.
 const ALLOWED: f64 = 0.05;
 const BECAUSE: &str = "asked for before: 5 %, as the paper's codes are said to differ";
 
@@ -58,15 +58,17 @@ fn half_the_step() -> Run {
     Run::new(LOW, "dem:liggghts", LEVELS[1].resolution).long().kept().aside()
 }
 
-/// When the flow begins (s).
+/// Returns the time at which the flow begins (s).
 fn begins(scene: &Scene) -> Option<f64> {
     scene.walls.iter().find_map(|wall| wall.until)
 }
 
-/// A sample may be so much before the time that is meant (s): a step and more, and nothing to a rate.
+/// Largest time by which a sample may precede the requested time (s): more than one step, with a negligible effect on
+/// rates.
 const SLACK: f64 = 1e-5;
 
-/// Grains left at a time of flow, which begins when the plug is taken away; between samples in proportion.
+/// Returns the number of remaining grains at a time of flow, which begins when the plug is removed; interpolated
+/// between samples.
 fn left(done: &Done, time: f64) -> Result<f64, Missing> {
     let begun = begins(&done.scene).ok_or_else(|| Missing("plug".to_owned()))?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
@@ -78,12 +80,12 @@ fn left(done: &Done, time: f64) -> Result<f64, Missing> {
     Ok(counts[after - 1] + part * (counts[after] - counts[after - 1]))
 }
 
-/// Thousands of grains that leave in a second, between two times of flow.
+/// Returns the discharge rate in thousands of grains per second, between two times of flow.
 fn rate(done: &Done, [from, to]: [f64; 2]) -> Result<f64, Missing> {
     Ok((left(done, from)? - left(done, to)?) / (to - from) / 1e3)
 }
 
-/// The rate of steady flow, of a run that is shorter until its end.
+/// Returns the rate of steady flow, up to the end if the run is shorter.
 fn steady(done: &Done) -> Result<f64, Missing> {
     let end = done.series().time.last().copied().unwrap_or_default() - begins(&done.scene).unwrap_or_default();
     rate(done, [STEADY[0], STEADY[1].min(end)])
@@ -146,12 +148,12 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// The small silo, ours and LIGGGHTS'.
+/// Returns the runs of the small silo: ours and LIGGGHTS'.
 fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
     [ours, "liggghts"].map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
 
-/// Is what a work says, within what rates may be off.
+/// Expects the value of a work, within the tolerance of rates.
 fn near(
     quantity: grainbench_harness::claim::Quantity,
     cited: Cited,
@@ -160,7 +162,7 @@ fn near(
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }
 
-/// Grains slide on one another without friction; on steel it stays.
+/// Negative control: no friction between grains, unchanged friction on steel.
 fn smooth() -> Control {
     Control::scene("no friction between grains", |scene| {
         let Some(m1) = scene.materials.iter().position(|name| name == "m1") else { return };
@@ -171,7 +173,7 @@ fn smooth() -> Control {
     })
 }
 
-/// Grains left over time, beside what two codes have: of runs that are kept, or done in full.
+/// Returns the figure of remaining grains over time, with the results of two codes, for stored or complete runs.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let published = course(SILO).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
     let small = |time: f64| (time, FILLED - dosta::SILO_SMALL_RATE.value * time);
@@ -200,5 +202,5 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     )])
 }
 
-/// Thousands of grains that fill the silo of the paper.
+/// Filling of the paper's silo, in thousands of grains.
 const FILLED: f64 = 100.0;

@@ -1,4 +1,4 @@
-//! The deposit of the wide silo, half of whose floor is pushed up, read as granular elements.
+//! The deposit of the wide silo with half of its floor pushed up, read as granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
 
-/// Packing fraction in the first bins of |I₀|, which the figure shows.
+/// Packing fractions in the first bins of |I₀|, for the figure.
 static BINS: &[Cited] =
     &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3];
 

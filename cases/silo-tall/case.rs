@@ -1,4 +1,4 @@
-//! A tall silo that drains by a slit, read as granular elements.
+//! A tall silo that drains through a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};

@@ -1,4 +1,4 @@
-//! A wide silo that drains by a slit, read as granular elements.
+//! A wide silo that drains through a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{Drained, LEVELS, Numbers, Silo, WEAKNESS};
@@ -59,9 +59,9 @@ fn full_size() -> PaperSize {
         drained: Some(paper::Drained {
             plateau: DRAINED.plateau,
             onset: DRAINED.onset,
-            // By 14 τ 33 elements have been in the last: their mean is uncertain by .003 and more.
+            // Up to 14 τ, 33 elements have been in the last bin, so its mean is uncertain by at least 0.003.
             bins: 9,
-            // Its curves lie beside those of the other flows in the case of the tall silo.
+            // The comparison of its curves with other flows is in the case of the tall silo.
             beside: None,
             others: &collapse::BESIDE_WIDE,
         }),

@@ -1,4 +1,4 @@
-//! Soil that starts with the stress of its own weight.
+//! Soil with the initial stress of its own weight.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
@@ -20,7 +20,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Height (m), and the sinking of its top under the weight without the stress, ρgH²/2M (m).
+/// Returns the height (m), and the settlement of its top under its weight without the initial stress, ρgH²/2M (m).
 fn soil(scene: &Scene) -> Option<[f64; 2]> {
     let body = scene.bodies.first()?;
     let BlockShape::Box { low, high } = body.shape else { return None };

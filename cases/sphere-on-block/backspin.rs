@@ -1,4 +1,4 @@
-//! The 2001 paper's sphere set down on the deformable plane with backspin: it slides, is spun down, and rolls on.
+//! The 2001 paper's sphere on a deformable plane with backspin: it slides, loses its spin, and rolls.
 
 use super::{FLAT, LEVELS, set_down};
 use crate::rows::elastic_backspin::{excess, sphere};
@@ -8,7 +8,7 @@ const VARIANT: &str = "backspin";
 
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    // Deviations at R/4 and R/8 that were asked for before the solver existed.
+    // Deviations at R/4 and R/8 that were required before the solver existed.
     for (level, asked) in LEVELS[1..].iter().zip([0.03, 0.01]) {
         let run = || Run::new(VARIANT, "mpm", level.resolution).long();
         claims.extend(sphere(level.name, asked, [run(), run()]));

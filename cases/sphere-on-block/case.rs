@@ -1,4 +1,4 @@
-//! A sphere rolls and slips down a deformable plane: contact between deformable bodies in space.
+//! A sphere rolls and slips down a deformable plane: contact between deformable bodies in three dimensions.
 
 #[path = "backspin.rs"]
 mod backspin;
@@ -27,15 +27,15 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// One slope.
+/// One slope with its references.
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement after a second over the rigid one, less one, of the converged elastic sphere on a rigid plane.
+    /// Displacement of the converged elastic sphere on a rigid plane after one second over the rigid one, minus one.
     reference: Cited,
-    /// Allowed deviation at R/4 and R/8.
+    /// Largest deviations at R/4 and R/8.
     allowed: [f64; 2],
-    /// What the 2000 and the 2001 contact give at R/4, touching at the start.
+    /// Results of the 2000 and the 2001 contact at R/4, initially in contact.
     papers: [(&'static str, Cited); 2],
 }
 
@@ -54,18 +54,18 @@ const SLOPES: [Slope; 2] = [
     },
 ];
 
-/// Displacement over that of a rigid sphere, less one.
+/// Returns the displacement over the displacement of a rigid sphere, minus one.
 fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
 }
 
-/// Touching at the start and let go, as in the paper.
+/// Returns the run without relaxation: initially in contact and released, as in the paper.
 fn set_down(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[1].resolution).adjusted("set down", |scene| scene.start.settle = None)
 }
 
-/// A few rows take seconds; the others are for the long set.
+/// Sets the tier of a run: standard for a few claims that take seconds, otherwise long.
 fn in_set(run: Run, quick: bool) -> Run {
     if quick { run.slow() } else { run.long() }
 }

@@ -1,4 +1,4 @@
-//! A ring spins: Lamé's rotating annulus, for laws with and without a history.
+//! A rotating ring: Lamé's rotating annulus, for contact laws with and without a history.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// A ring that turns.
+/// A rotating ring.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
     /// Inner and outer radius (m).
@@ -46,7 +46,7 @@ impl Ring {
         Some(Self { radii: [inner, outer], plane, load: ring.density * ring.spin.z * ring.spin.z })
     }
 
-    /// Lamé's displacement (m) at a radius (m).
+    /// Returns Lamé's displacement (m) at a radius (m).
     fn displacement(&self, radius: f64) -> f64 {
         let ([a, b], [young, poisson]) = (self.radii.map(|radius| radius * radius), self.plane);
         let even = (1.0 - poisson) * (3.0 + poisson) * (a + b) * radius;
@@ -54,7 +54,7 @@ impl Ring {
         self.load / (8.0 * young) * (even + hole - (1.0 - poisson * poisson) * radius.powi(3))
     }
 
-    /// Growth of the second moment, 2 ∫ u r² dr/∫ r³ dr, by the midpoint rule.
+    /// Returns the relative increase of the second moment, 2 ∫ u r² dr/∫ r³ dr, by the midpoint rule.
     fn growth(&self) -> f64 {
         const PARTS: u32 = 1000;
         let [inner, outer] = self.radii;
@@ -66,19 +66,19 @@ impl Ring {
     }
 }
 
-/// Σ|x − x̄|² over the material points at some places (m²).
+/// Returns Σ|x − x̄|² over positions of material points (m²).
 fn second_moment(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
     let (sum, count) = places.clone().fold((Vector3::zeros(), 0.0), |(sum, count), place| (sum + place, count + 1.0));
     places.map(|place| (place - sum / count).norm_squared()).sum()
 }
 
-/// Growth of the second moment since the start.
+/// Returns the relative increase of the second moment since the start.
 fn growth(snapshot: &Snapshot) -> f64 {
     let now = second_moment(snapshot.points.iter().map(|point| point.position));
     now / second_moment(snapshot.points.iter().map(|point| point.position - point.displacement)) - 1.0
 }
 
-/// Mean of the growth over the run with Hann's window.
+/// Returns the mean of this increase over the run, with a Hann window.
 fn mean_growth(done: &Done) -> Result<f64, Missing> {
     let snapshots = &done.record.snapshots;
     let end = snapshots.last().map(|last| last.time).filter(|_| snapshots.iter().all(|now| !now.points.is_empty()));
@@ -132,7 +132,7 @@ fn claims() -> Vec<Claim> {
 mod tests {
     use super::*;
 
-    /// Lamé's displacement leaves nothing of the equation in the ring, nor of σ_rr at its edges.
+    /// Lamé's displacement satisfies the equation in the ring, and σ_rr = 0 at both edges.
     #[test]
     fn the_displacement_solves_the_equation() {
         let ring = Ring { radii: [0.5, 1.0], plane: [1e6 / 0.91, 0.3 / 0.7], load: 9e3 };

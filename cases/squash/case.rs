@@ -1,4 +1,4 @@
-//! The worked example of Cundall & Strack (1979): the calculation cycle, exactly.
+//! The worked example of Cundall & Strack (1979): exact values of the calculation cycle.
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -8,7 +8,8 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
-/// By how much positions up to 4 R round (R) over the way of a wall in a step (R): forces, in units of k v Δt.
+/// Rounding of forces in units of k v Δt: the rounding of positions up to 4 R over the displacement of a wall in a
+/// step, 1e-3 R.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
 const FORCES: Plate = Plate {
@@ -40,7 +41,7 @@ fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)
 }
 
-/// q = kΔt²/m and the unit of force k v Δt, from the scene and the step that was run.
+/// Returns q = kΔt²/m and the unit of force k v Δt, from the scene and the time step of the run.
 fn units(done: &Done) -> (f64, f64) {
     let stiffness = done.scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let time_step = done.record.provenance.time_step;
@@ -48,13 +49,13 @@ fn units(done: &Done) -> (f64, f64) {
     (stiffness * time_step * time_step / done.scene.grains[0].mass, stiffness * speed * time_step)
 }
 
-/// Displacement of disc x after `n` cycles in units of vΔt.
+/// Returns the displacement of disc x after `n` cycles in units of vΔt.
 fn displacement(n: f64, q: f64) -> f64 {
     let theta = 2.0 * ((3.0 * q).sqrt() / 2.0).asin();
     (n - (n * theta).sin() / theta.sin()) / 3.0
 }
 
-/// Forces (F_A, F_B) of the first three cycles in units of k v Δt.
+/// Returns the forces (F_A, F_B) of the first three cycles in units of k v Δt.
 fn first_cycles(cycle: u32, q: f64) -> (f64, f64) {
     match cycle {
         1 => (1.0, 0.0),
@@ -120,18 +121,18 @@ fn late(name: &'static str, wall: usize) -> Control {
     Control::scene(name, move |scene| scene.walls[wall].motion.phases[0].start = Moment::Cycle(1))
 }
 
-/// Number of the cycle that ends at a time (s).
+/// Returns the number of the cycle that ends at a time (s).
 fn cycle(done: &Done, time: f64) -> f64 {
     (time / done.record.provenance.time_step).round()
 }
 
-/// Displacement of disc x at a time (s), times k (N).
+/// Returns the displacement of disc x at a time (s), times k (N).
 fn moved(done: &Done, time: f64) -> f64 {
     let (q, unit) = units(done);
     displacement(cycle(done, time), q) * unit
 }
 
-/// Force of the left wall at a time (s) (N).
+/// Returns the force of the left wall (N) at a time (s).
 fn force_at_a(done: &Done, time: f64) -> f64 {
     let (q, unit) = units(done);
     let n = cycle(done, time);

@@ -1,4 +1,5 @@
-//! How the disc moves between the walls, in time that flows: the paper's recurrence without its step.
+//! Target quantity of accuracy: the motion of the disc between the walls in continuous time, without the paper's finite
+//! time step.
 //!
 //! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W =
 //! √(3k/m).
@@ -10,7 +11,7 @@ use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
 use grainbench_scene::solver::Method;
 use std::sync::Arc;
 
-/// Several periods of the pair (s): 2π/√3 = 3.63 s.
+/// Duration of several periods of the pair (s); the period is 2π/√3 = 3.63 s.
 const SECONDS: f64 = 20.0;
 
 pub(crate) fn subjects() -> Vec<Subject> {

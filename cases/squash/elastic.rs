@@ -1,17 +1,17 @@
-//! The discs as elastic bodies: the force at the walls, the frequency at which they ring between them, and the spring
-//! that they show.
+//! The discs as elastic bodies: force at the walls, frequency of free vibration and apparent spring stiffness.
 //!
-//! The walls move in by d = .01 R and stop; by symmetry the plane between the discs is one more wall. A disc's diameter
-//! is shortened by d. A rigid disc on springs k_n has the wall force F = (2/3) k_n d and rings with ω² = 3 k_n/m. An
-//! elastic one has F(d) in closed form. While it rings one contact presses it as much more as the other does less: its mean
-//! moves by x where ΔF (u + v)/(πE') = x, so that ω² = 2πE'/(m (u + v)), less what its inertia stirs.
+//! The walls move in by d = 0.01 R and stop. By symmetry, the plane between the discs acts as another wall, and the
+//! diameter of each disc is shortened by d. A rigid disc on springs k_n has the wall force F = (2/3) k_n d and ω² = 3
+//! k_n/m. An elastic disc has F(d) in closed form. During vibration, the force at one contact increases by as much as
+//! it decreases at the other. The disc's mean moves by x, where ΔF (u + v)/(πE') = x. Hence ω² = 2πE'/(m (u + v)),
+//! reduced by the added mass of the deformation.
 
 use crate::rows::elastic::{Gives, Pressed};
 use crate::rows::ringing::{Ringing, Rung};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-/// Discs of E' = 16 Pa, ν = 1/4, as heavy as in the example, whose ringing has periods of some 1.6 s.
+/// Discs of E' = 16 Pa, ν = 1/4, with the mass of the example and a period of vibration of about 1.6 s.
 pub(super) const DISCS: Ringing = Ringing {
     variant: PLAIN,
     column: "A.normal_force",
@@ -27,7 +27,7 @@ pub(super) const DISCS: Ringing = Ringing {
         let force = disc.force(squeeze);
         let Gives { u, v, .. } = disc.gives(force);
         let restoring = 2.0 * PI * disc.modulus / (u + v);
-        // Of the springs between the discs each has a half: (1 + 1/2)/2² of both contacts, of (u + v)/2.
+        // Each disc has half of the springs between the discs: (1 + 1/2)/2² of both contacts, of (u + v)/2.
         let stirred = disc.stirred([1.0, -1.0, 0.0, 0.0]) / (u + v).powi(2);
         Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 0.75 / (u + v) })
     },

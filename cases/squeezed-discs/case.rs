@@ -1,4 +1,4 @@
-//! Nine elastic discs squeezed by four walls: how stiff contacts are.
+//! Nine elastic discs compressed by four walls: the stiffness of contacts.
 
 use crate::rows::elastic::{Pressed, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
 const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
-/// The grid shifted by none, a quarter and a half of a cell.
+/// The grid shifted by zero, a quarter and half of a cell.
 const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
-/// Springs twice as stiff, which slow what rolls on a coarse grid.
+/// Springs twice as stiff, which slow rolling on a coarse grid.
 const STIFF: &str = "mpm+penalty=5.2";
 const SOURCE: Source =
     Source::Derived("Johnson, Contact Mechanics, line contact, with the swelling by the pair across (derivation)");
@@ -32,7 +32,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Distance by which each wall moves in (m).
+/// Returns the distance by which each wall moves in (m).
 fn squeeze(scene: &Scene) -> f64 {
     let phase = &scene.walls[0].motion.phases[0];
     match phase.stop {
@@ -41,13 +41,13 @@ fn squeeze(scene: &Scene) -> f64 {
     }
 }
 
-/// Contact force (N per metre) in closed form: a row of three diameters is shortened by both walls.
+/// Returns the contact force (N per metre) in closed form: both walls shorten a row of three diameters.
 fn exact(scene: &Scene) -> f64 {
     Pressed::of(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
-/// Mean contact force at the walls (N per metre), three discs on each, over the last quarter of the run: material
-/// points go on trembling by a per cent.
+/// Returns the mean contact force at the walls (N per metre), with three discs on each, over the last quarter of the
+/// run, because material points continue to oscillate by one per cent.
 fn mean_force(done: &Done) -> Result<f64, Missing> {
     let mut sum = 0.0;
     for wall in WALLS {
@@ -58,8 +58,8 @@ fn mean_force(done: &Done) -> Result<f64, Missing> {
     Ok(sum / 12.0)
 }
 
-/// Number of contacts, and the largest deviation of one's force from the mean of all, over the last quarter of the run, which all
-/// snapshots but the first are of.
+/// Returns the number of contacts, and the largest deviation of a contact force from the mean. It covers the last
+/// quarter of the run, which all snapshots except the first belong to.
 fn spread(done: &Done) -> Result<(usize, f64), Missing> {
     let late = done.record.snapshots.iter().filter(|snapshot| snapshot.time > 0.0);
     let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
@@ -77,7 +77,7 @@ fn phases(level: Level) -> [Run; 3] {
     PHASES.map(|solver| Run::new(PLAIN, solver, level.resolution))
 }
 
-/// Mean over the phases of the grid.
+/// Returns the mean over the shifts of the grid.
 fn over_phases(done: &[Done]) -> Result<f64, Missing> {
     let forces: Result<Vec<f64>, Missing> = done.iter().map(mean_force).collect();
     Ok(forces?.iter().sum::<f64>() / done.len() as f64)

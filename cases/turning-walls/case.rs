@@ -1,4 +1,4 @@
-//! Grains ride on walls that turn: in a drum, on a tray that is tilted, between plates that turn about their normal.
+//! Grains on rotating walls: in a drum, on a tilting tray, and between plates that rotate about their normal.
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;
@@ -23,28 +23,28 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Angular velocity of the walls (rad/s).
+/// Returns the angular velocity of the walls (rad/s).
 fn spin(scene: &Scene) -> Vector3<f64> {
     scene.walls[0].motion.phases.iter().map(|phase| phase.spin).sum()
 }
 
-/// Angle by which the walls have turned (rad).
+/// Returns the angle of rotation of the walls (rad).
 fn turned(scene: &Scene) -> f64 {
     spin(scene).norm() * scene.duration.seconds().unwrap_or(f64::NAN)
 }
 
-/// Numbers of a variant, as the file has them.
+/// Returns a number of a variant without a control.
 fn number(variant: &str, of: impl Fn(&Scene) -> f64) -> f64 {
     CASE.variant(variant).map_or(f64::NAN, |scene| of(&scene))
 }
 
-/// (ΩΔt)² (1 + ΩT)².
+/// Returns the relative error of the integration scheme, (ΩΔt)² (1 + ΩT)².
 fn scheme(scene: &Scene) -> f64 {
     let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
     (spin(scene).norm() * step * (1.0 + turned(scene))).powi(2)
 }
 
-/// Overlap with the drum (m).
+/// Returns the overlap with the drum (m).
 fn in_drum(scene: &Scene) -> f64 {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
     let force = grain.mass * spin(scene).norm_squared() * grain.position.norm();
@@ -62,7 +62,7 @@ fn slower() -> Control {
     })
 }
 
-/// Angle that the grain has gone round the origin (rad), from its places at all samples.
+/// Returns the angle of the grain's path around the origin (rad), from its positions at all samples.
 fn gone_round(done: &Done) -> Result<f64, Missing> {
     let angles: Vec<f64> =
         done.column("grain.x")?.iter().zip(done.column("grain.y")?).map(|(x, y)| y.atan2(*x)).collect();
@@ -107,7 +107,7 @@ fn softness(scene: &Scene) -> f64 {
     1.0 / law.tangential_stiffness() + radius * radius / rolling
 }
 
-/// Part of Rφ by which the disc may be off: lever arms, and the swing on the springs.
+/// Returns the largest error of the disc's position over Rφ: lever arms, and the oscillation on the springs.
 fn tray_off(scene: &Scene) -> f64 {
     let grain = &scene.grains[0];
     let (weight, angle) = (grain.mass * scene.gravity.norm(), turned(scene));
@@ -123,7 +123,7 @@ fn tray() -> Claim {
         .equals(Source::Derived("m g sin φ (1/k_t + R²/k_r) (derivation)"), |done| {
             let scene = &done[0].scene;
             let (angle, grain) = (turned(scene), &scene.grains[0]);
-            // The tray falls towards +x.
+            // The tray tilts down towards +x.
             let way = done[0].last("grain.x")? * angle.cos() - done[0].last("grain.y")? * angle.sin();
             let exact = grain.mass * scene.gravity.norm() * angle.sin() * softness(scene);
             Ok(Measured::new(way, exact, grain.radius * angle))
@@ -136,12 +136,12 @@ fn tray() -> Claim {
         .fair_to_any_springs()
 }
 
-/// Frequency of the springs of both plates (rad/s).
+/// Returns the frequency of the springs of both plates (rad/s).
 fn frequency(scene: &Scene) -> f64 {
     scene.laws[0].map_or(f64::NAN, |law| (2.0 * law.tangential_stiffness() / scene.grains[0].mass).sqrt())
 }
 
-/// Place across the axis, where the clamped sphere turns.
+/// Returns the component of a position across the axis, in which the clamped sphere rotates.
 fn across(place: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(place.x, place.y, 0.0)
 }

@@ -1,11 +1,11 @@
-//! Two elastic discs collide.
+//! Collision of two elastic discs.
 
 use crate::sources::prototype::two_elastic_discs::{ENERGY_OF_2000, OBLIQUE_SPIN, RESTITUTION};
 use grainbench_harness::prelude::*;
 use std::f64::consts::SQRT_2;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
-/// When the discs of the Sulsky variant touch (s): 3 − √2.
+/// Time of first contact of the discs of the Sulsky variant (s): 3 − √2.
 const TOUCH: f64 = 3.0 - SQRT_2;
 
 pub(crate) static CASE: Case = Case {
@@ -24,7 +24,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Time step over that in which a wave crosses a cell: shorter than usual, for contact springs and waves at an impact.
+/// Courant number: time step over the transit time of a wave through a cell. It is smaller than usual, for contact
+/// springs and waves of an impact.
 const COURANT: f64 = 0.3;
 
 const fn grid(cells: f64) -> Resolution {
@@ -35,29 +36,29 @@ fn speed(done: &Done) -> f64 {
     done.scene.grains[0].velocity.norm()
 }
 
-/// Speed along the line of approach after the impact over that before.
+/// Returns the speed along the line of approach after the impact over the speed before.
 fn restitution(done: &Done) -> Result<f64, Missing> {
     let velocity = done.scene.grains[0].velocity;
     let (vx, vy) = (done.last("left.vx")?, done.last("left.vy")?);
     Ok(-(vx * velocity.x + vy * velocity.y) / velocity.norm_squared())
 }
 
-/// Total energy at the end over that at the start.
+/// Returns the total energy at the end over the initial energy.
 fn energy(done: &Done) -> Result<f64, Missing> {
     let energy = done.column("all.total_energy")?;
     Ok(done.last("all.total_energy")? / energy[0])
 }
 
-/// Mean ΩR/v₀ of the two discs.
+/// Returns the mean ΩR/v₀ of the two discs.
 fn spin(done: &Done) -> Result<f64, Missing> {
     let radius = done.scene.grains[0].radius;
     Ok(0.5 * (done.last("left.omega")? + done.last("right.omega")?) * radius / speed(done))
 }
 
-/// Gap of the surfaces (m) when the first contact force is seen, by the undeformed radii.
+/// Returns the gap of the surfaces (m) at the first contact force, from the undeformed radii.
 fn first_gap(done: &Done) -> Result<f64, Missing> {
     let force = done.column("contact.normal_force")?;
-    // The force of a step is that of the positions it began with.
+    // The force of a step belongs to the positions at its start.
     let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| Missing("contact".to_owned()))?.max(1) - 1;
     let along = |axis: &str| Ok(done.column(&format!("right.{axis}"))?[at] - done.column(&format!("left.{axis}"))?[at]);
     Ok(f64::hypot(along("x")?, along("y")?) - 2.0 * done.scene.grains[0].radius)
@@ -134,14 +135,15 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Momentum in the end, where none was, in units of that of one disc.
+/// Compares the final momentum with zero, in units of the momentum of one disc.
 fn momentum(done: &Done) -> Result<Measured, Missing> {
     let (x, y) = (done.last("all.momentum_x")?, done.last("all.momentum_y")?);
     let scale = done.scene.grains[0].mass * speed(done);
     Ok(Measured::new(f64::hypot(x, y), 0.0, scale))
 }
 
-/// Three discs that meet at one point: contacts act in pairs, however many bodies share a node.
+/// Claims on three discs that collide at one point: contacts act in pairs, independent of the number of bodies at a
+/// node.
 fn three() -> Vec<Claim> {
     let of = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")
@@ -165,7 +167,7 @@ fn three() -> Vec<Claim> {
     claims
 }
 
-/// Spin by friction.
+/// Claims on the spin by friction.
 fn oblique() -> Vec<Claim> {
     let of = |run: Run, quantity: &str, because, control| {
         claim(quantity, "1")
@@ -193,12 +195,12 @@ fn oblique() -> Vec<Claim> {
     ]
 }
 
-/// Where and when the discs of Sulsky's scene touch.
+/// Claims on position and time of the first contact in Sulsky's scene.
 fn touching() -> Vec<Claim> {
     const SURFACES_MEET: Source = Source::Derived(
         "centres √2 (.6 − .2 t) apart, as in Sulsky, Chen & Schreyer 1994, touch at t = 3 − √2 (derivation)",
     );
-    /// A cell of R/8 (m), a step (s) with c = 1.160239 m/s, and how fast the centres close (m/s).
+    /// Cell of R/8 (m), time step (s) with c = 1.160239 m/s, and closing velocity of the centres (m/s).
     const CELL: f64 = 0.025;
     const STEP: f64 = COURANT * CELL / 1.160_239;
     const CLOSING: f64 = SQRT_2 * 0.2;

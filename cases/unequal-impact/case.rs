@@ -1,4 +1,4 @@
-//! A small grain meets a large one at an angle and slips throughout: exact velocities and spins of both.
+//! A small grain hits a large one at an angle and slips throughout: exact velocities and spins of both.
 
 use crate::rows::incline::stronger_friction;
 use grainbench_harness::prelude::*;
@@ -20,7 +20,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// The impact, in numbers of the scene.
+/// Parameters and exact values of the impact.
 struct Impact {
     /// Velocity of the small grain along the line of centres and across it (m/s).
     before: [f64; 2],
@@ -30,7 +30,7 @@ struct Impact {
     masses: [f64; 2],
     radii: [f64; 2],
     inertias: [f64; 2],
-    /// Part by which an impulse or a spin may be off.
+    /// Largest relative error of an impulse or a spin.
     off: f64,
 }
 
@@ -60,7 +60,7 @@ impl Impact {
     }
 }
 
-/// A quantity: its name, unit and column, what it should be, and the impulse's part of it.
+/// A quantity: its name, unit, column and exact value, and the part of it that the impulse causes.
 struct Quantity {
     name: &'static str,
     unit: &'static str,

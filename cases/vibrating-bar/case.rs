@@ -1,4 +1,4 @@
-//! A bar vibrates along its length.
+//! Longitudinal vibration of a bar.
 
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
@@ -7,11 +7,11 @@ use grainbench_scene::material::Constitutive;
 use std::f64::consts::PI;
 
 pub(crate) const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
-/// The bar between smooth sides.
+/// Variant of the bar between smooth sides.
 pub(crate) const HELD: &str = "held-sideways";
-/// The bar of viscous material.
+/// Variant of the bar of viscous material.
 const VISCOUS: &str = "viscous";
-/// The bar that starts under a stress.
+/// Variant of the bar with an initial stress.
 const STRETCHED: &str = "stretched";
 const REST: &str = "beside what dispersion of quadratic B-splines with two points a cell and the time step make of it, (1/4 + \
                     1/96)(kh)² − (ωΔt)²/24: (kh)⁴, and at most ε² of the strain ε = v₀√(ρ/E)";
@@ -56,7 +56,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// ω (rad/s) and mean velocity at the start (m/s).
+/// Returns ω (rad/s) and the mean initial velocity (m/s).
 pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
     let bar = &scene.bodies[0];
     let wave = bar.wave.map_or((f64::NAN, f64::NAN), |wave| (wave.wave_number, wave.amplitude));
@@ -64,8 +64,8 @@ pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
     (wave.0 * (material / bar.density).sqrt(), 2.0 / PI * wave.1)
 }
 
-/// (kh)² of the mode at a resolution, k = π/2L and h a cell, and the largest strain v₀√(ρ/E): what tolerances are made
-/// of.
+/// Returns the small parameters of the tolerances: (kh)² of the mode at a resolution, with k = π/2L and the cell h, and
+/// the largest strain v₀√(ρ/E).
 fn small(resolution: Resolution) -> (f64, f64) {
     let Resolution::Grid { cells, .. } = resolution else { return (f64::NAN, f64::NAN) };
     let strain = CASE.variant(PLAIN).ok().and_then(|scene| {
@@ -75,12 +75,13 @@ fn small(resolution: Resolution) -> (f64, f64) {
     ((PI / 2.0 / cells).powi(2), strain.unwrap_or(f64::NAN))
 }
 
-/// Fraction by which a mode is slower on the grid (derivation): (1/4 + 1/96)(kh)², less (ωΔt)²/24 of the time step.
+/// Returns the relative decrease of a mode's frequency on the grid (derivation): (1/4 + 1/96)(kh)², minus (ωΔt)²/24 of
+/// the time step.
 fn slower(wave_number_squared: f64) -> f64 {
     (25.0 / 96.0 - Resolution::COURANT.powi(2) / 24.0) * wave_number_squared
 }
 
-/// What is left where that is known: the next power of (kh)², and ε² of the law at a strain ε.
+/// Returns the remainder after this decrease: the next power of (kh)², and ε² of the law at a strain ε.
 fn rest(squared: f64, strain: f64) -> f64 {
     squared * squared + strain * strain
 }
@@ -88,7 +89,7 @@ fn rest(squared: f64, strain: f64) -> f64 {
 /// Period between smooth sides (s), 10 √(E/M): E = 100 Pa and M = E (1 − ν)/((1 + ν)(1 − 2ν)) = 70/(1.3 · .4) Pa at ν = .3.
 pub(crate) const HELD_PERIOD: f64 = 8.618_916_073_713_347;
 
-/// Mean of the periods between crossings of zero (s).
+/// Returns the mean period between zero crossings (s).
 pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
     let (time, velocity) = (&done.series().time, done.column("bar.vx")?);
     let crossings: Vec<f64> = (1..velocity.len())
@@ -104,8 +105,8 @@ pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
     }
 }
 
-/// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay δ (1/s), and its mean velocity
-/// at the start (m/s).
+/// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay rate δ (1/s), and its mean
+/// initial velocity (m/s).
 struct Damped {
     frequency: f64,
     decay: f64,
@@ -128,7 +129,7 @@ impl Damped {
     }
 }
 
-/// By how much it is off at most over `time` (s), in units of the amplitude at the start (derivation).
+/// Returns the largest error of the mode over `time` (s), in units of the initial amplitude (derivation).
 fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
     let ((squared, strain), Damped { frequency, decay, .. }) = (small(resolution), Damped::of(scene));
     let step = resolution.steps_on_grid(scene).map_or(f64::NAN, |(step, _)| step);
@@ -136,7 +137,7 @@ fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
     25.0 / 96.0 * squared * (phase + 2.0 * lost) + (0.5 * phase + lost) * lag + 0.355 * strain
 }
 
-/// Stress that the bar starts under (Pa), ρL (kg/m²) and L/c (s).
+/// Returns the initial stress of the bar (Pa), ρL (kg/m²) and L/c (s).
 fn stretched(scene: &Scene) -> (f64, f64, f64) {
     let bar = &scene.bodies[0];
     let (low, high) = bar.shape.corners();
@@ -145,7 +146,7 @@ fn stretched(scene: &Scene) -> (f64, f64, f64) {
     (stress, bar.density * length, length / (modulus / bar.density).sqrt())
 }
 
-/// Mean velocity of the bar that is let go (m/s): a triangle.
+/// Returns the mean velocity of the released bar (m/s): a triangle wave.
 fn triangle(scene: &Scene, time: f64) -> f64 {
     let (stress, mass, transit) = stretched(scene);
     let phase = (time / transit + 1.0).rem_euclid(4.0);
@@ -153,7 +154,7 @@ fn triangle(scene: &Scene, time: f64) -> f64 {
     stress / mass * transit * wave
 }
 
-/// What is asked of the viscous bar and of the stretched one.
+/// Returns the claims on the viscous bar and on the stretched one.
 fn of_others() -> Vec<Claim> {
     let at = LEVELS[1];
     let time = 20.0;

@@ -1,4 +1,4 @@
-//! The period of the bar itself: what a grid makes of it is what is measured, and not expected.
+//! Target quantity of accuracy: the period of the bar itself. The effect of the grid is measured, not expected.
 
 use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use crate::registry;

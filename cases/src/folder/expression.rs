@@ -77,7 +77,7 @@ const FUNCTIONS: [Function; 17] = {
         one("sqrt", |x| x[0].sqrt()),
         one("cbrt", |x| x[0].cbrt()),
         one("abs", |x| x[0].abs()),
-        // NaN is returned if the first argument is NaN.
+        // NaN if either argument is NaN.
         two("min", |x| if x[0].is_nan() || x[0] < x[1] { x[0] } else { x[1] }),
         two("max", |x| if x[0].is_nan() || x[0] > x[1] { x[0] } else { x[1] }),
     ]

@@ -103,15 +103,15 @@ impl Pressed {
     /// σ = −(2ΔF/πr) cos θ e_r e_r + (ΔF/2πR) (e_x e_x + e_y e_y) + (ΔF/2πR²) [x (e_x e_x − e_y e_y) + y (e_x e_y + e_y e_x)]
     /// ```
     ///
-    /// leaves the rim free of traction. The mean displacement is the displacement of the centre. With n = ν/(1 − ν) and a
-    /// contact half-width a that grows as √F
+    /// leaves the rim free of traction. The mean displacement is the displacement of the centre. With n = ν/(1 − ν) and
+    /// a contact half-width a that grows as √F
     ///
     /// ```text
     /// u = 2 ln(2R/a) − 5/4 − n/4        v = −2 ln 2 + 3/4 − n/4        w = 2 − π/2 + πn/2
     /// ```
     ///
-    /// u − v = 2 ln(4R/a) − 2 is the shortening of half a diameter between two flats. w is the displacement of each side
-    /// due to a pair of forces ΔF across.
+    /// u − v = 2 ln(4R/a) − 2 is the shortening of half a diameter between two flats. w is the displacement of each
+    /// side due to a pair of forces ΔF across.
     /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics,
     /// eq. 5.57.
     #[must_use]

@@ -2,8 +2,8 @@
 //! contacts and walls.
 //!
 //! Both solvers evaluate the forces between grains again at output, with the velocities of the full step. The dashpot
-//! forces therefore differ from the forces that moved the grains, so runs with pairs are undamped. The dumped wall forces
-//! are the forces that moved the grains.
+//! forces therefore differ from the forces that moved the grains, so runs with pairs are undamped. The dumped wall
+//! forces are the forces that moved the grains.
 
 use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;

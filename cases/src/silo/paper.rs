@@ -1,7 +1,8 @@
-//! What is claimed of silos at the size of the paper: its own numbers, and what the prototype finds at a tenth of that size
-//! where the paper prints none. There is one deposit of this size, so that no tolerance is made of what deposits differ by:
-//! each was asked for before there was any run of this size. The .6 of the paper for sin φ before dilation was asked of it too
-//! and was not met; what stands here is the prototype's, with the tolerance of a tenth, and the derivation says so.
+//! Claims on silos at the paper's size: the paper's own values, or the prototype's values at a tenth of that size if
+//! the paper prints none. There is one deposit of this size, so no tolerance comes from the spread over deposits. Each
+//! tolerance was required before the first run of this size. The paper's value of 0.6 for sin φ before dilation was
+//! required too and was not met. The claim uses the prototype's value with the tolerance of a tenth of the size; the
+//! derivation states this.
 
 use super::ELEMENTS;
 use super::collapse::{self, Other};
@@ -12,38 +13,39 @@ use grainbench_harness::claim::Quantity;
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;
 
-/// A silo at the size of the paper.
+/// A silo at the paper's size.
 pub(crate) struct PaperSize {
-    /// Its variant of the scene.
+    /// Variant of the scene.
     pub(crate) variant: &'static str,
-    /// What makes it flow.
+    /// Cause of the flow.
     pub(crate) flow: Flow,
-    /// What it is called in a figure.
+    /// Label in figures.
     pub(crate) label: &'static str,
-    /// Its time step.
+    /// Time step.
     pub(crate) step: Level,
-    /// Packing fraction of the prototype in the first bins of |I₀|.
+    /// Packing fractions of the prototype in the first bins of |I₀|.
     pub(crate) bins: &'static [Cited],
-    /// What is claimed of silos that drain: these strain enough elements for courses along tracers and for curves.
+    /// Claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over the
+    /// inertial number.
     pub(crate) drained: Option<Drained>,
 }
 
-/// What is claimed of a silo of the size of the paper that drains.
+/// Claims on a draining silo at the paper's size.
 pub(crate) struct Drained {
-    /// Packing fraction of strained tracers, in the prototype.
+    /// Packing fraction of strained tracers in the prototype.
     pub(crate) plateau: Cited,
-    /// Largest sin φ before tracers dilate, in the prototype: the .6 that the paper prints is not met (derivation).
+    /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which is not met (derivation).
     pub(crate) onset: Cited,
-    /// Bins of |I₀| that are compared until 14 τ too: the last, of few elements over the slit, by its mean over the whole
-    /// flow where it is not among them.
+    /// Number of bins of |I₀| that are compared up to 14 τ. If the last bin is not among them, its mean over the whole
+    /// flow is compared, because few elements over the slit are in it.
     pub(crate) bins: usize,
-    /// A silo that drains, beside whose curve over |I₀| it is laid, and beside that of all others over |E|.
+    /// Another draining silo, for the curve over |I₀|. If present, all other flows are compared over |E|.
     pub(crate) beside: Option<&'static Other>,
-    /// Flows that figures show beside it.
+    /// Other flows in the figures.
     pub(crate) others: &'static [Other],
 }
 
-/// sin φ read as its tangent, which is what the words of the paper say of μ.
+/// Negative control: sin φ read as its tangent, which is what the paper's definition of μ says.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
 }
@@ -56,18 +58,18 @@ fn elsewhere() -> Control {
     Control::misread("each block beside the stress of another", ensemble::stress_elsewhere)
 }
 
-/// Words that tell its rows from those of a tenth of the size.
+/// Suffix of the quantities, to distinguish them from those at a tenth of the size.
 const SUFFIX: &str = ", size of the paper";
-/// Why a row may be off by what it may.
+/// Reason for the tolerances.
 const TENTH: &str = "what silos of a tenth of the size were allowed from two to four runs of the prototype";
 
-/// Time that the prototype's drains were run to (τ).
+/// Duration of the prototype's draining flows (τ).
 const PROTOTYPE: f64 = 14.0;
 
-/// Why the flow after that is not as the prototype has it.
+/// Reason for the difference from the prototype after that time.
 const STRAINED: &str = "after 14 τ, the end of the prototype, the packing fraction of slow elements is 0.009 to 0.018 lower: \
                         they have a larger strain, and φ is a function of |I₀| only for elements in steady shear";
-/// φ over |I₀| up to a time beside that of the prototype, in every bin that it has.
+/// Claims φ over |I₀| up to a time against the prototype, in each bin of the prototype.
 fn over_inertia(of: Quantity, bins: &'static [Cited], until: f64, control: Control) -> Claim {
     of.equals(bins[0].source(), move |done| {
         let cited = bins.iter().map(|cited| cited.value).enumerate();
@@ -79,13 +81,13 @@ fn over_inertia(of: Quantity, bins: &'static [Cited], until: f64, control: Contr
     .refuses(control)
 }
 
-/// What was asked for.
+/// Returns a tolerance that was required beforehand.
 fn asked(allowed: f64, what: &str) -> Tolerance {
     required(allowed, format!("asked for before: {what}"))
 }
 
 impl PaperSize {
-    /// Its run: some minutes of two cores.
+    /// Returns the run: a few minutes on two cores.
     pub(crate) fn run(&self) -> Run {
         Run::new(self.variant, "dem", self.step.resolution).read_by(ELEMENTS).kept().paper_size()
     }
@@ -94,12 +96,12 @@ impl PaperSize {
         claim(format!("{quantity}{SUFFIX}"), unit).of(self.run())
     }
 
-    /// A claim in which it is known to be off.
+    /// Returns a quantity with a known deviation.
     fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
         claim(format!("{quantity}{SUFFIX}"), unit).of(self.run().known(reason))
     }
 
-    /// Its rows.
+    /// Returns the claims.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let flow = self.flow;
         let angle = |quantity: &str, cited: Cited, allowed: f64, averaged: bool| {
@@ -120,14 +122,14 @@ impl PaperSize {
                 .refuses(tangent()),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
-        // What is pushed flows in few blocks over twenty frames.
+        // Few blocks of a pushed silo flow throughout twenty frames.
         let drained = self.drained.iter();
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
         all.extend(drained.flat_map(|of| self.of_drains(of)));
         all
     }
 
-    /// Rows of a silo that drains.
+    /// Returns the claims on a draining silo.
     fn of_drains(&self, of: &Drained) -> Vec<Claim> {
         let (bins, over_the_slit) = self.bins.split_at(of.bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
@@ -179,7 +181,7 @@ impl PaperSize {
         all
     }
 
-    /// Its figures, where its run is kept or done.
+    /// Returns the figures if the run is stored or can be done.
     pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
         let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
         let mut all = super::figures::all(&done, self.flow, self.bins);

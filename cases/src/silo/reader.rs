@@ -266,7 +266,8 @@ fn is_side(grid: &Grid, cell: usize) -> bool {
     column == 0 || column + 1 == grid.count[0]
 }
 
-/// Returns the element with the mean tensors of a block, over the frames in which it had enough grains.
+/// Returns the element with the mean tensors of a block over some frames. A tensor is missing if the block lacks it in
+/// a frame.
 fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
     let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
     let count = all.len() as f64;
