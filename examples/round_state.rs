@@ -4,8 +4,8 @@
 //! cargo run --release --example round_state exact.state rounded.state [without-springs|at-rest]
 //! ```
 //!
-//! `without-springs` keeps what a scene with `springs = false` reads and halves the size. `at-rest` keeps only positions, in a
-//! quarter of that size.
+//! `without-springs` keeps only what a scene with `springs = false` reads, which is half the size. `at-rest` keeps only
+//! positions, in a quarter of that size.
 
 use grainbench::reports::write_file;
 use grainbench::scene::end_state::{EndState, Springs};

@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The run from another seed.
+/// Runs the case with another random seed.
 fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> Result<Done, Box<dyn Error>> {
     let source = case.source().variant(run.variant).set(key, seed);
     let mut scene = source.scene(&read_grains)?;

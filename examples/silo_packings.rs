@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The run from another deposit.
+/// Runs the case with another deposit.
 fn done(case: &grainbench::cases::Case, run: &Run, state: &Path) -> Result<Done, Box<dyn Error>> {
     let path = format!("{:?}", state.canonicalize()?);
     let source = case.source().variant(run.variant).set("grains.deposit.state.path", &path);

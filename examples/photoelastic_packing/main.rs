@@ -20,12 +20,12 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
 
-/// The seed that the name of a variant ends in; 1 where it has none.
+/// Returns the seed at the end of a variant's name, or 1.
 fn seed(variant: &str) -> &str {
     variant.rsplit_once("seed-").map_or("1", |(_, seed)| seed)
 }
 
-/// The discs of a variant, loose.
+/// Returns the loose scene of a variant.
 fn loose(variant: &str) -> Result<Scene, Box<dyn Error>> {
     let text = include_str!("loose.toml");
     let mut source = SceneSource::from_text("loose.toml", Path::new(""), text);
@@ -35,7 +35,7 @@ fn loose(variant: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(source.set("grains.disc.packed.seed", seed(variant)).scene(&read_grains)?)
 }
 
-/// Discs and walls to the nanometre, with the lower corner of the box at zero.
+/// Rounds discs and walls to the nanometre and moves the lower corner of the box to zero.
 fn rounded(mut packing: Scene) -> Scene {
     let round = |length: f64| (length * 1e9).round() / 1e9;
     let mut corner = [0.0; 2];
@@ -55,7 +55,7 @@ fn rounded(mut packing: Scene) -> Scene {
     packing
 }
 
-/// The discs as a LAMMPS data file, which states the density of a sphere of the same mass.
+/// Returns the discs as a LAMMPS data file, with the density of a sphere of the same mass.
 fn data(packing: &Scene) -> String {
     let [width, height] = walls::size(packing);
     let mut text = format!(
@@ -71,8 +71,8 @@ fn data(packing: &Scene) -> String {
     text
 }
 
-/// The scene of a variant with laws and times of the first packing with the same table, and a packing as its file has
-/// it.
+/// Returns the scene of a variant with a packing from its file. Contact laws and times are those of the first packing
+/// with the same table.
 fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
     let named = ["table", "fifty-elastic"].iter().any(|name| variant.starts_with(name));
     let table = if named { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
@@ -86,14 +86,14 @@ fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn E
     Ok(scene)
 }
 
-/// A variant as the case has it, with its packing.
+/// Returns a variant of the case with its packing.
 fn as_kept(variant: &str) -> Result<Scene, Box<dyn Error>> {
     let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
     let source = if variant == PLAIN { case.source() } else { case.source().variant(variant) };
     Ok(source.scene(&read_grains)?)
 }
 
-/// A variant with its walls as the scene file has them.
+/// Prints a variant with its walls as the scene file has them.
 fn print(variant: &str, data: &str, scene: &Scene) {
     println!("[variants.{variant}]\ngrains.disc.file.path = \"{data}\"");
     for wall in &scene.walls {
@@ -121,7 +121,7 @@ fn print(variant: &str, data: &str, scene: &Scene) {
     println!();
 }
 
-/// A speed in all digits: near its limit a packing goes another way for one unit in the last place.
+/// Returns a speed with all digits, because one unit in the last place can change the path of a packing near its limit.
 fn exact(speed: f64) -> String {
     format!("{:?}", speed + 0.0)
 }

@@ -1,5 +1,6 @@
-//! A dense packing of touching discs: they fly about without friction while the walls come in slowly, as an assembly
-//! that is shaken; when they are jammed they are brought to rest, and the walls open until no disc presses on another.
+//! Preparation of a dense packing of discs in contact. The discs fly without friction while the walls move in slowly,
+//! like a shaken assembly. When they are jammed, they come to rest, and the walls open until no disc presses on
+//! another.
 
 use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
 use grainbench::cases::stage::Stage;
@@ -8,26 +9,26 @@ use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::Scene;
 use std::error::Error;
 
-/// Speed of a disc (m/s) while they fly; it is restored after each stretch, for the walls do work on them.
+/// Speed of a flying disc (m/s). It is restored after each interval, because the walls do work on the discs.
 const SPEED: f64 = 0.3;
-/// How long a stretch is (s), and how many there are at most.
+/// Duration of an interval (s), and the largest number of intervals.
 const STRETCH: f64 = 50.0;
 const STRETCHES: u32 = 500;
-/// Speed of each wall meanwhile over the width of the box (1/s).
+/// Wall speed during the flight, over the width of the box (1/s).
 const RATE: f64 = 5e-6;
-/// Contacts a disc, in the mean over a stretch, at which they count as jammed.
+/// Mean number of contacts per disc during an interval above which the discs count as jammed.
 const JAMMED: f64 = 0.5;
-/// Speed of each wall over the width of the box when the jammed discs are pressed together at rest (1/s).
+/// Wall speed over the width of the box when the walls compress the jammed discs at rest (1/s).
 const PRESS: f64 = 1.6e-4;
-/// Damping α (1/s) there.
+/// Damping α during this compression (1/s).
 const DAMPING: f64 = 5.0;
-/// Mean overlap over mean radius that they are pressed to, and that counts as touching.
+/// Mean overlap over the mean radius: after the compression, and the value that counts as contact without force.
 const PRESSED: f64 = 2e-3;
 const TOUCHING: f64 = 5e-6;
 
-/// The packing of a loose scene.
+/// Prepares the packing of a loose scene.
 pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
-    // Directions as the seeds of a sunflower have them: the first collisions make them any.
+    // Directions by the golden angle; the first collisions randomise them.
     for (number, grain) in scene.grains.iter_mut().enumerate() {
         let angle = number as f64 * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
         grain.velocity = SPEED * Vector3::new(angle.cos(), angle.sin(), 0.0);

@@ -1,5 +1,4 @@
-//! The motion of the walls that is imposed: which strain ratio leads to stage A, and how far the strain of stage B
-//! goes.
+//! Search for the prescribed wall motion: the strain ratio that leads to stage A, and the strain of stage B.
 
 use super::walls::{Course, drive, run, run_elastic, size, watch};
 use grainbench::cases::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
@@ -12,12 +11,12 @@ use std::error::Error;
 const RATIO: f64 = 0.39;
 /// Mean overlap over mean radius at stage A.
 const OVERLAP: f64 = 1e-3;
-/// F_V at stage B over that at stage A.
+/// F_V at stage B over F_V at stage A.
 const GROWTH: f64 = 1.04348;
-/// Strain at which a path is given up.
+/// Strain at which the search gives up a path.
 const FAR: f64 = 0.1;
 
-/// The times (s) of a scene: the walls stop, stage A, the walls stop again, stage B.
+/// Times (s) of a scene: the walls stop, stage A, the walls stop again, stage B.
 #[derive(Clone, Copy)]
 struct Times {
     stop: f64,
@@ -26,39 +25,39 @@ struct Times {
     b: f64,
 }
 
-/// What the walls do, as strains of the box at the start.
+/// Wall motion as strains of the initial box.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Imposed {
-    /// Vertical strain inwards up to stage A.
+    /// Inward vertical strain up to stage A.
     pub(crate) strain: f64,
-    /// Horizontal strain outwards over it.
+    /// Outward horizontal strain over the vertical strain.
     pub(crate) ratio: f64,
-    /// From there to stage B: vertical strain inwards and horizontal strain outwards.
+    /// Inward vertical and outward horizontal strain from stage A to stage B.
     pub(crate) further: f64,
 }
 
-/// Runs a scene for a time (s); what stands there.
+/// Function that runs a scene for a time (s) and returns the final snapshot.
 type Run = fn(&Scene, f64) -> Result<Snapshot, Box<dyn Error>>;
 
-/// How a packing is run and where looking begins. Runs of elastic discs take a thousand times as long, and their walls
-/// go too fast for forces on the way to mean much.
+/// Method of the runs and start of the search. Runs of elastic discs take a thousand times as long, and their walls
+/// move too fast for meaningful forces during the motion.
 struct Manner {
     run: Run,
-    /// The first strain ratio of stage A, in fifths.
+    /// First strain ratio of stage A, in fifths.
     first: i32,
-    /// The first strain after stage A; none where it is read off while the walls move.
+    /// First strain after stage A; `None` if it is read while the walls move.
     further: Option<f64>,
-    /// By how much a strain after stage A that was too small is made larger.
+    /// Factor on a strain after stage A that was too small.
     widen: f64,
-    /// Whether forces fall while all is at rest, so that F_V grows against that of a packing that is left alone as
-    /// long.
+    /// True if forces relax at rest. The growth of F_V is then relative to a packing whose walls stop for the same
+    /// time.
     relaxes: bool,
 }
 
 const SPRINGS: Manner = Manner { run, first: -2, further: None, widen: 1.08, relaxes: false };
 const ELASTIC: Manner = Manner { run: run_elastic, first: 3, further: Some(1e-4), widen: 1.5, relaxes: true };
 
-/// A packing whose walls are to be moved.
+/// A packing and the search for its wall motion.
 pub(crate) struct Search<'s> {
     scene: &'s Scene,
     times: Times,
@@ -66,7 +65,7 @@ pub(crate) struct Search<'s> {
 }
 
 impl<'s> Search<'s> {
-    /// Of a scene with the times of its stages in the motion of its first wall.
+    /// Reads the times of the stages from the motion of the scene's first wall.
     pub(crate) fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
         let (Some([first, second]), Duration::Seconds(b)) =
             (scene.walls.first().map(|wall| &wall.motion.phases[..]), scene.duration)
@@ -79,7 +78,7 @@ impl<'s> Search<'s> {
         Ok(Self { scene, times, manner })
     }
 
-    /// The scene with walls that move so.
+    /// Returns the scene with this wall motion.
     pub(crate) fn driven(&self, imposed: &Imposed) -> Scene {
         let mut scene = self.scene.clone();
         let ([width, height], times) = (size(self.scene), self.times);
@@ -96,13 +95,13 @@ impl<'s> Search<'s> {
         scene
     }
 
-    /// What the walls must do.
+    /// Finds the wall motion.
     pub(crate) fn impose(&self) -> Result<Imposed, Box<dyn Error>> {
         let a = self.to_a()?;
         self.to_b(a)
     }
 
-    /// Stage A at a strain ratio: the strain at which the mean overlap is as it should be.
+    /// Finds stage A at a strain ratio: the strain with the required mean overlap.
     fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(Imposed, Stage)>, Box<dyn Error>> {
         let at = |strain: f64| -> Result<(Imposed, Stage), Box<dyn Error>> {
             let imposed = Imposed { strain, ratio, further: 0.0 };
@@ -132,8 +131,8 @@ impl<'s> Search<'s> {
         Ok(Some(best))
     }
 
-    /// Strain ratios upwards from where the sides come in half as far until F_H/F_V has fallen to what it should be,
-    /// then in between.
+    /// Finds stage A. The strain ratio increases from the first one until F_H/F_V falls below the required value; an
+    /// interpolation between the last two ratios follows.
     fn to_a(&self) -> Result<(Imposed, Stage), Box<dyn Error>> {
         let mut before: Option<(Imposed, Stage)> = None;
         for fifth in self.manner.first..10 {
@@ -174,7 +173,7 @@ impl<'s> Search<'s> {
         Ok(best)
     }
 
-    /// The strain from stage A at which F_V has grown as it should: the first while the walls move, then at rest.
+    /// Finds the strain from stage A at which F_V has the required growth: first while the walls move, then at rest.
     fn to_b(&self, (a, of_a): (Imposed, Stage)) -> Result<Imposed, Box<dyn Error>> {
         let alone =
             if self.manner.relaxes { Stage::of(&(self.manner.run)(&self.driven(&a), self.times.b)?) } else { of_a };
@@ -210,7 +209,7 @@ impl<'s> Search<'s> {
         Ok(Imposed { further: best.0, ..a })
     }
 
-    /// The strain from stage A at which F_V has grown as it should while the walls move.
+    /// Returns the strain from stage A at which F_V has the required growth while the walls move.
     fn on_the_way(&self, a: &Imposed, grown: &dyn Fn(&Stage) -> f64) -> Result<f64, Box<dyn Error>> {
         let times = self.times;
         let mut found = None;

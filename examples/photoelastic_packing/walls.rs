@@ -1,4 +1,4 @@
-//! Four walls around discs: left, right, bottom and top, in this order.
+//! Four walls around discs, in the order left, right, bottom, top.
 
 use grainbench::cases::stage::Stage;
 use grainbench::dem::convention::Convention;
@@ -11,12 +11,12 @@ use grainbench::scene::scene::{Duration, Scene, WallShape};
 use grainbench::scene::solver::{Resolution, Solver};
 use std::error::Error;
 
-/// The time step of discs on springs: the default level of the case.
+/// Time step of discs on springs: the default level of the case.
 const RUNG: Resolution = Resolution::CriticalFraction(0.2);
-/// The grid of elastic discs: the level of the case.
+/// Grid of elastic discs: the level of the case.
 const GRID: Resolution = Resolution::grid(2.0, 3);
 
-/// Speeds between two times (s): of the sides outwards and of top and bottom inwards (m/s).
+/// Wall speeds between two times (s): of the sides outwards, and of top and bottom inwards (m/s).
 pub(crate) struct Course {
     pub(crate) sides: f64,
     pub(crate) ends: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Course {
     pub(crate) to: f64,
 }
 
-/// Lets the walls move so.
+/// Sets the motion of the walls.
 pub(crate) fn drive(scene: &mut Scene, courses: &[Course]) {
     for (number, wall) in scene.walls.iter_mut().enumerate() {
         let velocity = |course: &Course| match number {
@@ -43,7 +43,7 @@ pub(crate) fn drive(scene: &mut Scene, courses: &[Course]) {
     }
 }
 
-/// Width and height of the box (m).
+/// Returns width and height of the box (m).
 pub(crate) fn size(scene: &Scene) -> [f64; 2] {
     let place = |number: usize, axis: usize| match scene.walls[number].shape {
         WallShape::Plane { point, .. } => point[axis],
@@ -52,7 +52,7 @@ pub(crate) fn size(scene: &Scene) -> [f64; 2] {
     [place(1, 0) - place(0, 0), place(3, 1) - place(2, 1)]
 }
 
-/// Part of the box that the discs fill.
+/// Returns the packing fraction of the discs in the box.
 pub(crate) fn fraction(scene: &Scene) -> f64 {
     let [width, height] = size(scene);
     scene.grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum::<f64>() / (width * height)
@@ -65,7 +65,7 @@ pub(crate) fn watch(
     every: f64,
     mut go_on: impl FnMut(&Snapshot) -> bool,
 ) -> Result<Snapshot, Box<dyn Error>> {
-    // That of a whole run of the scene, for which steps are fitted into its duration.
+    // Time step of a complete run of the scene, whose duration is a whole number of steps.
     let (time_step, _) = RUNG.steps(scene)?;
     let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(scene, time_step)?;
     let (steps, stride) = ((time / time_step).round() as u64, (every / time_step).round().max(1.0) as u64);
@@ -80,12 +80,12 @@ pub(crate) fn watch(
     Ok(snapshot)
 }
 
-/// Runs for a time (s).
+/// Runs for a time (s) and returns the final state.
 pub(crate) fn run(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
     watch(scene, time, time, |_| true)
 }
 
-/// Runs elastic discs for a time (s). Steps are the same for all times that a whole number of them fits into.
+/// Runs elastic discs for a time (s). The time step is the same for all times that are whole multiples of it.
 pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
     let mut scene = scene.clone();
     scene.duration = Duration::Seconds(time);
@@ -96,7 +96,7 @@ pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn 
     Ok(last)
 }
 
-/// The scene with discs and walls where a run left them; contacts have forgotten.
+/// Continues a scene from the discs and walls at the end of a run, without contact history.
 pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
     for (grain, state) in scene.grains.iter_mut().zip(&snapshot.grains) {
         (grain.position, grain.velocity, grain.spin) = (state.position, state.velocity, state.spin);
@@ -107,7 +107,7 @@ pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
     }
 }
 
-/// Brings all discs to rest.
+/// Sets all discs to rest.
 pub(crate) fn stop(scene: &mut Scene) {
     for grain in &mut scene.grains {
         (grain.velocity, grain.spin) = (Vector3::zeros(), Vector3::zeros());
