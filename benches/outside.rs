@@ -1,6 +1,7 @@
-//! What a run through a manifest costs beside the program's own: a program that is started for every run, and one that stays.
+//! Overhead of external runs through a manifest: for a program that starts for each run, and for a program that keeps
+//! running.
 //!
-//! The program writes two samples of a disc, and takes as long by itself as the first line says.
+//! The program writes two samples of a disc. The first printed line gives its own run time.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark")]
 
@@ -42,7 +43,7 @@ laws = ["linear"]
 grains = { path = "grains.csv", format = "csv" }
 "#;
 
-/// Two samples into the folder.
+/// Shell function that writes two samples to the output folder.
 const LEAVE: &str = r#"leave() { printf 'step,id,x,y,z,vx,vy,vz\n0,1,0,0.5,0,0,0,0\n100,1,0,0.4,0,0,-1,0\n' > "$1/grains.csv"; }
 "#;
 const ONCE: &str = "leave \"$2\"\n";

@@ -1,8 +1,8 @@
-//! The least that discs on undamped springs need, written by hand: what the kernel is held to where a scene calls for
-//! nothing more. The same method and nothing else: a list of neighbours with a skin in rows, forces from the overlap,
-//! kick and drift, and how far the fastest disc has moved from where it was listed.
+//! Minimal hand-written code for discs on undamped springs, the reference for the kernel of a scene without other
+//! effects. It uses the same method and nothing else: a neighbour list with a skin in rows, forces from the overlap,
+//! kick and drift, and the largest displacement since the list was built.
 
-/// Discs of one radius, mass and stiffness.
+/// Discs with the same stiffness.
 pub(crate) struct Minimal {
     position: Vec<[f64; 2]>,
     velocity: Vec<[f64; 2]>,
@@ -10,20 +10,20 @@ pub(crate) struct Minimal {
     radius: Vec<f64>,
     inverse_mass: Vec<f64>,
     reference: Vec<[f64; 2]>,
-    /// Rows of the list: neighbours of disc k are `partner[start[k]..start[k + 1]]`.
+    /// Rows of the list: the neighbours of disc k are `partner[start[k]..start[k + 1]]`.
     start: Vec<u32>,
     partner: Vec<u32>,
-    /// Materials by disc, and the stiffness between two of them: any scene has a table of pairs.
+    /// Material of each disc, and the stiffness of each pair of materials, as in every scene.
     material: Vec<u16>,
     stiffness: Vec<f64>,
-    /// Contacts evaluated.
+    /// Number of contacts evaluated.
     pub(crate) touching: u64,
-    /// Farthest that any disc is from where it was listed, squared.
+    /// Largest squared displacement of a disc since the list was built.
     pub(crate) farthest: f64,
 }
 
 impl Minimal {
-    /// Discs with a list of those nearer than `skin` to touching.
+    /// Builds the discs with a list of pairs whose gap is below `skin`.
     pub(crate) fn new(discs: &[([f64; 2], f64, f64)], stiffness: f64, skin: f64) -> Self {
         let (mut start, mut partner) = (vec![0], Vec::new());
         for (row, (a, radius, _)) in discs.iter().enumerate() {
