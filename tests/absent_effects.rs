@@ -1,7 +1,7 @@
-//! An effect that is absent costs next to nothing. It is no part of the kernel that is picked, which the kernel's type
-//! says; and instructions of the kernel for undamped, frictionless discs are counted against a loop written by hand
-//! that knows nothing else. Valgrind counts them where it is installed, and counts do not depend on what else the
-//! machine does: no time is asked for.
+//! An absent effect costs almost nothing. It is not part of the selected kernel, as the kernel's type shows. The
+//! instructions of the kernel for undamped, frictionless discs are compared with those of a hand-written loop without
+//! any other effect. Valgrind counts them if it is installed. Counts do not depend on the load of the machine, and no
+//! test measures time.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -18,16 +18,17 @@ use minimal::Minimal;
 use std::path::Path;
 use std::process::Command;
 
-/// Says which loop a process under valgrind runs, and for how many steps.
+/// Environment variable with the loop and the number of steps for a process under valgrind.
 const TASK: &str = "GRAINBENCH_COUNTED_LOOP";
 const SIDE: u32 = 24;
 const STEP: f64 = 0.05;
-/// Instructions of the kernel over those of the loop by hand.
+/// Largest ratio of the kernel's instructions to those of the hand-written loop.
 const ALLOWED: f64 = 1.02;
-/// Instructions of dense shear with friction that does nothing over those without it, at least.
+/// Smallest ratio of instructions of dense shear with friction that has no effect to those without friction.
 const FRICTION: f64 = 1.3;
 
-/// A square lattice of overlapping discs that starts to come apart at its rim: the list is never built anew.
+/// Returns a square lattice of overlapping discs that starts to expand at its rim, without rebuilding the neighbour
+/// list.
 fn lattice() -> Scene {
     let text = format!(
         "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\
@@ -39,14 +40,14 @@ fn lattice() -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).unwrap()
 }
 
-/// Dense shear of ten thousand discs without friction.
+/// Returns dense shear of ten thousand discs without friction.
 fn dense_shear() -> Scene {
     let mut scene = registry::by_name("plane-shear").unwrap().variant("plain").unwrap();
     scene.change_laws(|law| (law.friction, law.tangential_damping) = (0.0, 0.0));
     scene
 }
 
-/// What runs under valgrind; nothing when the test is run as a test.
+/// Body of the process under valgrind. It does nothing as an ordinary test.
 #[test]
 fn counted_loop() {
     let Ok(task) = std::env::var(TASK) else { return };
@@ -70,7 +71,7 @@ fn counted_loop() {
     assert_eq!(simulation.counts().neighbour_builds, 1);
 }
 
-/// Instructions of so many steps.
+/// Counts the instructions of a number of steps.
 fn instructions(name: &str, steps: u64) -> Option<f64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -85,8 +86,8 @@ fn instructions(name: &str, steps: u64) -> Option<f64> {
     line.split(':').nth(1)?.trim().parse().ok()
 }
 
-/// Instructions a step: of many steps less those of few, so that setting up cancels. None where valgrind is absent,
-/// which it must not be where every change is checked.
+/// Returns the instructions per step: the difference between many and few steps, so that the set-up cancels. `None` if
+/// valgrind is absent, which is an error in CI.
 fn a_step(name: &str, [few, many]: [u64; 2]) -> Option<f64> {
     let counted = instructions(name, many).zip(instructions(name, few));
     assert!(counted.is_some() || std::env::var_os("CI").is_none(), "valgrind is not installed: nothing was counted");
@@ -101,11 +102,11 @@ fn what_is_absent_costs_next_to_nothing() {
     let idle = a_step("with-idle-friction", STEPS).unwrap();
     println!("instructions a step: by hand {by_hand}, kernel {kernel}, friction that does nothing {idle}");
     assert!(kernel <= ALLOWED * by_hand, "the kernel takes {kernel} instructions a step, a loop by hand {by_hand}");
-    // The control: where an effect is compiled in, the count shows it.
+    // Control: if an effect is compiled in, the count shows it.
     assert!(idle > 1.1 * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
 }
 
-/// With friction taken out of dense shear a step takes fewer instructions than with friction that does nothing.
+/// A step of dense shear without friction takes fewer instructions than with friction that has no effect.
 #[test]
 fn dense_shear_without_friction_takes_fewer_instructions() {
     const STEPS: [u64; 2] = [2, 12];
@@ -115,8 +116,7 @@ fn dense_shear_without_friction_takes_fewer_instructions() {
     assert!(idle >= FRICTION * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
 }
 
-/// The kernel that is picked has no stage for friction where there is none, and one where there is, even if it does
-/// nothing.
+/// The selected kernel has a friction stage if and only if the scene has friction, even if it has no effect.
 #[test]
 fn what_is_absent_is_no_part_of_the_kernel() {
     let kernel = |scene: &Scene| Dem::new(Convention::DEFAULT).start(scene, 1e-4).unwrap().layout();

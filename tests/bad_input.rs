@@ -1,5 +1,5 @@
-//! What a user can type wrong and a file can hold wrong: each an error that says where, what was expected and what
-//! was found; exit code 2, and nothing left behind.
+//! Errors in the user's input and in files. Each error gives place, expected input and found input, has exit code 2 and
+//! leaves no files.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use std::path::Path;
 
-/// Two discs on a floor, the upper one not yet touching.
+/// Scene of two discs on a floor, the upper one not yet in contact.
 const SCENE: &str = r#"title = "Two discs on a floor"
 dimension = 2
 gravity = [0.0, -9.8]
@@ -46,7 +46,7 @@ upper = { grain = "upper" }
 contacts.rock.friction = 0.1
 "#;
 
-/// The message about input in a directory, after a look that the run was refused and left nothing.
+/// Returns the error message for wrong input in a directory, after checking that the run failed without leaving files.
 fn refusal(directory: &Path, arguments: &[&str]) -> String {
     let before = files(directory);
     let answer = grainbench(directory, arguments);
@@ -57,18 +57,18 @@ fn refusal(directory: &Path, arguments: &[&str]) -> String {
     answer.err
 }
 
-/// The message about a scene file, simulated with further options.
+/// Returns the error message for a scene file that is simulated with further options.
 fn refused_with(scene: &[u8], options: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
     let plain = ["simulate", "scene.toml", "--solver", "dem", "--out", "out"];
     let err = refusal(directory.path(), &[&plain, options].concat());
-    // Names that are known stand one a line below it.
+    // Known names follow below the message, one a line.
     assert_eq!(err.lines().filter(|line| !line.starts_with("  ")).count(), 1, "{err}");
     err
 }
 
-/// The scene above with one piece of its text replaced.
+/// Returns the scene above with one part of its text replaced.
 fn edited(from: &str, to: &str) -> String {
     assert!(SCENE.contains(from), "{from}");
     SCENE.replacen(from, to, 1)
@@ -78,7 +78,7 @@ fn refused(from: &str, to: &str) -> String {
     refused_with(edited(from, to).as_bytes(), &[])
 }
 
-/// Names of all cases and solvers, which are not this test's business.
+/// Removes the names of all cases and solvers, which this test does not depend on.
 fn without_registries(message: &str) -> String {
     let lines = |names: Vec<String>| names.iter().map(|name| format!("  {name}\n")).collect::<String>();
     let cases = lines(CASES.iter().map(|case| case.name.to_owned()).collect());
@@ -93,7 +93,7 @@ fn the_scene_itself_is_fine() {
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
 }
 
-/// A test for each edit of the scene: name, what is replaced, by what.
+/// Defines a test for each edit of the scene: name, replaced text, new text.
 macro_rules! refused_edits {
     ($($name:ident: $from:expr => $to:expr;)*) => {
         $(#[test]
@@ -151,7 +151,7 @@ refused_edits! {
                                packed = { seed = 1, radii = [[0.1, 112]] }\n\n[materials.rock]";
 }
 
-/// Values of another shape than they should have, in place of the floor, of a grain's place or of a probe: all messages.
+/// Error messages for values of a wrong shape for the floor, a grain's position or a probe.
 #[test]
 fn a_value_of_another_shape_is_shown_the_shape() {
     const PLANE: &str = "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }";
@@ -202,7 +202,7 @@ fn a_value_of_another_shape_is_shown_the_shape() {
     insta::assert_snapshot!(told);
 }
 
-/// Parts of a motion that are no motion, and what driven grains are not driven by: all messages.
+/// Error messages for invalid motions of walls and of grains with prescribed motion.
 #[test]
 fn motions_that_are_none() {
     const PLANE: &str = "plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }";
@@ -326,7 +326,7 @@ fn step_above_the_critical_one_is_taken_when_it_is_meant() {
         "--out",
         "out",
     ];
-    // The discs fall freely for the first ten milliseconds: no spring is there to be unstable.
+    // The discs fall freely for the first ten milliseconds, so no spring can be unstable.
     let answer =
         grainbench(directory.path(), &[&arguments[..], &["--set", "grains.lower.position=[1.0, 0.5]"]].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.err);
@@ -352,7 +352,7 @@ fn a_run_that_blows_up_says_when_where_why_and_what_would_have_been_stable() {
     let long = ["--set", "duration=100", "--set", "grains.upper.position=[0.0, 0.295]"];
     let answer = grainbench(directory.path(), &[&arguments[..], &long].concat());
     assert_eq!((answer.code, answer.out.as_str()), (Some(1), ""));
-    // What there is of the run, and no record of one.
+    // The run leaves its partial output, but no record.
     let left = files(directory.path());
     assert!(left.contains(&"out/broken.json".to_owned()) && left.contains(&"out/series.csv".to_owned()), "{left:?}");
     assert!(!left.contains(&"out/record.json".to_owned()), "{left:?}");
@@ -403,9 +403,9 @@ fn output_directories_that_cannot_be_written() {
     std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
     std::fs::write(directory.path().join("file"), "").unwrap();
     let mut messages = String::new();
-    // A million seconds: the refusal comes before the run, or this test never ends.
+    // The error must come before this run of a million seconds, otherwise the test would never end.
     let simulate = ["simulate", "scene.toml", "--solver", "dem", "--set", "duration=1000000"];
-    // Permissions do not stop a superuser; a file in the way and a system's own directory stop everybody.
+    // Permissions do not stop a superuser. A file in the way and a directory of the system stop every user.
     for out in ["file", "file/deep/er", "/proc/grainbench/deep"] {
         messages += &refusal(directory.path(), &[&simulate[..], &["--out", out]].concat());
         messages += &refusal(directory.path(), &["run", "squash", "--out", out]);
@@ -495,7 +495,7 @@ fn checkpoints() {
     insta::assert_snapshot!("checkpoints", shown);
 }
 
-/// How finely another kind of solver works is no option of this one.
+/// Resolution options of another kind of solver are errors.
 #[test]
 fn options_of_other_solvers() {
     let mut told = String::new();

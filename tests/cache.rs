@@ -1,4 +1,4 @@
-//! The cache of finished runs: what comes from it is what would have been done, and nothing else comes from it.
+//! The cache of finished runs: a result from it equals the result of a run, and it returns no other results.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 mod common;
@@ -8,20 +8,20 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Half a second of runs, of points and of grains.
+/// Runs of half a second in total, with points and with grains.
 const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
 
-/// The program with a cache of its own.
+/// Returns the program with a separate cache.
 fn program(directory: &Path, out: &str) -> Command {
     let mut command = common::program();
     command.env("GRAINBENCH_CACHE", directory.join("cache")).current_dir(directory).args(RUN).args(["--out", out]);
-    // Other people's programs are not kept, and start in their own time.
+    // Runs of external solvers are not cached, and their start takes time.
     command.envs([("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")]);
     command.stdin(Stdio::null());
     command
 }
 
-/// Exit code, and how many runs came from the cache, by the report and by its page.
+/// Returns the exit code and the number of runs from the cache, from the report and its page.
 fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u64) {
     let code = command.stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
     let results = fs::read_to_string(directory.join(out).join("results.json")).unwrap();
@@ -49,17 +49,17 @@ fn what_was_finished_is_taken_and_says_so() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
-    // What took too little to be kept may take longer another time.
+    // A run that was too short for the cache may take longer the next time.
     let kept = entries(here).len() as u64;
     let (code, again) = taken(&mut program(here, "second"), here, "second");
     assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
     assert_eq!(again, kept, "each is taken once");
     assert!(again > 5, "{again}");
-    // Asked for anew, or without a cache: none is taken.
+    // With `--fresh`, or without a cache, no run comes from it.
     assert_eq!(taken(program(here, "fresh").arg("--fresh"), here, "fresh"), (Some(0), 0));
     assert_eq!(taken(program(here, "off").env("GRAINBENCH_CACHE", "off"), here, "off"), (Some(0), 0));
     assert_eq!(rows(here, "fresh"), rows(here, "off"));
-    // Of another path of the loops none is taken; the bits are the same.
+    // Runs of another processor path do not come from the cache. The results have the same bits.
     let portable = taken(program(here, "portable").env("GRAINBENCH_PROCESSOR", "portable"), here, "portable");
     assert_eq!((portable, rows(here, "portable")), ((Some(0), 0), rows(here, "first")));
 }
@@ -95,7 +95,7 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
     assert_eq!(spoil(&older), (Some(0), 0), "an older format");
     let of_next = |at: usize, _: &[u8]| whole[(at + 1) % whole.len()].1.clone();
     assert_eq!(spoil(&of_next), (Some(0), 0), "the run of another name");
-    // What was done again stands there whole.
+    // The repeated runs are cached again.
     let (code, again) = taken(&mut program(here, "last"), here, "last");
     assert!(code == Some(0) && 2 * again > count, "{again} of {count}");
 }
@@ -113,7 +113,7 @@ fn two_at_once_share_it() {
     assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
 }
 
-/// Ctrl-C at ten moments: what was finished is kept, and in the end nothing is missing.
+/// Ctrl-C at ten times: finished runs are kept, and at the end nothing is missing.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_goes_on_from_what_was_finished() {
@@ -126,11 +126,11 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
     for moment in 0..10 {
         let child = program(here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(20).max(long.mul_f64(f64::from(moment) / 10.0)));
-        // It may have ended by itself.
+        // The process may have ended already.
         Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
         let ended = child.wait_with_output().unwrap();
         let said = String::from_utf8(ended.stderr).unwrap();
-        // Before it listens a signal ends it as any program.
+        // Before its handler is installed, a signal ends the process as any program.
         let told = said.contains("the next run goes on from the runs that were");
         assert!(ended.status.code() != Some(1) || told, "{said}");
         let now = if here.join("cache").exists() { entries(here).len() } else { 0 };

@@ -1,5 +1,5 @@
-//! Plans as a user has them: what is collected is what would have been done here; whatever is killed, cut off or full, nothing is
-//! lost and nothing is done twice; what is no plan is refused.
+//! Plans as a user has them. The report of a plan equals the report of its command. After a kill, a truncated file or a
+//! full disk, no result is lost and no task is done twice. Invalid plans are rejected.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![cfg(unix)]
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// A grid of two factors, by two solvers, with a claim of the case and a quantity of its own.
+/// Sweep of two factors by two solvers, with a claim of the case and a quantity of its own.
 const SWEEP: &str = "title = 'Slopes'
 scene = 'incline-disc/60deg-mu.3'
 [factors]
@@ -37,7 +37,7 @@ levels = ['dt=.1', 'dt=.05']
 solver = 'rigid'
 levels = ['substeps=8']
 ";
-/// Its points.
+/// Number of points of the sweep.
 const POINTS: usize = 45;
 
 fn ok(answer: &Answer) -> &Answer {
@@ -45,7 +45,7 @@ fn ok(answer: &Answer) -> &Answer {
     answer
 }
 
-/// A folder with the sweep, planned.
+/// Returns a folder with the planned sweep.
 fn planned() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
@@ -53,13 +53,13 @@ fn planned() -> tempfile::TempDir {
     directory
 }
 
-/// A table without times.
+/// Returns the rows of a table without times.
 fn rows(file: &Path) -> Vec<String> {
     let text = fs::read_to_string(file).unwrap();
     let mut table = text.lines();
     let head = table.next().unwrap();
     let times = head.split(',').position(|name| name == "wall_seconds").unwrap();
-    // Of these tables it is the last column.
+    // In these tables, the times are the last column.
     assert_eq!(times + 1, head.split(',').count());
     table.map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect()
 }
@@ -68,12 +68,12 @@ fn json(file: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
 }
 
-/// The number that `status` tells.
+/// Returns the output of `status` as JSON.
 fn status(directory: &Path, plan: &str) -> Value {
     serde_json::from_str(&ok(&grainbench(directory, &["status", plan, "--json"])).out).unwrap()
 }
 
-/// Ids of all lines of all results.
+/// Returns the ids of all lines of all results.
 fn done(plan: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for entry in fs::read_dir(plan.join("results")).unwrap() {
@@ -84,7 +84,7 @@ fn done(plan: &Path) -> Vec<String> {
     found
 }
 
-/// Every key of a report but those of times.
+/// Removes the keys of times from a report.
 fn without_times(mut value: Value) -> Value {
     fn strip(value: &mut Value) {
         match value {
@@ -106,7 +106,8 @@ fn without_times(mut value: Value) -> Value {
     value
 }
 
-/// What is collected is what the command itself leaves: rows, controls, figures, what runs counted, points, limits.
+/// The report of a plan equals the report of its command: results, controls, figures, counts of runs, points and
+/// limits.
 #[test]
 fn a_collected_plan_is_the_report_of_its_command() {
     let directory = tempfile::tempdir().unwrap();
@@ -163,7 +164,7 @@ fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
         .sum();
     assert_eq!(chunks, POINTS);
     assert_eq!(done(&here.join("p")).len(), POINTS);
-    // Another division finds all of it finished.
+    // Another division into shards finds all tasks finished.
     assert!(ok(&grainbench(here, &["work", "p", "--chunk", "1/1"])).out.contains("45 were finished, 0 done now"));
     ok(&grainbench(here, &["collect", "p"]));
     fs::rename(here.join("p"), here.join("first")).unwrap();
@@ -176,17 +177,17 @@ fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
     for name in ["index.html", "rows.parquet", "figures/map.svg", "figures/work.svg"] {
         assert!(report.join(name).is_file(), "{name}");
     }
-    // A disc rolls or slips as it should, by both methods: springs of the case are stiff enough.
+    // A disc rolls or slips as expected by both methods, because the springs of the case are stiff enough.
     let results = json(&report.join("results.json"));
     let verdicts = results["verdicts"].as_array().unwrap();
     let of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
     assert!(of("pass") > 35 && of("pass") + of("fail") == POINTS, "{} {}", of("pass"), of("fail"));
-    // What has no `allowed` is told and not judged; sin θ is what a disc without friction reaches.
+    // A quantity without `allowed` is reported without a verdict. sin θ is the value for a disc without friction.
     let told: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
     assert!(told.len() == POINTS && told.iter().all(|row| row["value"].as_f64() < row["expected"].as_f64()));
 }
 
-/// Friction that the scene has otherwise is another task and another answer.
+/// Another friction value in the scene is another task with another result.
 #[test]
 fn another_number_is_another_task() {
     let directory = planned();
@@ -203,12 +204,12 @@ fn another_number_is_another_task() {
     assert!(ok(&grainbench(here, &["work", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
 }
 
-/// Runs of a sweep are those of the cache: what it has is not run again, and what was run is there for others.
+/// The runs of a sweep use the cache: cached runs are not repeated, and new runs are cached.
 #[test]
 fn a_sweep_shares_the_cache_of_runs() {
     let directory = planned();
     let here = directory.path();
-    // Long enough to be kept.
+    // Long enough to be cached.
     fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
     let work = |plan: &str, cache: &str| {
         ok(&grainbench(here, &["plan", "sweep.toml", "--out", plan]));
@@ -233,7 +234,7 @@ fn a_sweep_shares_the_cache_of_runs() {
     assert_eq!(times("p1"), times("p2"), "a run that is taken tells the time that it took when it was done");
 }
 
-/// A solver that breaks, and one that cannot express the scene, are results that have a type; a report says so.
+/// A crash of a solver and an unsupported scene are results with a type, which the report shows.
 #[test]
 fn failures_keep_their_type() {
     let directory = tempfile::tempdir().unwrap();
@@ -254,18 +255,18 @@ fn failures_keep_their_type() {
     let ended: Vec<&str> =
         results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert_eq!(ended, ["broken", "unsupported"], "{results}");
-    // What failed is finished, unless it is asked for again.
+    // A failed task counts as finished, unless it is requested again.
     assert!(ok(&grainbench(here, &["work", "p"])).out.contains("3 were finished, 0 done now"));
     assert!(ok(&grainbench(here, &["work", "p", "--again"])).out.contains("2 done now, 2 of them failed"));
 }
 
-/// Workers that are killed, after as many results as the lot says and a moment, and lines that are cut off: what is left is done,
-/// and nothing twice.
+/// Workers are killed after a random number of results and a short time, and lines are truncated. The remaining tasks
+/// are then done, and none twice.
 #[test]
 fn killed_workers_lose_nothing_and_do_nothing_twice() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    // Two hundred tasks of some milliseconds.
+    // Two hundred tasks of a few milliseconds.
     let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
     fs::write(here.join("sweep.toml"), sweep).unwrap();
     ok(&grainbench(here, &["plan", "sweep.toml", "--out", "whole"]));
@@ -296,7 +297,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
         }
         at_work += usize::from(results() > before);
         if round % 3 == 0 {
-            // The last line of one of them was not whole.
+            // Truncates the last line of one of the result files.
             let cut = fs::read_dir(here.join("p/results")).unwrap().map(|entry| entry.unwrap().path()).max();
             if let Some(path) = cut {
                 let bytes = fs::read(&path).unwrap();
@@ -321,12 +322,12 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
 }
 
-/// A disk that is full ends the work with what was finished; when there is room the rest is done.
+/// A full disk ends the run and keeps the finished results. The rest is done when there is space again.
 #[test]
 fn a_full_disk_loses_nothing() {
     let directory = planned();
     let here = directory.path();
-    // Files of this process may have four kilobytes: some ten results.
+    // Files of this process are limited to four kilobytes: about ten results.
     let full = std::process::Command::new("sh")
         .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
         .env("GRAINBENCH_CACHE", "off")
@@ -342,7 +343,7 @@ fn a_full_disk_loses_nothing() {
     assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
 }
 
-/// Two workers at one plan share it.
+/// Concurrent workers share a plan.
 #[test]
 fn two_at_once_do_each_task_once() {
     let directory = planned();
@@ -355,7 +356,7 @@ fn two_at_once_do_each_task_once() {
     assert_eq!((ids.len(), ids.iter().collect::<BTreeSet<_>>().len()), (POINTS, POINTS));
 }
 
-/// What is no plan, in every way that a file can be wrong.
+/// Rejects invalid plans, for each kind of error in a file.
 #[test]
 fn what_is_no_plan_is_refused() {
     let directory = planned();
@@ -403,7 +404,7 @@ fn what_is_no_plan_is_refused() {
         assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
     }
     fs::write(&whole[0].0, head).unwrap();
-    // Results of others are none of ours.
+    // Foreign files among the results are ignored.
     for (name, text) in
         [("a.log", &b""[..]), ("b.log", b"hello\n"), ("c.log", b"grainbench-results 1 {}\n\xff\n"), ("d.txt", b"x")]
     {
@@ -414,7 +415,7 @@ fn what_is_no_plan_is_refused() {
     ok(&grainbench(here, &["collect", "p"]));
     assert_eq!(status(here, "p")["damaged"], 2);
     assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
-    // A plan is left where nothing else is.
+    // A plan is written only to an empty folder.
     fs::create_dir(here.join("full")).unwrap();
     fs::write(here.join("full/notes"), "").unwrap();
     let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
@@ -424,7 +425,7 @@ fn what_is_no_plan_is_refused() {
     }
 }
 
-/// What is no sweep, each with the key that is wrong.
+/// Rejects invalid sweeps and names the wrong key.
 #[test]
 fn what_is_no_sweep_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -462,7 +463,7 @@ fn what_is_no_sweep_is_refused() {
         ("[factors]", "design = 'random'\npoints = 0\n[factors]"),
     ] {
         assert!(SWEEP.contains(from), "{from}");
-        // Tables that a line would fall into come after it.
+        // TOML tables that would capture a line come after it.
         let text = if ["map", "line", "repetitions"].iter().any(|key| to.starts_with(key)) {
             format!("{}\n{SWEEP}", to.replace("\n[set]", ""))
         } else {
@@ -481,7 +482,7 @@ fn what_is_no_sweep_is_refused() {
     insta::assert_snapshot!("campaign_sweep_refused", told);
 }
 
-/// Another's program, by its manifest, at every point.
+/// An external solver with a manifest takes part in a sweep at each point.
 #[test]
 fn a_program_by_its_manifest_takes_part() {
     let directory = tempfile::tempdir().unwrap();
@@ -509,7 +510,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     let here = directory.path();
     ok(&grainbench(here, &["work", "p"]));
     ok(&grainbench(here, &["collect", "p", "--out", "new"]));
-    // An earlier commit, at which a row failed and a run took a step less.
+    // Results of an earlier commit, with a failed claim and a run of one step less.
     let mut old = json(&here.join("new/results.json"));
     old["verdicts"][0]["verdict"] = "fail".into();
     let steps = old["points"][0]["steps"].as_u64().unwrap();
@@ -529,7 +530,8 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     }
 }
 
-/// Programs of Slurm by shell scripts: what they were asked stands in a file each, and `broken` makes `squeue` fail.
+/// Replaces the programs of Slurm by shell scripts. Each writes its arguments to a file, and the file `broken` makes
+/// `squeue` fail.
 fn fake_slurm(directory: &Path) -> String {
     let bin = directory.join("bin");
     fs::create_dir(&bin).unwrap();
@@ -545,7 +547,8 @@ fn fake_slurm(directory: &Path) -> String {
     format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
 }
 
-/// The array is as large as the site lets it be, and what is submitted again is what is missing, not queued and nobody's.
+/// The array has at most the size that the site allows. A resubmission contains only missing shards that are neither
+/// queued nor running.
 #[test]
 fn slurm_is_asked_for_what_is_missing() {
     let directory = planned();
@@ -568,13 +571,13 @@ fn slurm_is_asked_for_what_is_missing() {
     assert!(answer.code == Some(1) && answer.err.contains("squeue failed") && asked() == 0, "{}", answer.err);
     fs::remove_file(here.join("broken")).unwrap();
     let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
-    // Indexes are below MaxArraySize.
+    // Array indices are below MaxArraySize.
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: chunks 1-3 of 3\n"), "{}", answer.err);
     let told = fs::read_to_string(here.join("sbatch.txt")).unwrap();
     assert!(told.contains("--partition=short --time=5") && told.contains("p/slurm/submit-1.sh"), "{told}");
     let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
-    // Once submitted it is not submitted again by chance.
+    // A second submission needs `--resubmit`.
     assert!(ask(&submit).code == Some(2) && asked() == 1);
     let again = [&submit[..], &["--resubmit"]].concat();
     fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
@@ -595,13 +598,13 @@ fn slurm_is_asked_for_what_is_missing() {
     fs::remove_file(here.join("broken")).unwrap();
     ok(&ask(&["work", "p"]));
     assert!(ask(&again).out.starts_with("nothing is missing"));
-    // What is timed has its node to itself.
+    // A timing run has exclusive use of its node.
     ok(&ask(&["plan", "cost", "collision", "--solver=dem", "--out", "c"]));
     ok(&ask(&["work", "c", "--on", "slurm"]));
     let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
     assert_eq!(ask(&["work", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
-    // A script that starts no worker submits nothing that is not one.
+    // A reply without a job number is an error.
     fs::write(here.join("number"), "Submitted").unwrap();
     ok(&ask(&["plan", "sweep.toml", "--out", "q"]));
     let answer = ask(&["work", "q", "--on", "slurm"]);

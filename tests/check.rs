@@ -1,4 +1,4 @@
-//! `check` and `compare` on what the programs themselves wrote, and on what cannot be judged.
+//! `check` and `compare` on output of the external solvers, and on output without a possible verdict.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ fn data(name: &str) -> String {
     path.display().to_string()
 }
 
-/// Exit code and rows of `check` on a stored dump.
+/// Returns the exit code and the results of `check` on a stored dump.
 fn check(case: &str, dump: &str, more: &[&str]) -> (i32, Vec<Value>) {
     let directory = tempfile::tempdir().unwrap();
     let dump = data(dump);
@@ -59,7 +59,7 @@ fn half_the_friction_is_red() {
     assert_eq!((code, count(&rows, "fail")), (1, 6));
 }
 
-/// The walls of a released LAMMPS, from its output alone: friction off by parts in ten thousand, or NaN.
+/// Walls of a released LAMMPS, from its output alone: friction is wrong by parts in ten thousand, or NaN.
 #[test]
 fn a_released_defect_is_red() {
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-incline.dump.gz", &[]);
@@ -73,7 +73,7 @@ fn a_released_defect_is_red() {
     assert!(answer.err.contains(":14:51: expected a finite number in the column `fx`, found `-nan`"), "{}", answer.err);
 }
 
-/// The same defect where a grain meets the wall at an angle; and its other walls, which are right.
+/// The same defect for an oblique impact on the wall. The other walls of this LAMMPS are right.
 #[test]
 fn a_released_defect_is_red_in_an_oblique_impact_too() {
     for (dump, code, red) in [
@@ -83,12 +83,12 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
     ] {
         let (found, rows) = check("oblique-impact/damped", dump, &[]);
         assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 11), "{dump}");
-        // Our solvers, and the stored runs of both programs; exact answers to damped impacts hang on the dashpot's
-        // convention.
+        // Our solvers, and the stored runs of both external solvers. Exact solutions of damped impacts depend on the
+        // dashpot's convention.
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
         assert_eq!(stored.count(), 5, "{dump}");
     }
-    // 3.8878 m/s along the wall where LAMMPS itself has 3.1267 m/s.
+    // The velocity along the wall is 3.8878 m/s; LAMMPS itself has 3.1267 m/s.
     let (_, rows) = check("oblique-impact/damped", "lammps-2025-oblique.dump.gz", &[]);
     let of_stored = |row: &&Value| row["quantity"].as_str().unwrap().contains("stored samples");
     let along =
@@ -106,17 +106,17 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
 fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let log = data("liggghts-backspin.log");
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
-    // Conventions of damping differ by more than a twentieth in the speeds of this impact: those rows are amber.
+    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "2e-4"]);
-    // Conventions of damping differ by more than a twentieth in the speeds of this impact: those rows are amber.
+    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
-    // Another step is another motion.
+    // Another time step gives another motion.
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "3e-4"]);
     assert!(code == 1 && count(&rows, "fail") > 2);
 }
 
-/// A table with names of its own.
+/// A table with its own column names is compared too.
 #[test]
 fn a_table_is_judged_too() {
     let directory = tempfile::tempdir().unwrap();
@@ -133,12 +133,12 @@ fn a_table_is_judged_too() {
     let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
     let rows = results["verdicts"].as_array().unwrap();
     let of = |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
-    // The rigid answer is not that of the scene's soft contact, which rings; it moves the same way.
+    // The rigid solution has the same mean motion as the scene's soft contact, but not its oscillation.
     assert_eq!((&of("grain.x")["verdict"], &of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
     assert_eq!((rows.len(), answer.code), (5, Some(1)));
 }
 
-/// Forces at contacts from a dump of them and from the columns of a wall, in names of a stranger's own.
+/// Column mapping for contact forces from a contact dump and from wall columns with foreign names.
 const CONTACTS: &str =
     "id1=c_2[1],id2=c_2[2],force_x=c_1[3],force_y=c_1[4],bottom.force_x=f_wall3[2],bottom.force_y=f_wall3[3]";
 
@@ -156,7 +156,7 @@ fn forces_at_contacts_are_judged_where_a_dump_tells_them() {
     assert_eq!((code, forces(&rows, "pass"), count(&rows, "fail")), (0, 4, 0), "{rows:#?}");
     let (code, rows) = judged("lammps-nine-static-stiffer", &["--map", CONTACTS]);
     assert_eq!((code, forces(&rows, "fail")), (1, 4));
-    // Of grains alone nothing is known of forces.
+    // A dump of grains alone has no forces.
     let (_, rows) = check("nine-discs/static-0", "lammps-nine-static.dump.gz", &[]);
     assert_eq!(forces(&rows, "no-reference"), 4, "{rows:#?}");
 }
@@ -179,7 +179,7 @@ fn contacts_that_cannot_be_read_are_refused_with_the_reason() {
     assert!(early.contains("expected the contacts of step 500 in a dump of contacts, found grains alone"), "{early}");
 }
 
-/// The message of a refusal, which leaves nothing behind.
+/// Returns the message of an error that leaves no files.
 fn refusal(directory: &Path, arguments: &[&str]) -> String {
     let before = files(directory);
     let Answer { code, out, err } = grainbench(directory, arguments);
@@ -248,7 +248,7 @@ fn two_outputs_against_each_other() {
     // Scaled and rounded to six digits, it is the same motion.
     let same = compare("lammps-incline.dump.gz", "lammps-incline-six-digits.dump.gz");
     assert_eq!((same.code, count(&rows(&same), "pass"), count(&rows(&same), "fail")), (Some(0), 8, 0));
-    // Columns that the first has alone are listed.
+    // Columns that only the first file has are listed.
     let alone = |row: &Value| row["detail"].as_str().is_some_and(|words| words.starts_with("only "));
     assert_eq!(rows(&same).iter().filter(|row| alone(row)).count(), rows(&same).len() - 8);
     let other = compare("lammps-incline.dump.gz", "lammps-incline-half-friction.dump.gz");
@@ -257,7 +257,7 @@ fn two_outputs_against_each_other() {
     assert!(directory.path().join("grainbench-out/index.html").is_file());
 }
 
-/// A dump with its first snapshots alone, and what `check` says of it.
+/// `check` reports a dump that contains only its first snapshots as incomplete.
 #[test]
 fn half_a_run_is_not_judged_as_the_whole() {
     let directory = tempfile::tempdir().unwrap();
@@ -290,7 +290,7 @@ fn half_a_run_is_not_judged_as_the_whole() {
     assert_eq!(checked(&["--partial", "--strict"]).0, Some(1));
 }
 
-/// What may be off by as much as it is cannot be told, and nothing judged is no success.
+/// A result with a tolerance as large as its value is amber, and a run without a verdict is not a success.
 #[test]
 fn what_cannot_be_told_is_amber() {
     let directory = tempfile::tempdir().unwrap();
@@ -332,11 +332,11 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     };
     let (code, rows) = compared(&["a.csv", "b.csv", "--tolerance", "1e-5"]);
     assert_eq!((code, count(&rows, "pass")), (0, 4), "{rows:#?}");
-    // A straight line between samples leaves open an eighth of h² x'' = 9 h²; the shift is 90 times that.
+    // Linear interpolation between samples has an error of h² x''/8 = 9 h²/8; the shift is about 100 times as large.
     assert!(rows[2]["allowed"].as_f64().unwrap() < 1.2 * (1e-5 + 9.0 * 0.003 * 0.003 / 8.0), "{}", rows[2]);
     let (code, rows) = compared(&["a.csv", "off.csv", "--tolerance", "1e-5", "--columns", "x"]);
     assert_eq!((code, count(&rows, "fail"), rows.len()), (1, 1, 3), "{rows:#?}");
-    // `0.0` in a file with more digits elsewhere is a whole number, not one of tenths.
+    // `0.0` in a file with more digits elsewhere is a whole number, not a number of one digit.
     let (code, rows) = compared(&["a.csv", "off.csv", "--columns", "f"]);
     assert_eq!((code, &rows[2]["verdict"]), (1, &"fail".into()), "{rows:#?}");
     let (code, rows) = compared(&["a.csv", "short.csv"]);
@@ -348,7 +348,7 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     assert!(refused.contains("expected the column `y`, found `x f`"), "{refused}");
 }
 
-/// Digits are those of each row: few of them cannot hide a difference, and never hide a row.
+/// The digits of each row count: few digits cannot hide a difference in another row, and never hide a row.
 #[test]
 fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     let directory = tempfile::tempdir().unwrap();
@@ -364,14 +364,14 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     // Whole numbers are exact.
     let (code, rows) = compared("step,n\n0,3\n1,3\n", "step,n\n0,3\n1,4\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
-    // The small value has as many places as it shows, whatever the large one beside it leaves open.
+    // The digits of the small value count for it, independent of those of the large value beside it.
     let (code, rows) = compared("step,v\n0,1.2e6\n1,0.02\n", "step,v\n0,1.2e6\n1,3.5\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
-    // Digits that leave more than a twentieth of the scale open are told, and are no success.
+    // Digits with an uncertainty above 5 % of the scale are reported and do not count as a success.
     let (code, rows) = compared("step,v\n0,0.1\n1,0.4\n", "step,v\n0,0.1\n1,0.44\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["no-reference".to_owned()]), "{rows:#?}");
     assert!(rows[0]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{rows:#?}");
-    // What one has alone is listed; kinds alone are no comparison.
+    // Columns that only one file has are listed. Grain types alone are no comparison.
     let (code, rows) = compared("step,type,v\n0,1,2.5\n", "step,type,w\n0,1,2.5\n", &[]);
     assert_eq!(
         (code, verdicts(&rows)),
@@ -379,6 +379,6 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
         "{rows:#?}"
     );
     assert_eq!(rows[1]["detail"], "only a.csv has it");
-    // An option that takes one value takes one.
+    // An option that takes one value does not consume the next argument.
     assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
 }

@@ -1,5 +1,5 @@
-//! `check` on runs with numbers of the user's own: a scene that is no case, a case at other numbers, VTK's files, a folder of
-//! many.
+//! `check` on runs with the user's own parameters: a scene that is not a case, a case with other parameters, VTK files,
+//! and a folder of many runs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A run of LIGGGHTS whose deck was written by hand.
+/// Returns the folder of a LIGGGHTS run with a hand-written deck.
 fn slope() -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "liggghts-slope"].iter().collect()
 }
@@ -19,7 +19,7 @@ fn file(name: &str) -> String {
     slope().join(name).display().to_string()
 }
 
-/// The VTK files of the run, with those of its box, as a shell's pattern gives them.
+/// Returns the VTK files of the run with those of its box, as a shell pattern gives them.
 fn vtk() -> Vec<String> {
     let mut files: Vec<String> = fs::read_dir(slope())
         .unwrap()
@@ -30,7 +30,7 @@ fn vtk() -> Vec<String> {
     files
 }
 
-/// The numbers of the run, laid over the case of a sphere on a slope.
+/// Parameters of the run, as changes of the case of a sphere on a slope.
 const NUMBERS: [&str; 11] = [
     "gravity={magnitude=9.81,slope_deg=30}",
     "duration=.5",
@@ -45,7 +45,7 @@ const NUMBERS: [&str; 11] = [
     "grains.sphere={radius=.005,position=[0,0,.005]}",
 ];
 
-/// Exit code and rows.
+/// Returns the exit code and the results.
 fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
     let directory = tempfile::tempdir().unwrap();
     let answer = grainbench(directory.path(), &[&["check"], words, &["--json"]].concat());
@@ -53,7 +53,7 @@ fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
     (answer.code, results["verdicts"].as_array().unwrap().clone())
 }
 
-/// The same at the numbers of the run, some of them others.
+/// Returns exit code and results at the parameters of the run, with some of them changed.
 fn at_numbers(files: &[&str], others: &[&str]) -> (Option<i32>, Vec<Value>) {
     let set = NUMBERS.iter().chain(others).flat_map(|set| ["--set", set]);
     let words = [&["incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump"], files].concat();
@@ -64,7 +64,7 @@ fn count(rows: &[Value], of: impl Fn(&Value) -> bool) -> usize {
     rows.iter().filter(|row| of(row)).count()
 }
 
-/// A deck that nobody generated, from its dump and from its VTK files: the time step is in the log beside them.
+/// A hand-written deck, from its dump and from its VTK files. The time step comes from the log beside them.
 #[test]
 fn a_scene_of_ones_own_is_compared_with_our_solvers() {
     let dump = file("sphere.dump");
@@ -74,7 +74,7 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
         let scene = file("slope.toml");
         let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
         let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
-        // Of what was found all is right; what the output could not reveal is amber.
+        // All found quantities are right. Changes that the output cannot reveal are amber.
         let is_told = |row: &Value| row["verdict"] == "pass" || row["quantity"].as_str().unwrap().contains("reveals");
         assert_eq!((code, count(&rows, is_told)), (Some(0), rows.len()), "{rows:#?}");
         assert!(count(&rows, nearest) >= 9, "{rows:#?}");
@@ -82,7 +82,7 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
     }
 }
 
-/// Exact answers follow the scene, and their tolerances with it; another slope or another shape is red.
+/// Exact solutions and their tolerances follow the parameters of the scene. Another slope or shape is red.
 #[test]
 fn exact_answers_follow_other_numbers() {
     let dump = file("sphere.dump");
@@ -90,7 +90,8 @@ fn exact_answers_follow_other_numbers() {
     for files in [vec![dump.as_str()], vtk().iter().map(String::as_str).collect()] {
         let (code, rows) = at_numbers(&files, &[]);
         assert_eq!((code, count(&rows, is_exact)), (Some(0), 3), "{rows:#?}");
-        // v = (5/7) g t sin θ at half a second, and Hertz's overlap over the radius beside what the spring rings with.
+        // v = (5/7) g t sin θ at half a second. The tolerance is Hertz's overlap over the radius, plus the oscillation
+        // of the spring.
         let velocity = rows.iter().find(|row| row["quantity"] == "velocity at the end").unwrap();
         let expected = 5.0 / 7.0 * 9.81 * 0.5 * 0.5;
         assert!((velocity["expected"].as_f64().unwrap() - expected).abs() < 1e-12 * expected, "{velocity}");
@@ -108,7 +109,7 @@ fn exact_answers_follow_other_numbers() {
     }
 }
 
-/// A folder with a folder for each case and variant is judged in one go; what is in none of them is said.
+/// A folder with a subfolder for each case and variant is checked in one call. Other files in it are reported.
 #[test]
 fn a_folder_of_outputs_is_judged_together() {
     let directory = tempfile::tempdir().unwrap();
@@ -142,7 +143,7 @@ fn a_folder_of_outputs_is_judged_together() {
     refused(&directory.path().join("runs"), "did you mean `backspin`?");
 }
 
-/// What cannot be told is refused with the reason.
+/// Rejects files without the necessary data and gives the reason.
 #[test]
 fn files_that_do_not_tell_are_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -172,13 +173,13 @@ fn files_that_do_not_tell_are_refused() {
     );
 }
 
-/// A file of the ball that bounces along a floor.
+/// Returns a file of the ball that bounces along a floor.
 fn of_ball(name: &str) -> String {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "ball", name].iter().collect();
     path.display().to_string()
 }
 
-/// Exit code, rows, and the message of `check` on files of the ball.
+/// Returns the exit code, the results and the messages of `check` on files of the ball.
 fn ball(files: &[&str], more: &[&str]) -> (Option<i32>, Vec<Value>, String) {
     let directory = tempfile::tempdir().unwrap();
     let scene = of_ball(if files[0].starts_with("same-ids") { "two-balls.toml" } else { "ball.toml" });
@@ -194,7 +195,7 @@ fn fails(rows: &[Value]) -> usize {
     count(rows, |row| row["verdict"] == "fail")
 }
 
-/// Two runs of one log with time steps of their own: by the log, by the times of the file, and by both.
+/// Two runs of one log with their own time steps: by the log, by the times of the file, and by both.
 #[test]
 fn each_run_of_a_log_has_its_own_time_step() {
     let log = of_ball("twosteps.log.gz");
@@ -209,7 +210,7 @@ fn each_run_of_a_log_has_its_own_time_step() {
     }
     let (code, _, err) = ball(&["twosteps.dump.gz"], &["--log", &log, "--dt", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected the time step of the files, 0.00001 s to 0.00002 s"), "{err}");
-    // As many steps of 10 µs throughout are another motion.
+    // The same number of steps with one time step throughout is another motion.
     assert_eq!(ball(&["twosteps.dump.gz"], &["--dt", "2e-5"]).0, Some(1));
 }
 
@@ -218,7 +219,7 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
     let (code, rows, err) = ball(&["late-start.dump.gz"], &["--dt", "1e-5"]);
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
     assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
-    // A sample that is not the start of the scene is not taken for it.
+    // A first sample that is not the start of the scene is not taken for it.
     let directory = tempfile::tempdir().unwrap();
     let mut text = String::new();
     let file = fs::File::open(of_ball("late-start.dump.gz")).unwrap();
@@ -247,7 +248,8 @@ fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
     }
 }
 
-/// `TimeStep` of ParaView's tables is the number of a frame, `Time` is in seconds; a table a time tells no times.
+/// In ParaView's tables, `TimeStep` is the number of a frame and `Time` is in seconds. One table per time contains no
+/// times.
 #[test]
 fn tables_of_grains_are_read_as_grains() {
     let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--dt", "1e-5"]);
@@ -278,7 +280,7 @@ fn an_id_that_occurs_twice_is_an_error() {
     }
 }
 
-/// Lengths in centimetres are no metres, in whatever reader.
+/// Rejects lengths in centimetres in each reader.
 #[test]
 fn other_units_are_refused() {
     let (code, _, err) = ball(&["cgs.dump.gz"], &["--dt", "1e-5"]);
@@ -300,7 +302,7 @@ fn other_units_are_refused() {
     assert_eq!(grainbench(directory.path(), &["compare", &cgs, &cgs]).code, Some(0));
 }
 
-/// Above the critical step our own solvers would not hold: what they leave is no measure.
+/// Rejects a time step above the critical one, at which our own solvers are unstable and give no reference.
 #[test]
 fn a_time_step_above_the_critical_one_is_refused() {
     let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
@@ -317,7 +319,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
     assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
 }
 
-/// The ball sticks to the floor while it touches it, so that friction hardly shows; its dashpot and spring do.
+/// The ball sticks to the floor during contact, so friction has almost no effect; its dashpot and spring have one.
 #[test]
 fn a_check_says_which_changes_the_output_would_reveal() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! Which rows of a run are meant, and what is told of an earlier one: patterns, filters, `--rerun-failed`, `--against`.
+//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--rerun-failed`,
+//! `--against`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -24,7 +25,7 @@ fn rows<'a>(results: &'a Value, key: &str) -> Vec<&'a str> {
     results["verdicts"].as_array().unwrap().iter().map(|row| row[key].as_str().unwrap()).collect()
 }
 
-/// An earlier report, with something changed in it.
+/// Writes an earlier report with a change in it.
 fn changed(directory: &Path, change: impl FnOnce(&mut Value)) {
     let mut earlier = results(directory, "grainbench-out");
     change(&mut earlier);
@@ -52,7 +53,7 @@ fn rows_are_chosen_by_what_they_are() {
     );
 }
 
-/// How a row ends is known when it has been run: nothing that is red is hidden by what is shown.
+/// The outcome of a claim is known only after its run. A filter on the outcome hides no failure from the exit code.
 #[test]
 fn rows_are_shown_by_how_they_end_and_judged_all() {
     let directory = tempfile::tempdir().unwrap();
@@ -115,7 +116,7 @@ fn what_failed_is_run_again_alone() {
     assert!(rows(&results(here, "old"), "quantity").iter().all(|quantity| wanted == **quantity));
 }
 
-/// Nothing is run, and nothing written, before what it is to be compared with has been read.
+/// A wrong report for the comparison is an error before any run and any output.
 #[test]
 fn what_is_no_report_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -158,7 +159,7 @@ fn shells_and_readers_of_manuals_are_served() {
     assert!(run.contains(".TH grainbench-run") && run.contains("rerun"), "{run}");
 }
 
-/// The shell steps of the action for GitHub, as a job runs them.
+/// The shell steps of the GitHub action, as a job runs them.
 #[cfg(unix)]
 #[test]
 fn a_job_is_told_in_its_own_way() {

@@ -1,4 +1,4 @@
-//! The command line as a user meets it: help, tables, files, JSON, exit codes.
+//! The command line as a user sees it: help, tables, files, JSON, exit codes.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;
 
-/// Two discs that collide, with two snapshots between first and last.
+/// Scene of two colliding discs, with two snapshots between the first and the last.
 const SCENE: &str = r#"title = "Two discs collide"
 dimension = 2
 duration_cycles = 100
@@ -41,7 +41,7 @@ snapshots = 2
 left = { grain = "left" }
 "#;
 
-/// The standard output of a command that succeeds and says nothing else.
+/// Returns the standard output of a command that succeeds without messages.
 fn printed(directory: &Path, arguments: &[&str]) -> String {
     let answer = grainbench(directory, arguments);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{}", answer.out);
@@ -52,7 +52,7 @@ fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
-/// Help without the blanks at the ends of lines, which clap leaves and editors remove.
+/// Returns a help text without trailing blanks, which clap writes and editors remove.
 fn help(arguments: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     printed(directory.path(), arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
@@ -81,7 +81,8 @@ fn list_tells_of_every_case() {
     for case in CASES {
         assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
     }
-    // One case stands for all, so that a new case does not touch this file; column widths follow the longest name.
+    // One case represents all cases, so that a new case does not change this file. Column widths follow the longest
+    // name.
     let squash: Vec<String> = text
         .lines()
         .skip_while(|line| !line.starts_with("squash "))
@@ -108,12 +109,12 @@ fn a_reader_who_has_seen_enough_is_no_error() {
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
 }
 
-/// Every property of a schema, however deep, with its path.
+/// Collects the paths of all properties of a schema that have no description.
 fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
     if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
         for (name, property) in properties {
             let description = property.get("description").and_then(Value::as_str).unwrap_or_default();
-            // A tag that can have one value is explained where its alternative is.
+            // A tag with a single value is explained with its alternative.
             if description.trim().is_empty() && property.get("const").is_none() {
                 found.push(format!("{path}.{name}"));
             }
@@ -137,7 +138,7 @@ fn schema_documents_every_key() {
     assert!(found.is_empty(), "without a description: {found:?}");
 }
 
-/// Editors read the schema from the tree.
+/// The schema in the repository, which editors read, equals the schema of the program.
 #[test]
 fn the_schema_in_the_tree_is_that_of_the_program() {
     let directory = tempfile::tempdir().unwrap();
@@ -148,8 +149,8 @@ fn the_schema_in_the_tree_is_that_of_the_program() {
 fn run_leaves_its_files_and_a_summary() {
     let directory = tempfile::tempdir().unwrap();
     let text = printed(directory.path(), &["run", "squash", "--out", "deep/out"]);
-    // Which row uses most of its tolerance is a matter of rounding, which is not the same with every mathematical
-    // library; column widths follow it.
+    // The claim with the largest used fraction of its tolerance depends on rounding, which differs between mathematical
+    // libraries. Column widths follow it.
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.path().join("deep/out");
@@ -185,7 +186,7 @@ fn run_leaves_its_files_and_a_summary() {
     assert_eq!(files(&out), expected);
 }
 
-/// A line of the summary without its worst row and without the widths of columns.
+/// Returns a line of the summary without its worst claim and without column widths.
 fn without_worst(line: &str) -> String {
     let cells = line.split("  ").map(str::trim).filter(|cell| !cell.is_empty());
     let cells = cells.map(|cell| match cell {
@@ -230,7 +231,7 @@ fn a_red_report_ends_with_one() {
         assert_eq!(answer.code, Some(1), "{red}");
         assert!(answer.out.contains('✗'), "{}", answer.out);
     }
-    // Amber is neither.
+    // An amber result is neither a pass nor a failure.
     std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
     assert_eq!(grainbench(directory.path(), &["report", "out"]).code, Some(0));
 }
@@ -278,7 +279,7 @@ fn simulate_prints_the_run_as_json() {
     assert_eq!(run["provenance"]["time_step"], 1e-4);
     assert_eq!((run["cost"]["steps"].as_u64(), run["end"]["step"].as_u64()), (Some(400), Some(400)));
     assert_eq!((run["end"]["grains"].as_u64(), run["snapshots"].as_u64()), (Some(2), Some(4)));
-    // One disc hits another of its own mass: an elastic impact keeps the energy, ρπR² v²/2.
+    // One disc hits another of the same mass. An elastic impact conserves the energy ρπR² v²/2.
     let energy = run["end"]["kinetic_energy"].as_f64().unwrap();
     assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
     assert!(directory.path().join("grainbench-out/record.json").is_file());
@@ -294,12 +295,12 @@ fn report_makes_pictures_of_simulations() {
     }
     printed(path, &["report", "one", "--beside", "two", "--fringe-stress", "1e3"]);
     let page = std::fs::read_to_string(path.join("one/index.html")).unwrap();
-    // One picture of speed: a solver beside the other.
+    // One picture of the speed with both solvers side by side.
     let svg = std::fs::read_to_string(path.join("one/figures/speed.svg")).unwrap();
     assert!(page.contains(&svg) && svg.matches("data:image/png;base64,").count() == 2, "{}", svg.len());
     assert!(page.contains("Two discs collide") && svg.contains(">dem, t") && svg.contains(">dem:lammps, t"), "{svg}");
 
-    // A contact of a grain that is not there is not drawn; what is no record is refused by name and place.
+    // A contact with a missing grain is not drawn. An invalid record is an error with file and place.
     let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
     std::fs::write(path.join("one/record.json"), record.replace("\"grain\":1,", "\"grain\":900,")).unwrap();
     printed(path, &["report", "one"]);

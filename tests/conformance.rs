@@ -1,5 +1,5 @@
-//! The suite of what every solver owes: it sees what it must, and believes nothing that was not shown. Solvers are held
-//! to it in their own crates.
+//! The conformance suite: it detects every defect that it must, and accepts no unproven claim. The tests of each solver
+//! crate apply it to the solver.
 
 use grainbench::cases::solvers;
 use grainbench::harness::conformance::ALL;
@@ -9,7 +9,7 @@ use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
 use grainbench::scene::terms::{Order, Terms};
 
-/// Rows tell solvers apart that are nearly right, and only in what they are wrong in.
+/// Each property detects its own defect, and does not fail for every other defect.
 #[test]
 fn a_property_sees_its_own_flaw_and_not_every_other() {
     use grainbench::harness::conformance::{Flaw, Flawed};
@@ -28,7 +28,7 @@ fn a_property_sees_its_own_flaw_and_not_every_other() {
     assert_eq!(red(Flaw::Irreproducible), ["rerun"]);
 }
 
-/// Two rows of one name would be taken for one another, their controls too.
+/// Two properties of the same name could be confused, and their controls too.
 #[test]
 fn every_row_has_a_name_of_its_own() {
     let solver = solvers::by_name("dem").unwrap();
@@ -37,7 +37,7 @@ fn every_row_has_a_name_of_its_own() {
     assert_eq!(names.len(), rows.len());
 }
 
-/// A claim that the runs do not bear out fails, and nothing else with it.
+/// A claim that the runs do not confirm fails, and only this claim.
 #[test]
 fn an_order_that_is_not_there_is_not_believed() {
     let solver = solvers::by_name("dem").unwrap();
@@ -47,7 +47,7 @@ fn an_order_that_is_not_there_is_not_believed() {
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("order")), "{failures:#?}");
 }
 
-/// A solver that refuses every scene has shown nothing.
+/// A solver that rejects every scene does not pass.
 #[test]
 fn a_solver_that_runs_nothing_does_not_pass() {
     struct Nothing;

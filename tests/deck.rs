@@ -1,4 +1,4 @@
-//! Decks for other programs: what is written, what is refused and why, and what a command line leaves.
+//! Decks for external solvers: their contents, reasons of unsupported scenes, and files of the command line.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -16,12 +16,12 @@ use grainbench::scene::solver::Resolution;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// The deck's files one below the other.
+/// Returns the files of a deck, one below the other.
 fn shown(case: &str, variant: &str, program: Program) -> String {
     shown_of(case, variant, program, |_| {})
 }
 
-/// The same of a changed scene.
+/// Returns the files of a deck for a changed scene.
 fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
@@ -45,14 +45,13 @@ fn moving_walls_for_liggghts_are_meshes() {
     insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LIGGGHTS));
 }
 
-/// A dashpot ∝ stiffness becomes one ∝ effective mass where all grains have one mass.
+/// A dashpot proportional to stiffness becomes one proportional to effective mass if all grains have the same mass.
 #[test]
 fn a_dashpot_of_another_kind_for_liggghts() {
     insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::LIGGGHTS));
 }
 
-/// Hertz contacts: with a coefficient of restitution, which LAMMPS has in `granular` and LIGGGHTS with moduli; and
-/// without.
+/// Hertz contacts with and without a coefficient of restitution. LAMMPS has it in `granular`, LIGGGHTS with moduli.
 #[test]
 fn hertz_spheres() {
     for program in Program::ALL {
@@ -69,7 +68,7 @@ fn rolling_resistance() {
     }
 }
 
-/// Walls that first move and then turn: formulas in LAMMPS, and stretches in LIGGGHTS, whose grains are spheres.
+/// Walls that first move and then rotate: formulas in LAMMPS, and intervals in LIGGGHTS, whose grains are spheres.
 #[test]
 fn walls_that_turn() {
     for program in Program::ALL {
@@ -83,7 +82,7 @@ fn walls_that_turn() {
     }
 }
 
-/// Walls of finite extent, one in two dimensions that lies askew and turns, one in three that lies askew and moves.
+/// Walls of finite extent: an oblique rotating wall in two dimensions, and an oblique moving wall in three.
 #[test]
 fn walls_of_finite_extent_are_flat_blocks() {
     let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -104,7 +103,8 @@ fn walls_of_finite_extent_are_flat_blocks() {
     insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
 }
 
-/// A sine and a ramp as formulas of LAMMPS, which dem:lammps agrees with to rounding; LIGGGHTS has stretches of one velocity.
+/// A sine and a ramp as formulas of LAMMPS, which dem:lammps agrees with to rounding. LIGGGHTS gets intervals of
+/// constant velocity.
 #[test]
 fn a_wall_that_moves_by_functions() {
     let (x, y) = (Vector3::x(), Vector3::y());
@@ -137,7 +137,7 @@ fn every_case_has_a_deck_or_a_reason() {
                         written += 1;
                     }
                     Err(DeckError::Unsupported { reason, .. }) => assert!(!reason.is_empty()),
-                    // Rigid engines' cases have steps of their own.
+                    // Cases of rigid engines have their own steps.
                     Err(DeckError::Resolution(reason)) => assert!(!reason.is_empty()),
                 }
             }
@@ -148,7 +148,7 @@ fn every_case_has_a_deck_or_a_reason() {
     assert!(written > 30, "{written}");
 }
 
-/// Why a program refuses a changed scene.
+/// Returns the reason why an external solver does not support a changed scene.
 fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
@@ -215,7 +215,7 @@ fn the_command_leaves_a_whole_deck() {
     );
 }
 
-/// The first row that is fair to any solver has a grid's cells there, which are no time step.
+/// The first solver-independent claim has a resolution in grid cells, which gives no time step.
 #[test]
 fn an_exact_scene_is_stepped_in_time() {
     let directory = tempfile::tempdir().unwrap();
@@ -240,7 +240,7 @@ fn the_command_refuses_and_leaves_nothing() {
         let answer = grainbench(directory.path(), arguments);
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
         assert!(files(directory.path()).is_empty());
-        // Which cases there are is not this test's business.
+        // The list of cases is not part of this test.
         let lines = answer.err.lines().filter(|line| !line.starts_with("  "));
         lines.for_each(|line| said.push_str(&(line.to_owned() + "\n")));
     }

@@ -1,5 +1,5 @@
-//! An effect that a scene does not call for is not simulated; where it is compiled in with values that do nothing, the
-//! answer is the same.
+//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result is the
+//! same.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,8 +12,8 @@ use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 
-/// Adds a material that no grain has, with friction and rolling resistance: kernels for both are picked, and do
-/// nothing.
+/// Adds a material that no grain has, with friction and rolling resistance. The selected kernels include both, without
+/// an effect.
 fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
@@ -45,7 +45,8 @@ fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
     same_without(&scene, Resolution::TimeStep(1e-4));
 }
 
-/// A frictionless scene ends alike with the frictionless kernel and with friction that does nothing.
+/// Checks that a frictionless scene has the same final state with the frictionless kernel and with friction that has no
+/// effect.
 fn same_without(scene: &Scene, resolution: Resolution) {
     let idle = with_idle_friction(scene);
     assert!(!Effects::of(scene).friction && Effects::of(&idle).friction && Effects::of(&idle).rolling_resistance);
@@ -53,7 +54,7 @@ fn same_without(scene: &Scene, resolution: Resolution) {
     let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
     assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));
     for (a, b) in without.grains.iter().zip(&with.grains) {
-        // Equality of numbers is that of bits but for the sign of zero.
+        // Equality of numbers is equality of bits except for the sign of zero.
         assert!(a.position == b.position && a.velocity == b.velocity && a.force == b.force, "grain {}", a.id);
     }
 }

@@ -1,4 +1,4 @@
-//! Grains as a continuum from the command line: of a run of ours, of a stranger's dumps, and of what is neither.
+//! Grains as a continuum on the command line: for our runs, for dumps of external solvers, and for invalid files.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -16,7 +16,7 @@ use grainbench::scene::source::SceneSource;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Spheres that are dropped into a box without a lid, and settle.
+/// Scene of spheres that are dropped into a box without a lid and come to rest.
 const SCENE: &str = r#"title = "Spheres in a box"
 dimension = 3
 duration = 20.0
@@ -60,7 +60,7 @@ every = 5.0
 snapshots = 3
 "#;
 
-/// The settled packing.
+/// Returns the packing at rest.
 fn packing() -> Snapshot {
     let source = SceneSource::from_text("packing", Path::new(""), SCENE);
     let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
@@ -69,8 +69,9 @@ fn packing() -> Snapshot {
     record.snapshots.into_iter().next_back().unwrap()
 }
 
-/// Σ over contacts of grains of arm ⊗ force is Σ over walls of x_c ⊗ F − Σ over grains of x ⊗ ΣF, and at rest ΣF = −m g: both
-/// sides measured on their own. A wall's arm is R − δ/2, or the identity would be off by δ/2 at each.
+/// At rest, ΣF = −m g and the sum of lever arm ⊗ force over contacts between grains equals Σ_walls x_c ⊗ F − Σ_grains x
+/// ⊗ ΣF. Both sides are measured independently. A wall's lever arm is R − δ/2; with R, the identity would be wrong by
+/// δ/2 at each wall contact.
 #[test]
 fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     let packing = packing();
@@ -87,7 +88,7 @@ fn the_stress_of_a_packing_at_rest_carries_its_weight() {
         packing.grains.iter().map(|grain| grain.position * grain.force.unwrap().transpose()).sum();
     let exact = outer - of_grains;
     assert!((inner - exact).norm() < 1e-12 * exact.norm(), "{inner} {exact}");
-    // With the arm that reaches the wall it is not.
+    // With the lever arm R at the wall, the identity is wrong.
     assert!((inner - (shifted - of_grains)).norm() > 1e-5 * exact.norm());
     // At rest: Σ Δz F_z = −Σ m g z + Σ_walls z F_z.
     let weight: f64 = packing.grains.iter().map(|grain| -10.0 * grain.mass * grain.position.z).sum();
@@ -96,7 +97,7 @@ fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     assert!(weight < -1000.0);
 }
 
-/// A dump of the grains as another program writes it, its columns in an order of its own.
+/// Returns a dump of the grains as another program writes it, with another order of columns.
 fn dump(packing: &Snapshot) -> String {
     let mut text = String::new();
     let (low, high) = packing.bounds;
@@ -111,7 +112,7 @@ fn dump(packing: &Snapshot) -> String {
     text
 }
 
-/// A dump of its contacts, the normal and the tangential part apart, each pair told from the side of the second grain.
+/// Returns a dump of its contacts with separate normal and tangential parts. Each pair is given from the second grain.
 fn contacts(packing: &Snapshot) -> String {
     let between: Vec<_> =
         packing.told_contacts().iter().filter(|contact| matches!(contact.partner, Partner::Grain(_))).collect();
@@ -127,7 +128,7 @@ fn contacts(packing: &Snapshot) -> String {
 
 const MAP: &str = "id1=a,id2=b,force_x=nx,force_y=ny,force_z=nz,tangential_x=tx,tangential_y=ty,tangential_z=tz";
 
-/// The values of a column of a table.
+/// Returns the values of a column of a table.
 fn column(folder: &Path, file: &str, name: &str) -> Vec<Option<f64>> {
     let mut table = csv::Reader::from_path(folder.join(file)).unwrap();
     let at = table.headers().unwrap().iter().position(|head| head == name).unwrap_or_else(|| panic!("no {name}"));
@@ -148,7 +149,7 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
     assert!(untold.out.contains("No contacts were told: there is no stress."), "{}", untold.out);
 
-    // What the library finds without the contacts with walls, which such a dump does not have.
+    // Result of the library without wall contacts, which this dump does not contain.
     let mut alone = packing;
     alone.contacts.as_mut().unwrap().retain(|contact| matches!(contact.partner, Partner::Grain(_)));
     let grid = Grid::filling(alone.bounds, Vector3::new(1.25, 2.5, 1.25));
@@ -175,15 +176,14 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     }
     same("told", "stress_zz (Pa)", &|cell| exact[cell].stress.map(|stress| stress.m33));
     same("told", "sine_of_friction (1)", &|cell| exact[cell].sine_of_friction());
-    // Stress that nobody told is nowhere, and never zero.
+    // Stress without data is missing, and never zero.
     same("untold", "stress_zz (Pa)", &|_| None);
     same("untold", "pressure (Pa)", &|_| None);
     let image = std::fs::read_to_string(path.join("untold/elements/elements-000000.vti")).unwrap();
     assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "no pressure is told as such");
 }
 
-/// Of a dump without velocities and times the packing and the stress are known, and nothing of what moves; its clock is the
-/// step.
+/// For a dump without velocities and times, packing and stress are known, but no motion. Its time is the step.
 #[test]
 fn what_a_dump_does_not_tell_is_nowhere() {
     let directory = tempfile::tempdir().unwrap();
@@ -224,7 +224,7 @@ fn a_run_of_ours_becomes_tables_images_films_and_trails() {
     assert_eq!(column(&path.join("seen"), "means.csv", "x (m)").len(), 4 * 8);
     let strains = column(&path.join("seen"), "tracers.csv", "hencky_strain (1)");
     assert!(strains.iter().flatten().any(|&strain| strain > 0.05) && strains[0].is_some_and(|strain| strain < 1e-12));
-    // Two runs of it are one.
+    // Repeating the command gives the same file.
     let again = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "again"];
     grainbench(path, &again);
     let bytes = |folder: &str| std::fs::read(path.join(folder).join("elements.csv")).unwrap();
@@ -278,7 +278,7 @@ fn what_cannot_be_read_as_a_continuum_is_refused() {
     insta::assert_snapshot!(refusals.join(""));
 }
 
-/// Grains outside the cells are counted and told; a radius that the file does not tell can be said.
+/// Grains outside the cells are counted and reported. A radius that the file lacks can be given as an option.
 #[test]
 fn grains_outside_are_counted() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Every gate of the registry, and for every gate its negative control: a test each. Those of the long set, which take
-//! minutes, take part with `GRAINBENCH_LONG=1`; `GRAINBENCH_PROCESSOR` forces the path that our solvers take.
+//! All claims of the registry and their negative controls, one test each. Claims of the long tier, which take minutes,
+//! are included with `GRAINBENCH_LONG=1`. `GRAINBENCH_PROCESSOR` selects the processor path of our solvers.
 
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
@@ -12,7 +12,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use std::sync::Arc;
 
 fn main() -> std::process::ExitCode {
-    // A path that this processor does not have would be another one, and judge nothing.
+    // Falling back to another path would test the wrong one, so a path that this processor lacks is an error.
     if let Err(reason) = Processor::forced() {
         eprintln!("error: {reason}");
         return std::process::ExitCode::from(2);
@@ -44,8 +44,8 @@ fn trial(
     Trial::test(name, move || test(&runner, &claim))
 }
 
-/// The gate passes; where the solver must refuse the scene, it does, with a reason; a known error is still there; where
-/// it is a program that is not installed, that is what the row says.
+/// Checks the expected outcome of a claim: pass, unsupported with a reason, or a known deviation that still exists. If
+/// its external solver is not installed, the result must report that.
 fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     let verdict = runner.judge(claim);
     let expected = match claim.standing() {
@@ -57,7 +57,7 @@ fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     if verdict.outcome == expected { Ok(()) } else { Err(grainbench::reports::line::verdict(&verdict).into()) }
 }
 
-/// The gate turns red when its physics is wrong, and in the way that it must: by its value, or by breaking.
+/// Checks that the claim fails under its negative control in the required way: by value or by error.
 fn refuse(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     if !runner.is_available(claim) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Rows that begin with data of others: where the user gives it, where not, and where something else is given.
+//! Claims that start from third-party data: with the data, without it, and with wrong data.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,12 +8,12 @@ use common::grainbench;
 use serde_json::Value;
 use std::path::Path;
 
-/// Rows that begin with the drum's start.
+/// Claims that start from the published start of the drum.
 const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
-/// Rows that begin with the shared beds of the impact.
+/// Claims that start from the shared beds of the impact.
 const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
 
-/// Outcome and reason of each row of a report.
+/// Returns outcome and text of each result of a report.
 fn rows(directory: &Path) -> Vec<(String, String)> {
     let results = std::fs::read_to_string(directory.join("grainbench-out/results.json")).unwrap();
     let results: Value = serde_json::from_str(&results).unwrap();
@@ -25,7 +25,7 @@ fn rows(directory: &Path) -> Vec<(String, String)> {
 fn without_it_rows_say_where_it_is_to_be_had() {
     let directory = tempfile::tempdir().unwrap();
     let answer = grainbench(directory.path(), &ROWS);
-    // Nothing was judged.
+    // No claim has a verdict.
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(directory.path());
     assert_eq!(rows.len(), 7);
@@ -35,7 +35,7 @@ fn without_it_rows_say_where_it_is_to_be_had() {
     }
 }
 
-/// With what `data` holds these rows are not begun with, and that is told.
+/// Checks that the data in `data` is rejected with a message and nothing is run.
 fn refused(path: &Path, rows: &[&str], words: &str) {
     let answer = grainbench(path, &[rows, &["--data", "data"]].concat());
     assert_eq!(answer.code, Some(2), "{}", answer.err);
@@ -58,7 +58,7 @@ fn what_is_no_start_is_refused() {
     assert!(answer.err.contains("--data: expected rows that begin with data of others"), "{}", answer.err);
 }
 
-/// What is kept is of the published start, and judges no other.
+/// The stored result belongs to the published start and is not used for another start.
 #[test]
 fn another_start_is_told_from_the_published_one() {
     let directory = tempfile::tempdir().unwrap();
@@ -71,7 +71,7 @@ fn another_start_is_told_from_the_published_one() {
     assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
 }
 
-/// Without the beds nothing is run, and no figure of the case either, which would take minutes.
+/// Without the beds nothing is run, not even the figures of the case, which would take minutes.
 #[test]
 fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     let directory = tempfile::tempdir().unwrap();
@@ -82,7 +82,7 @@ fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     assert!(rows.len() == 3 && rows.iter().all(told), "{rows:?}");
 }
 
-/// The shared beds of the impact: what is no bed is told with its place.
+/// An invalid bed of the impact is reported with its place.
 #[test]
 fn what_is_no_bed_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -100,7 +100,7 @@ fn what_is_no_bed_is_refused() {
     refused("100KParticles.txt:2: expected 100000 grains and one ball, found 1 grains and 0 ball");
 }
 
-/// Where one start is given, rows of another are left aside with their controls.
+/// If one start is given, claims with another start are not available, and their controls do not run.
 #[test]
 fn rows_of_one_start_do_not_ask_for_another() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,9 +1,9 @@
-//! The guide is what the program does: its commands are run, its scenes are simulated, its links lead somewhere.
+//! Test of the guide: its commands run, its scenes are simulated, and its links are valid.
 //!
-//! `UPDATE_README=1 cargo test --release --test guide` writes its tables anew. A `console` block is a dialogue, run in
-//! `guide/scenes` by the shell: what a command answered has the lines that are shown, with `…` for what may differ, and it ends
-//! with 0, or as `# exit N` says. `<!-- needs lmp -->` before a block names programs without which it is passed over (never
-//! where `CI` is set).
+//! `UPDATE_README=1 cargo test --release --test guide` rewrites its tables. A `console` block is a dialogue in
+//! `guide/scenes`, run by the shell. The output of a command must contain the shown lines, with `…` for varying text.
+//! The exit code is 0, or `N` with `# exit N`. `<!-- needs lmp -->` before a block names programs without which the
+//! block is skipped (never if `CI` is set).
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 
-/// The dialogues of a chapter, in the order of reading, in a folder of their own.
+/// Runs the dialogues of a chapter in order, in a separate folder, and returns the failed ones.
 fn lost_dialogues(chapter: &Chapter) -> Vec<String> {
     let place = Place::new();
     let mut lost = Vec::new();
@@ -53,7 +53,7 @@ fn commands_answer_what_the_guide_shows() {
     assert!(lost.is_empty(), "{}", lost.join("\n\n"));
 }
 
-/// A guide that shows what is not so is refused: another number, another end, a line that is not there, another order.
+/// Rejects a guide with wrong output: another number, another exit code, a missing line, another order.
 #[test]
 fn a_wrong_dialogue_is_refused() {
     let place = Place::new();
@@ -92,7 +92,7 @@ fn shown_lines_hold_as_they_are_written() {
     assert!(hold("a …, …c", "a 1, b, c") && !hold("a …, …c", "a 1, b, cd") && !hold("ab", "a") && !hold("…b…", "a"));
 }
 
-/// Whether every file of some folders of the guide is in a chapter, and what is a scene is simulated there.
+/// Checks that each file in some folders of the guide is in a chapter, and that each scene is simulated there.
 #[test]
 fn every_scene_is_in_a_chapter_that_runs_it() {
     let chapters = chapters();
@@ -121,7 +121,7 @@ fn links_and_includes_lead_somewhere() {
     assert!(lost_links(&longer).iter().any(|lost| lost.contains("unknown.md")), "a chapter that SUMMARY.md lacks");
 }
 
-/// What each case is weak in, as the case says it.
+/// Returns the table of limitations of each case.
 fn weak_table() -> String {
     let mut table = "| case | title | limitations |\n|---|---|---|\n".to_owned();
     for case in CASES {
@@ -130,7 +130,7 @@ fn weak_table() -> String {
     table
 }
 
-/// The errors that are known of solvers, as the claims say them: every one that stands amber while it is there.
+/// Returns the table of known deviations of solvers from the claims, which are amber as long as they exist.
 fn known_table() -> String {
     let mut known: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for case in CASES {
@@ -153,7 +153,7 @@ fn known_table() -> String {
     table
 }
 
-/// A text that stands in a cell of a table.
+/// Returns a text for a table cell.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
 }
@@ -168,7 +168,7 @@ fn tables_are_generated() {
     }
 }
 
-/// What a row can be and what it can rest on is told whole.
+/// The guide explains each outcome and each kind of evidence.
 #[test]
 fn the_words_of_a_row_are_explained() {
     let numbers = fs::read_to_string(root("guide/src/numbers.md")).unwrap();
@@ -188,7 +188,7 @@ fn the_words_of_a_row_are_explained() {
     }
 }
 
-/// The book has what it includes, so that nothing that a chapter shows is typed twice.
+/// A chapter includes its files, so that nothing is typed twice.
 #[test]
 fn a_chapter_shows_the_scene_that_is_run() {
     let chapters = chapters();

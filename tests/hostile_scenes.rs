@@ -1,5 +1,5 @@
-//! Scenes that once hung, panicked, filled the memory or gave numbers that are none, with an exit code that said nothing of
-//! it: each ends in an error that says what is wrong, or runs.
+//! Scenes that once hung, panicked, filled the memory or gave non-finite numbers with exit code 0. Each must give an
+//! error with the reason, or run.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ const RIGID: &str = "title = 't'\ndimension = 2\nduration = 0.01\n[materials.m]\
      [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
      [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
 
-/// Exit code and what was said of a scene with more behind it, and more arguments.
+/// Returns exit code and messages for a scene with appended text and further arguments.
 fn simulated(scene: &str, more: &str, arguments: &[&str]) -> (i32, String) {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("s.toml"), format!("{scene}{more}")).unwrap();
@@ -51,7 +51,7 @@ fn bodies_that_the_grid_does_not_see_are_refused() {
     assert!(code == 2 && said.contains("expected a body at least 0.5 cells wide, found `b` with 0.400"), "{said}");
 }
 
-/// With one cell between two sides that are held, energy grew 2e7-fold.
+/// With one cell between two fixed sides, the energy once grew by a factor of 2e7.
 #[test]
 fn one_cell_between_two_held_sides_is_refused() {
     let bar = "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [10.0, 1.0] }\nfixed = ['x-low']\n\
@@ -61,7 +61,7 @@ fn one_cell_between_two_held_sides_is_refused() {
     assert_eq!(simulated(ELASTIC, bar, &["mpm", "--cells", "2"]).0, 0);
 }
 
-/// A plane that lies on a line of the grid.
+/// A plane on a line of the grid.
 #[test]
 fn contact_on_a_line_of_the_grid_runs() {
     let (code, said) = simulated(
@@ -91,7 +91,8 @@ fn more_steps_than_any_solver_takes_are_refused_by_each() {
     assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
 }
 
-/// Cells are as long as the period there, whatever was asked for: such a body ended the program for want of memory.
+/// The cells are as long as the period, independent of the options. Such a body once ended the program for lack of
+/// memory.
 #[test]
 fn a_body_longer_than_the_period_is_refused() {
     let (code, said) = simulated(
@@ -113,7 +114,7 @@ fn bodies_that_would_settle_for_ever_are_refused() {
     assert!(code == 2 && said.contains("expected fewer than 1e15 steps"), "{said}");
 }
 
-/// A record of bodies alone had no bounds, and could not be read back.
+/// A record of bodies without grains once had no bounds and could not be read back.
 #[test]
 fn a_record_of_bodies_alone_is_read_back() {
     let directory = tempfile::tempdir().unwrap();
@@ -146,7 +147,7 @@ fn a_checkpoint_replaces_a_checkpoint_and_nothing_else() {
     assert_eq!((run("kept").0, run("kept").0), (0, 0));
 }
 
-/// What would steer a terminal is written out.
+/// Terminal control characters are escaped in the output.
 #[test]
 fn titles_do_not_steer_a_terminal() {
     let directory = tempfile::tempdir().unwrap();
@@ -167,7 +168,7 @@ fn thousands_of_overrides_are_refused() {
     assert!(answer.code == Some(2) && answer.err.contains("at most 1000 keys, found 1001"), "{}", answer.err);
 }
 
-/// A library of materials costs nothing; a table of pairs of all that things are made of is bounded.
+/// A library of unused materials costs nothing. The table of pairs of used materials is limited.
 #[test]
 fn thousands_of_materials_that_nothing_is_made_of_cost_nothing() {
     let library: String = (0..3000).map(|number| format!("[materials.m{number}]\ndensity = 1.0\n")).collect();

@@ -1,4 +1,4 @@
-//! Snapshots that nobody wants row by row are told in short, and take no memory.
+//! Snapshots that no reader wants row by row are reduced to a summary and need no memory.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ use grainbench::scene::solver::{NotStored, Resolution, Watch};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Discs on a floor that overlap, slip and turn, with a group of driven ones on top.
+/// Discs on a floor that overlap, slip and rotate, with a group with prescribed motion on top.
 const DISCS: &str = "title = 'discs'\ndimension = 2\nduration_cycles = 60\ngravity = [0.0, -9.81]\n\
     largest_initial_overlap = 0.1\n\
     materials.m.density = 2500.0\n\
@@ -27,7 +27,7 @@ const DISCS: &str = "title = 'discs'\ndimension = 2\nduration_cycles = 60\ngravi
     [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
     [output]\nevery_cycles = 7\nsnapshots = 2\n";
 
-/// Two elastic discs that meet.
+/// Two colliding elastic discs.
 const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_initial_overlap = 0.2\n\
     materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
     contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.3 }\n\
@@ -35,7 +35,7 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
     [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.988, 0.1]\n\
     [output]\nevery = 0.004\nsnapshots = 2\n";
 
-/// Takes what it is given.
+/// Watch that takes all snapshots and summaries.
 struct Taker {
     most_rows: u64,
     threads: usize,
@@ -71,8 +71,7 @@ fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, T
     (record.series, taker)
 }
 
-/// What is told in short is what the snapshot would have told, whether probes look at the state or nobody does; and the
-/// series is the same in every bit.
+/// The summary equals that of the snapshot, with and without probes, and the series has the same bits.
 #[test]
 fn what_is_told_in_short_is_what_the_snapshot_tells() {
     for (solver, scene) in [("dem", DISCS), ("mpm", SOFT)] {
@@ -102,7 +101,7 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
     );
 }
 
-/// Grains that are near one another and do not touch are no rows, at the start either.
+/// Grains that are close but not in contact give no rows, not even at the start.
 #[test]
 fn what_is_near_and_does_not_touch_is_no_row() {
     let apart = "title = 'apart'\ndimension = 2\nduration_cycles = 6\nmaterials.m.density = 2500.0\n\
@@ -115,7 +114,7 @@ fn what_is_near_and_does_not_touch_is_no_row() {
     assert_eq!((none.whole.len(), none.in_short.len()), (0, 2));
 }
 
-/// A large run that breaks leaves its last state, whatever it would have left at its end.
+/// A large run that crashes leaves its last state, although it would only have left a summary.
 #[test]
 fn the_last_state_of_a_large_run_that_breaks_is_kept() {
     let directory = tempfile::tempdir().unwrap();
@@ -131,14 +130,14 @@ fn the_last_state_of_a_large_run_that_breaks_is_kept() {
     assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
 }
 
-/// Memory (B) that a run of the command takes.
+/// Returns the memory (B) of a run of the command.
 #[cfg(target_os = "linux")]
 fn memory(path: &Path, arguments: &[&str]) -> f64 {
     let arguments = [arguments, &["--threads", "1", "--out", "out"]].concat();
     1000.0 * common::peak_memory(path, &arguments) as f64
 }
 
-/// From start to end of `simulate`, a grain with three contacts takes at most 700 B and a material point 350 B, by the slope
+/// During `simulate`, a grain with three contacts needs at most 700 B and a material point 350 B, from the difference
 /// between two sizes.
 #[test]
 #[cfg(target_os = "linux")]

@@ -1,4 +1,4 @@
-//! What is kept of costs and of stability for the first screen of a page.
+//! Stored studies of cost and stability for the first screen of a page.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ fn study(name: &str) -> Study {
     serde_json::from_str(&std::fs::read_to_string(place(name)).unwrap()).unwrap()
 }
 
-/// Whoever reads a number must be able to have the tree that gave it.
+/// The source tree of each stored number must be available to a reader.
 #[test]
 fn what_is_kept_says_of_which_sources_it_is() {
     for name in ["cost", "stability"] {
@@ -28,7 +28,7 @@ fn what_is_kept_says_of_which_sources_it_is() {
     }
 }
 
-/// Old measurements are told, whichever solver has changed: another hash is never taken for the same.
+/// Old measurements are marked, whichever solver has changed: another hash never counts as the same.
 #[test]
 fn a_solver_that_changed_is_told() {
     let measured = measured().unwrap();
@@ -42,7 +42,8 @@ fn a_solver_that_changed_is_told() {
     assert!(cost.lines.iter().any(|line| line.solver == "mpm" && line.factors[1].is_some()));
 }
 
-/// Whoever doubts a row must be able to build what made it: a commit that a tree had while it was written is no source.
+/// A reader must be able to build the source of each stored result. A commit outside the history of the repository is
+/// no source.
 #[test]
 fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
     let mut commits: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -62,7 +63,7 @@ fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
             Command::new("git").arg("-C").arg(root).args(["merge-base", "--is-ancestor", commit, "HEAD"]).output();
         asked.is_ok_and(|answer| answer.status.success())
     };
-    // A package and a copy with a history of its own know none of them, a shallow copy not all.
+    // A package, or a copy with another history, knows none of the commits; a shallow copy may lack some.
     let is_whole = !root.join(".git/shallow").exists();
     let has_history = is_whole && commits.keys().any(|commit| is_hash(commit) && is_there(commit));
     for (commit, of) in &commits {

@@ -1,6 +1,6 @@
-//! A process that is killed, whenever: its directory is as it was before, whole and new, or says that it is mixed; what it
-//! left beside it goes with the next run. Ten kills by default, a hundred and twenty with `GRAINBENCH_LONG`; each thing
-//! that a commit does to the disk is cut off in turn by the unit tests of `reports/src/staged.rs`.
+//! A process killed at any time. Its directory is unchanged, complete with the new files, or marked as mixed. Temporary
+//! files beside it disappear with the next run. The default is ten kills; `GRAINBENCH_LONG` gives a hundred and twenty.
+//! The unit tests of `reports/src/staged.rs` interrupt each disk operation of a commit in turn.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking")]
 #![cfg(unix)]
@@ -17,21 +17,21 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Discs in a row, shown often: what is left of them is many files.
+/// Scene of discs in a row with many snapshots, so that a run leaves many files.
 const SCENE: &str = "title = 't'\ndimension = 2\nduration_cycles = 4000\n[materials.m]\ndensity = 1000.0\n\
      [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
      [grains.a]\nmaterial = 'm'\nradius = 0.1\nvelocity = [1.0, 0.0]\n\
      lattice = { origin = [0.0, 0.0], spacing = [0.25, 0.25], count = [8, 4] }\n\
      [output]\nsnapshots = 60\n[probes]\nall = { system = true }\n[variants.shorter]\noutput.snapshots = 40\n";
 
-/// Two runs that leave other files, each in words of the command line.
+/// Two runs with different output files, as words of the command line.
 struct Pair {
     runs: [&'static [&'static str]; 2],
-    /// What tells of which run a file is, whatever times stand in it.
+    /// Function that identifies the run of a file, independent of the times in it.
     kind: fn(&Path, &str) -> String,
 }
 
-/// Of a simulation the bytes, but for the seconds that it took.
+/// Returns a hash of a simulation's file without its run time.
 fn simulated(directory: &Path, name: &str) -> String {
     let text = fs::read_to_string(directory.join(name)).unwrap();
     let mut parts = text.split("\"wall_seconds\":");
@@ -41,12 +41,12 @@ fn simulated(directory: &Path, name: &str) -> String {
     format!("{} bytes, {:?}", text.len(), text.bytes().fold(0_u64, |sum, byte| sum.wrapping_mul(31) + u64::from(byte)))
 }
 
-/// Of a report which of the cases it speaks of.
+/// Returns the cases that a file of a report mentions.
 fn reported(directory: &Path, name: &str) -> String {
     let text = fs::read_to_string(directory.join(name)).unwrap();
     let of = |case: &str| text.contains(case).then(|| case.to_owned());
     let named = ["rolling-resistance", "oblique-impact"].into_iter().filter_map(of).collect::<Vec<_>>().join(" ");
-    // Figures name no case but in their own names.
+    // Figures mention their case only in their file name.
     if name.starts_with("figures") || named.is_empty() { name.to_owned() } else { named }
 }
 
@@ -62,7 +62,7 @@ const RUN: Pair = Pair {
     kind: reported,
 };
 
-/// Each file of a directory, and of which run it is; nothing hidden, and not the manifest.
+/// Returns the files of a directory with their runs, without hidden files and the manifest.
 fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<String, String> {
     if !directory.exists() {
         return BTreeMap::new();
@@ -71,7 +71,7 @@ fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<Strin
     names.map(|name| (name.clone(), kind(directory, &name))).collect()
 }
 
-/// Kills one run after the other, each at a moment by lot, and goes on where it left off.
+/// Kills one run after the other, each at a random time, and continues in the same directory.
 fn kill(pair: &Pair, times: usize, seed: u64) {
     let directory = tempfile::tempdir().unwrap();
     let (path, out) = (directory.path(), directory.path().join("out"));
@@ -91,9 +91,9 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
     let mut lot = TestRunner::new_with_rng(Config::default(), lot);
     let mut seen = [0; 4];
     let (mut number, mut killed) = (0, 0);
-    // Who had ended by itself was not killed.
+    // A process that had ended already does not count as killed.
     while killed < times {
-        // Every third time nothing stands there before.
+        // Every third time the directory does not exist before.
         if number % 3 == 0 && out.exists() {
             fs::remove_dir_all(&out).unwrap();
         }
@@ -107,12 +107,12 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Half of the moments are near the end, where files are put in place.
+        // Half of the times are near the end, when files are moved into place.
         let part = (0.0..1.0_f64).new_tree(&mut lot).unwrap().current();
         let part = if number % 2 == 0 { part } else { 1.0 - 0.3 * part };
         std::thread::sleep(longest.mul_f64(part));
         let ended = child.try_wait().unwrap().is_some();
-        // SIGKILL, which nothing can catch.
+        // SIGKILL cannot be caught.
         child.kill().unwrap();
         child.wait().unwrap();
         let after = standing(&out, pair.kind);

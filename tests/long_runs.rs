@@ -1,11 +1,11 @@
-//! Who begins a run of hours is warned before its first step.
+//! A warning before the first step of a run that takes hours.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-/// A disc of a material falls for a while; in steel a wave goes through a cell in a fifth of a microsecond.
+/// Returns a scene of a falling disc. In steel, a wave crosses a cell in 0.2 µs.
 fn scene(young_modulus: f64, duration: f64) -> String {
     format!(
         "title = 'A disc falls on a floor'\ndimension = 2\nduration = {duration:.1}\ngravity = [0.0, -9.81]\n\
@@ -16,7 +16,7 @@ fn scene(young_modulus: f64, duration: f64) -> String {
     )
 }
 
-/// The first line on the standard error, and nothing more of the run.
+/// Returns the first line of the standard error and ends the run.
 fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("disc.toml"), scene(young_modulus, duration)).unwrap();
@@ -34,8 +34,8 @@ fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
     line
 }
 
-/// 20 s at .4 of h/c: h = R/8 = 1.25 mm, c = √(M/ρ) = 6020 m/s in steel, M = 1.346 E at ν = .3; 2.4e8 steps of 1804 points,
-/// twelve hours at ten million a second.
+/// 20 s at 0.4 of h/c: h = R/8 = 1.25 mm, c = √(M/ρ) = 6020 m/s in steel, M = 1.346 E at ν = 0.3. These are 2.4e8 steps
+/// of 1804 points: twelve hours at ten million points a second.
 #[test]
 fn steel_in_mpm_is_warned_of() {
     let line = first_line(2.1e11, 20.0, "8");
@@ -45,7 +45,7 @@ fn steel_in_mpm_is_warned_of() {
     }
 }
 
-/// A second in rubber with cells of half a radius is run at once, and nobody is warned.
+/// One second in rubber with cells of half a radius runs at once, without a warning.
 #[test]
 fn rubber_is_not() {
     let line = first_line(2.1e7, 1.0, "2");

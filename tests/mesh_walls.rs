@@ -1,5 +1,5 @@
-//! Walls of triangles: the same as other walls where they are the same surface, whatever moves, comes and goes; and files that
-//! are none.
+//! Walls of triangles. They give the same results as other walls of the same surface, also with motion and with
+//! inserted and removed grains. Invalid files are rejected.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -31,14 +31,14 @@ fn stl(triangles: &[Triangle]) -> String {
     text + "endsolid test\n"
 }
 
-/// A box between two corners, with normals that point out of it.
+/// Returns a box between two corners, with outward normals.
 fn block(low: [f64; 3], high: [f64; 3]) -> Vec<Triangle> {
     let corner = |bits: usize| [0, 1, 2].map(|axis| if bits >> axis & 1 == 1 { high[axis] } else { low[axis] });
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c].map(corner), [a, c, d].map(corner)]).collect()
 }
 
-/// A rectangle in the plane z = 0, as so many strips of two triangles.
+/// Returns a rectangle in the plane z = 0, as `count` strips of two triangles.
 fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
     let at = |strip: u32, y: f64| [low[0] + (high[0] - low[0]) * f64::from(strip) / f64::from(count), y, 0.0];
     (0..count)
@@ -50,7 +50,7 @@ fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
         .collect()
 }
 
-/// Spheres above one another in a box of 2 m, some of which meet its edges and corners.
+/// Spheres above one another in a box of 2 m, some in contact with its edges and corners.
 const GRAINS: &str = r#"title = "Walls of triangles"
 dimension = 3
 duration = 0.3
@@ -82,14 +82,14 @@ fn run(scene: &Scene, watch: &mut dyn Watch) -> Record {
     solver.run(scene, &STEP, watch).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The worst distance between the same grains at the end (m).
+/// Returns the largest distance between the same grains at the end (m).
 fn apart(one: &Record, other: &Record) -> f64 {
     let [one, other] = [one, other].map(|record| &record.snapshots.last().unwrap().grains);
     assert_eq!(one.len(), other.len());
     one.iter().zip(other).map(|(a, b)| (a.position - b.position).norm()).fold(0.0, f64::max)
 }
 
-/// In a box of twelve triangles grains move as between six planes.
+/// In a box of twelve triangles, grains move as between six planes.
 #[test]
 fn a_box_of_triangles_is_a_box_of_planes() {
     let mesh = "walls.box = { material = 'm', mesh = { file = 'wall.stl', unit = 'm' } }\n";
@@ -110,12 +110,12 @@ fn a_box_of_triangles_is_a_box_of_planes() {
     let touching = contacts(&record);
     assert!(touching > 20 && touching == contacts(&as_planes), "{touching}");
     assert!(apart(&record, &as_planes) < 1e-9, "{}", apart(&record, &as_planes));
-    // What is a little softer is seen.
+    // A slightly different stiffness gives a visible difference.
     ours.change_laws(|law| law.scale_normal(1.0 + 1e-6));
     assert!(apart(&run(&ours, &mut ()), &as_planes) > 1e-9);
 }
 
-/// A plate that turns and moves takes grains along as a rectangle does.
+/// A plate of triangles with rotation and translation moves grains as a rectangle does.
 #[test]
 fn a_plate_of_triangles_moves_as_a_rectangle() {
     let motion = "motion = [{ velocity = [0.3, 0.0, 0.2], spin = [0.0, 0.0, 1.5], centre = [0.2, 0.1, 0.0] }]";
@@ -133,7 +133,7 @@ fn a_plate_of_triangles_moves_as_a_rectangle() {
     assert!(forces[0].norm() > 1.0 && (forces[0] - forces[1]).norm() < 1e-6 * forces[0].norm());
 }
 
-/// Keeps the checkpoints of a run.
+/// Watch that keeps the checkpoints of a run.
 struct Keeper(Vec<Checkpoint>);
 
 impl Watch for Keeper {
@@ -147,13 +147,13 @@ impl Watch for Keeper {
     }
 }
 
-/// A funnel of triangles that turns, with grains that come through it and are taken out below.
+/// Returns a rotating funnel of triangles. Grains fall through it and are removed below.
 fn funnel() -> Scene {
     let rim = |part: u32, radius: f64, z: f64| {
         let (sine, cosine) = (f64::from(part) * std::f64::consts::TAU / 16.0).sin_cos();
         [radius * cosine, radius * sine, z]
     };
-    // The last part ends where the first begins, in every bit.
+    // The last part ends exactly where the first begins, in all bits.
     let triangles: Vec<Triangle> = (0..16)
         .flat_map(|part| {
             let next = (part + 1) % 16;
@@ -205,7 +205,7 @@ fn who_has_no_meshes_says_so() {
     assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("mesh")), "{refused:?}");
 }
 
-/// A file in the binary form.
+/// Returns a file in binary form.
 fn binary(triangles: &[Triangle]) -> Vec<u8> {
     let mut bytes = vec![0; 80];
     bytes.extend((triangles.len() as u32).to_le_bytes());
@@ -217,7 +217,7 @@ fn binary(triangles: &[Triangle]) -> Vec<u8> {
     bytes
 }
 
-/// Every file that is no mesh, and what is said of it.
+/// Reports the error of each kind of invalid mesh file.
 #[test]
 fn what_is_wrong_with_a_mesh_is_told() {
     let cube = block([-1.0; 3], [1.0; 3]);
@@ -282,7 +282,7 @@ fn what_is_wrong_with_a_mesh_is_told() {
         let _ = writeln!(told, "{name}: {error}");
     }
     insta::assert_snapshot!(told);
-    // And those that are right: in millimetres, with corners that are nearly the same, and as binary.
+    // Valid files: in millimetres, with slightly different corners, and binary.
     for (bytes, more) in [
         (stl(&large).into_bytes(), "unit = 'mm'"),
         (stl(&nearly).into_bytes(), "unit = 'm', merge = 1e-6"),

@@ -1,7 +1,8 @@
-//! Walls that move by functions of time, in each solver: a disc on a belt that is drawn off evenly rolls without slip.
+//! Walls with prescribed functions of time in each solver: a disc on an evenly accelerated belt rolls without slip.
 //!
-//! Friction at its lowest point is all that acts along the belt: m a = F and I α = F R with I = m R²/2, and the point moves with
-//! the belt, so that a disc has a third of the belt's velocity and way, for as long as F = m A/3 stays below μ m g.
+//! Only friction at the lowest point acts along the belt: m a = F and I α = F R with I = m R²/2, and the lowest point
+//! moves with the belt. The disc therefore has a third of the belt's velocity and displacement, as long as F = m A/3 is
+//! below μ m g.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,12 +11,12 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Velocity (m/s) that the belt reaches in this time (s), and the time of the run.
+/// Final velocity of the belt (m/s), time to reach it (s), and duration of the run (s).
 const SPEED: f64 = 1.0;
 const RISING: f64 = 0.4;
 const END: f64 = 0.6;
 
-/// How far the disc has come (m).
+/// Returns the displacement of the disc (m).
 fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
     let text = format!(
         "title = 'Drawn off'\ndimension = 2\ngravity = [0.0, -9.8]\nduration = {END:?}\n\
@@ -43,7 +44,8 @@ fn a_disc_rolls_on_a_belt_that_is_drawn_off_evenly() {
     });
     let table = format!("{{ table = [{}] }}", rows.collect::<Vec<_>>().join(", "));
     let at_once = format!("{{ velocity = [{SPEED:?}, 0.0] }}");
-    // What a grid makes of rolling is off by more (`incline-disc`); that a table is the function it samples is asked of it too.
+    // The grid has a larger error of rolling (`incline-disc`). It must also agree between a table and the function that
+    // the table samples.
     for (solver, resolution, off) in [
         ("dem", Resolution::CriticalFraction(0.02), 2e-3),
         ("rigid", Resolution::substeps(32), 1e-2),

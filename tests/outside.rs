@@ -1,4 +1,4 @@
-//! Programs as solvers, by a manifest: one that moves a grain, and those that lie.
+//! External solvers with a manifest: one that moves a grain, and several with wrong output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -34,7 +34,7 @@ fn write(folder: &Path, manifest: &str, script: &str) {
     fs::write(folder.join("liar.sh"), script).unwrap();
 }
 
-/// What runs on this machine.
+/// Returns the processes on this machine.
 fn running() -> String {
     let running = Command::new("ps").args(["-eo", "args"]).output();
     running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
@@ -46,7 +46,8 @@ fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
     (answer, results)
 }
 
-/// Each lie is found out, in words that an author can act on: the script, the verdict of every row, and part of what is said.
+/// Each wrong output is detected, with a message that an author can use. Each entry has the script, the verdict of all
+/// results, and part of the message.
 #[test]
 fn a_program_that_lies_is_found_out() {
     let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
@@ -83,7 +84,7 @@ fn a_program_that_lies_is_found_out() {
     assert!(!running().contains("sleep 1234"), "what it started goes with it");
 }
 
-/// A program that stays is found out as well, and what it leaves behind goes with it.
+/// A worker with wrong output is detected too, and its child processes end with it.
 #[test]
 fn a_worker_that_lies_is_found_out() {
     let manifest =
@@ -116,7 +117,7 @@ fn a_worker_that_lies_is_found_out() {
     assert!(!running().contains("sleep 4321"), "what it started goes with it");
 }
 
-/// A scene that calls for more than is declared is not given to the program, and a program that is not there is amber.
+/// A scene with effects that the manifest does not declare is not given to the program. A missing program is amber.
 #[test]
 fn what_is_not_declared_is_not_asked_for() {
     let directory = tempfile::tempdir().unwrap();
@@ -143,7 +144,7 @@ fn what_is_not_declared_is_not_asked_for() {
     assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
 }
 
-/// A manifest that is wrong is refused with file, place, what was expected and what stood there.
+/// A wrong manifest is an error with file, place, expected and found text.
 #[test]
 fn a_wrong_manifest_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -204,7 +205,7 @@ fn a_wrong_manifest_is_refused() {
     );
 }
 
-/// What a program is given is definite, and the same in both formats.
+/// An external solver gets a resolved scene, with the same contents in both formats.
 #[test]
 fn a_scene_is_printed_as_programs_are_given_it() {
     let directory = tempfile::tempdir().unwrap();
@@ -225,7 +226,7 @@ fn a_scene_is_printed_as_programs_are_given_it() {
     assert_eq!(other["laws"][0]["friction"], 0.25);
 }
 
-/// The files of an example in a folder of their own, with something in one of them spoiled.
+/// Copies the files of an example to a separate folder, with an optional defect in one file.
 fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
@@ -237,7 +238,7 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::T
             assert!(whole.contains(right), "{right}");
             text = whole.replace(right, wrong).into_bytes();
         }
-        // Programs that were built there before are not those of these sources.
+        // Skips executables that were built there before, because they do not belong to these sources.
         if name != "one_grain" {
             fs::write(directory.path().join(name), text).unwrap();
         }
@@ -245,14 +246,14 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::T
     directory
 }
 
-/// Whether a program is here; under CI it must be.
+/// Returns true if a program is installed, which it must be in CI.
 fn is_here(program: &str) -> bool {
     let is_here = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
     assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
     is_here
 }
 
-/// How a run of an example ends, and how many rows pass.
+/// Returns the exit code of a run of an example and the number of results that pass.
 fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usize) {
     let run = [&["run"], cases, &["--solver", "SOLVER.toml", "--json"], further].concat();
     let answer = grainbench(folder, &run);
@@ -263,7 +264,8 @@ fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usiz
 
 const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
 
-/// A grain in forty lines of Python is judged, controls and all; each line of its physics that is spoiled turns rows red.
+/// The claims pass for a one-grain solver in forty lines of Python, with controls. A defect in any line of its physics
+/// makes claims fail.
 #[test]
 fn a_grain_in_python_is_judged_line_by_line() {
     if !is_here("python3") {
@@ -303,7 +305,7 @@ fn a_grain_in_python_is_judged_line_by_line() {
     });
 }
 
-/// The same in C++, which is built by the manifest first.
+/// The same test for C++, which the manifest builds first.
 #[test]
 fn a_grain_in_cpp_is_built_and_judged() {
     if !is_here("make") || !is_here("c++") {
@@ -318,7 +320,7 @@ fn a_grain_in_cpp_is_built_and_judged() {
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
 }
 
-/// A column and a bar in fifty lines of Python: bodies that deform are judged by cells, and each line that is spoiled is felt.
+/// The claims by cells pass for a column and a bar in fifty lines of Python, and detect a defect in each line.
 #[test]
 fn a_line_of_masses_is_judged_as_a_continuum() {
     if !is_here("python3") {
@@ -359,7 +361,7 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
 }
 
-/// What a program was judged to be is kept beside it, and another run is held to that and not to green.
+/// The results of an external solver are stored with it, and the next run is compared with them instead of with a pass.
 #[test]
 fn a_program_is_held_to_what_is_kept_of_it() {
     if !is_here("python3") {
@@ -385,7 +387,7 @@ fn a_program_is_held_to_what_is_kept_of_it() {
     assert_eq!(judge(&["--as-kept", "column"]).code, Some(2));
 }
 
-/// Studies take a program as they take our own solvers; what it did before is never taken for what it does now.
+/// The studies treat an external solver as our solvers. Old results are never taken for results of the present program.
 #[test]
 fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     if !is_here("make") || !is_here("c++") {
@@ -402,7 +404,7 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(points.len() >= 12 && points.iter().all(|point| point["solver"] == "one-grain-cpp"), "{points:#?}");
     let closest = points.iter().filter_map(|point| point["error"].as_f64()).fold(f64::INFINITY, f64::min);
     assert!(closest < 1e-4, "stiff contacts are rigid ones: {closest}");
-    // Why its error stays where it is nobody knows here.
+    // The reason of its constant error is unknown here.
     let floors: Vec<&str> = points.iter().filter_map(|point| point["floor"].as_str()).collect();
     assert!(!floors.is_empty() && floors.iter().all(|floor| floor.starts_with("what no finer step")), "{floors:?}");
     let page = fs::read_to_string(folder.path().join("cost/index.html")).unwrap();
@@ -416,7 +418,7 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
 
-/// A program that cannot express any wrong scene has not earned the rows that it passes.
+/// If an external solver cannot run any wrong scene, its passed claims do not count.
 #[test]
 fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     if !is_here("python3") {

@@ -1,4 +1,4 @@
-//! A case of anybody's: a scene, claims in a file, no Rust.
+//! A user's case: a scene and claims in a file, without Rust.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// The example in a folder of its own, with something in one of its files replaced.
+/// Copies the example to a separate folder, with replacements in one of its files.
 fn case(file: &str, replaced: &[(&str, &str)]) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case");
@@ -44,7 +44,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
         [&verdicts[0]["tolerance"], &verdicts[2]["tolerance"], &verdicts[0]["evidence"]],
         ["computed", "judged", "analytic"]
     );
-    // By hand: 5/2 · .1 · 9.81 · cos 30° / .005 at the time of the last sample.
+    // By hand: 5/2 · 0.1 · 9.81 · cos 30° / 0.005 at the time of the last sample.
     let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
     let found = verdicts[1]["expected"].as_f64().unwrap() / spin;
     assert!((0.199..0.201).contains(&found), "{found}");
@@ -52,7 +52,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
 }
 
-/// A wrong scene, a wrong expectation and a control that changes too little are each red.
+/// A wrong scene, a wrong expectation and a control with too small a change each fail.
 #[test]
 fn what_is_wrong_is_red() {
     let red = |file: &str, replaced: &[(&str, &str)], verdicts_red: usize, controls_green: usize| {
@@ -67,11 +67,11 @@ fn what_is_wrong_is_red() {
     red("claims.toml", &[("5/2 *", "2.51 *")], 1, 0);
     red("claims.toml", &[("allowed = 1e-6", "allowed = 0.1")], 0, 1);
     red("claims.toml", &[("29.9 }", "29.99999 }")], 0, 1);
-    // A slope on which it rolls where slipping is claimed.
+    // A slope on which the ball rolls, although the claim expects slip.
     red("scene.toml", &[("friction = 0.1", "friction = 0.3")], 1, 0);
 }
 
-/// A course in a table, a moment, and bounds.
+/// Claims on a curve in a table, on a value at one time, and on bounds.
 #[test]
 fn a_claim_may_be_a_course_a_moment_or_a_bound() {
     let claims = |expected: &str| {
@@ -105,7 +105,7 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
     }
 }
 
-/// A slip is refused with the file, the claim, the key, what was expected and what stood there, and nothing is run.
+/// A mistake is an error with file, claim, key, expected and found text, and nothing is run.
 #[test]
 fn a_wrong_file_is_refused() {
     let slips: [(&str, &str, &str); 21] = [
@@ -187,7 +187,7 @@ fn a_wrong_file_is_refused() {
     assert!(answer.code == Some(2) && answer.err.contains("empty/claims.toml: expected a file"), "{}", answer.err);
 }
 
-/// A folder that has the name of a case of the registry is meant by `./`, and whoever leaves that out is told.
+/// A folder with the name of a case of the registry needs `./`. Without it, a message points to the folder.
 #[test]
 fn a_folder_named_as_a_case_is_told_of() {
     let whole = case("", &[]);

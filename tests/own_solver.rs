@@ -1,4 +1,5 @@
-//! Gates for solvers that the cases do not name: fair, felt, and red where the physics is wrong.
+//! Claims for solvers that the cases do not name: solver-independent, with controls that have an effect, and failing
+//! for wrong physics.
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
 use grainbench::cases::registry::CASES;
@@ -16,12 +17,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The conventions differ in all that a scene leaves open: a gate that is fair to any solver is passed by each of them,
-/// and each of them feels its wrong physics. Where that takes long, two conventions have gates of their own; all take part
-/// with `GRAINBENCH_LONG=1`.
+/// The conventions differ in everything that a scene leaves open. Each convention passes the solver-independent claims,
+/// and their controls fail for it. Cases that take long are included with `GRAINBENCH_LONG=1`.
 #[test]
 fn every_convention_passes_what_is_fair_to_any_solver() {
-    /// Cases of contacts and walls that turn, which the conventions of other programs fail as these do.
+    /// Cases of rotating contacts and walls, which the conventions of external solvers fail as the external solvers do.
     const TURNING: [&str; 2] = ["carried-grain", "turning-walls"];
     let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
     let most = if long { Set::Long } else { Set::Main };
@@ -34,13 +34,13 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
         let own: Vec<&str> = cases.iter().copied().filter(|case| turns || !TURNING.contains(case)).collect();
         grainbench::judge(Dem::new(convention), &own).unwrap().require().unwrap();
     });
-    // Springs of the programs do not turn about the normal, and their rolling stage does not feel the spin of a wall.
+    // In these conventions, springs do not rotate about the normal, and the rolling law ignores the spin of a wall.
     for convention in [Convention::LAMMPS, Convention::LIGGGHTS] {
         assert!(grainbench::judge(Dem::new(convention), &TURNING).unwrap().require().is_err(), "{}", convention.name);
     }
 }
 
-/// Another solver or a defect of ours cannot be put into a stranger's solver.
+/// A control cannot replace an external solver by another solver or plant a defect in it.
 #[test]
 fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
     for case in CASES {
@@ -60,7 +60,7 @@ fn a_case_that_is_not_there_or_not_fair_says_so() {
     assert_eq!(grainbench::judge(solver(), &["squash"]), Err(NotJudged::NothingFair("squash".to_owned())));
 }
 
-/// A solver that does not read the scene may give the right answer, but not to the wrong question.
+/// A solver that ignores the scene may give the right result, but not for the wrong scene of a control.
 #[test]
 fn a_solver_that_ignores_the_scene_is_found_out() {
     use grainbench::scene::{record::Record, scene::Scene, solver::*};
@@ -82,8 +82,8 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
 }
 
-/// The example as a stranger has it, in a crate of its own that knows grainbench alone: right as it stands, red with one
-/// line of its physics spoiled.
+/// The example as an external author has it, in a separate crate that depends only on grainbench. It passes as it is
+/// and fails with a defect in one line of its physics.
 #[test]
 fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_solver.rs");
@@ -110,8 +110,8 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
     }
 }
 
-/// All programs in one executable, compiled against the library that this test is linked with: cargo would build it and our
-/// other crates once more for a crate outside the workspace, which takes minutes and leaves the same code.
+/// All programs in one executable, compiled against the library of this test. For a crate outside the workspace, cargo
+/// would build all our crates again, which takes minutes and gives the same code.
 struct Foreign {
     folder: tempfile::TempDir,
 }
@@ -146,7 +146,7 @@ impl Foreign {
     }
 }
 
-/// The library of that name that was built last: of other flags there may be others.
+/// Returns the latest build of the library of that name. There may be builds with other flags.
 fn newest(folder: &Path, name: &str) -> PathBuf {
     let is_it = |path: &PathBuf| {
         let file = path.file_name().unwrap().to_string_lossy();

@@ -1,5 +1,5 @@
-//! Decks of scenes with what is there for a while and what is pressed: each is written and then runs as ours does, or is refused
-//! with what the program lacks.
+//! Decks of scenes with temporary grains and walls and with pistons. Each deck is written and gives our result, or the
+//! error names the missing feature of the external solver.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ use std::path::Path;
 
 const STEP: Resolution = Resolution::TimeStep(1e-3);
 
-/// Spheres of mass one over a floor that ends in the middle.
+/// Spheres of mass one above a floor that ends in the middle.
 const HEAD: &str = r#"title = "Passing"
 dimension = 3
 duration = 5.0
@@ -38,8 +38,8 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Our run in the convention of a program and its own; none where it is not installed, which it must be where every change is
-/// checked.
+/// Returns our run in the convention of an external solver, and its own run. `None` if it is not installed, which is an
+/// error in CI.
 fn both(text: &str, program: &str) -> Option<[Record; 2]> {
     let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
     let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));
@@ -50,7 +50,8 @@ fn both(text: &str, program: &str) -> Option<[Record; 2]> {
     }
 }
 
-/// The largest distance between grains of one id, of snapshots of one step up to a time (s): each has the same grains.
+/// Returns the largest distance between grains of the same id, in snapshots of the same step up to a time (s). Both
+/// snapshots must have the same grains.
 fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
     let mut worst = 0.0_f64;
     let mut compared = 0;
@@ -73,7 +74,7 @@ fn column_apart([ours, theirs]: &[Record; 2], name: &str) -> [f64; 2] {
     [off, a.iter().map(|a| a.abs()).fold(0.0, f64::max)]
 }
 
-/// What falls over the ledge leaves at the same steps, and what it left goes on alike.
+/// Grains that fall over the ledge are removed at the same steps, and the remaining grains move in the same way.
 #[test]
 fn grains_leave_lammps_as_they_leave_ours() {
     let removal = "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0], every_cycles = 30 }\n";
@@ -87,12 +88,12 @@ fn grains_leave_lammps_as_they_leave_ours() {
     assert_eq!(records[1].series.column("grains.left").unwrap(), left);
     let found = apart(&records, 5.0);
     assert!(found < 1e-8, "{found}");
-    // Without it they stay: the control.
+    // Control: without removal, all grains remain.
     let all = both(&format!("{HEAD}{LEDGE}"), "lammps").unwrap();
     assert_eq!(all[1].snapshots.last().unwrap().grains.len(), 30);
 }
 
-/// A floor that is shaken, drawn off and lifted: a sine, a ramp and a table that add up.
+/// A floor with a sine, a ramp and a table that add up.
 #[test]
 fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
     let text = |ramp: f64| {
@@ -106,12 +107,12 @@ fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
     let Some(records) = both(&text(0.5), "lammps") else { return };
     let found = apart(&records, 1.5);
     assert!(found < 1e-9, "{found}");
-    // A ramp that is a tenth shorter is seen.
+    // A ramp shorter by a tenth gives a visible difference.
     let [ours, _] = both(&text(0.45), "lammps").unwrap();
     assert!(apart(&[ours, records[1].clone()], 1.5) > 1e-4);
 }
 
-/// A floor that is taken away lets go of all at the same step.
+/// A removed floor releases all grains at the same step.
 #[test]
 fn a_wall_is_taken_away_in_lammps_as_in_ours() {
     let text = |until: &str| format!("{HEAD}{FLOOR}until = {until}\n");
@@ -125,8 +126,8 @@ fn a_wall_is_taken_away_in_lammps_as_in_ours() {
     );
 }
 
-/// LIGGGHTS leaves out half of the last push of a wall, where ours leaves out all: what has rested on it then falls slower by
-/// ½ g Δt.
+/// When a wall is removed, LIGGGHTS omits half of its last push and our solver the whole. A grain that rested on it
+/// then falls slower by ½ g Δt.
 #[test]
 fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
     let single = HEAD
@@ -139,7 +140,7 @@ fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
     assert!((found - half).abs() < 1e-6, "{found} for {half}");
 }
 
-/// A lid that is pressed and sheared, without and with damping.
+/// A lid with a prescribed force and shear velocity, with and without damping.
 #[test]
 fn a_piston_presses_in_lammps_as_in_ours() {
     for (piston, of_grains) in [("force = 40.0, mass = 20.0", 1e-8), ("force = 40.0, mass = 20.0, damping = 2.0", 1e-4)]
@@ -151,13 +152,13 @@ fn a_piston_presses_in_lammps_as_in_ours() {
         assert!(found < of_grains, "{piston}: {found}");
         let [advance, far] = column_apart(&records, "lid.advance");
         assert!(advance < 1e2 * of_grains && far > 0.01, "{piston}: {advance} of {far}");
-        // A lid with another mass is another one.
+        // A lid with another mass moves differently.
         let [ours, _] = both(&text(&pressed.replace("mass = 20.0", "mass = 20.2")), "lammps").unwrap();
         assert!(apart(&[ours, records[1].clone()], 1.0) > 1e-5);
     }
 }
 
-/// What a program does not do it says, and which.
+/// A deck error names the feature that an external solver lacks.
 #[test]
 fn what_a_program_lacks_is_said() {
     let said = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {

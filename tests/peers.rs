@@ -1,6 +1,8 @@
-//! What is kept of other people's programs: of these adapters, of today's rows, and in the tables of `peers/README.md`.
+//! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of
+//! `peers/README.md`.
 //!
-//! `UPDATE_README=1 cargo test --release --test peers` writes the tables anew; `grainbench run --solver PATH --keep` judges anew.
+//! `UPDATE_README=1 cargo test --release --test peers` rewrites the tables. `grainbench run --solver PATH --keep` makes
+//! new results.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,7 +18,7 @@ use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
 use std::fmt::Write as _;
 
-/// A folder of `peers/` without what is kept would be an adapter that nobody ever saw judged.
+/// Each adapter in `peers/` has stored results.
 #[test]
 fn every_adapter_was_judged_as_it_stands() {
     let mut folders: Vec<String> = std::fs::read_dir(root("peers"))
@@ -38,7 +40,7 @@ fn every_adapter_was_judged_as_it_stands() {
     }
 }
 
-/// A row that passes has a control that turned red, and a row is one of today's with today's tolerance.
+/// Each passed result has a failed control. Each result belongs to a present claim with its present tolerance.
 #[test]
 fn kept_rows_are_earned_and_are_those_of_today() {
     for judged in kept().unwrap() {
@@ -76,7 +78,7 @@ fn programs_table(judged: &[Judged]) -> String {
     table.trim_end().to_owned()
 }
 
-/// Largest error over what is allowed and rows passed of those asked; what a program cannot express says nothing.
+/// Returns the largest error over its tolerance and the number of passed claims. Unsupported scenes do not count.
 fn cell(count: Count) -> String {
     let Count { pass, red, amber, worst, .. } = count;
     if pass + red == 0 {
@@ -108,7 +110,8 @@ fn tables_are_generated() {
     expect_file("peers/README.md", &with_generated(&readme, "costs", &costs_table(&study)));
 }
 
-/// The cheapest setting of each solver within one per cent, beside the cheapest of all; else how near it comes.
+/// Returns the table of the cheapest setting of each solver within one per cent, relative to the cheapest solver;
+/// otherwise the smallest error reached.
 fn costs_table(study: &Study) -> String {
     const TARGET: f64 = 0.01;
     let lines = cost::lines(&study.diagrams);

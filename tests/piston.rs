@@ -1,4 +1,4 @@
-//! Walls that are pressed, against what a piston must do.
+//! Walls with a prescribed force, compared with exact solutions of a piston.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,12 +12,12 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Force (N), mass (kg) of the lid; stiffness (N/m) of contacts; the sphere's mass is one.
+/// Force (N) and mass (kg) of the lid, contact stiffness (N/m). The sphere's mass is one.
 const FORCE: f64 = 30.0;
 const MASS: f64 = 4.0;
 const STIFFNESS: f64 = 2e4;
 
-/// A sphere on a floor, and a lid so far above it, damped.
+/// Returns a sphere on a floor and a damped lid at a distance `gap` above it.
 fn scene(gap: f64, damping: f64, between: f64, duration: f64, motion: &str) -> String {
     format!(
         r#"title = "A lid"
@@ -52,13 +52,13 @@ fn run(text: &str) -> Record {
     solver.run(&scene, &Resolution::CriticalFraction(0.01), &mut ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// How far the course of a column is from what it must be, at most.
+/// Returns the largest difference between a column and its exact values.
 fn apart(record: &Record, name: &str, exact: impl Fn(f64) -> f64) -> f64 {
     let values = record.series.column(name).unwrap().iter().zip(&record.series.time);
     values.map(|(value, &time)| (value - exact(time)).abs()).fold(0.0, f64::max)
 }
 
-/// Before it touches anything: F t²/2M, and with damping F/(Mc) (t − (1 − e^(−ct))/c).
+/// Without contact, the displacement is F t²/2M; with damping it is F/(Mc) (t − (1 − e^(−ct))/c).
 #[test]
 fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
     let free = run(&scene(2.0, 0.0, 0.0, 0.7, ""));
@@ -70,9 +70,9 @@ fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
     assert!(apart(&damped, "lid.advance", |time| 0.5 * FORCE / MASS * time * time) > 0.1);
 }
 
-/// A mass m between two springs k and a mass M on the upper one, on which F comes at once, until they first come back, before
-/// which neither lets go: x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁
-/// about rest at x₁ = (F/k, 2F/k), with the modes V and ω² of M^(−½) K M^(−½).
+/// A mass m between two springs k and a mass M on the upper spring, with a sudden force F. Until the first return, no
+/// contact opens and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k, 2F/k); V and ω² are the modes
+/// of M^(−½) K M^(−½).
 #[test]
 fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let root = Vector2::new(1.0, MASS.sqrt());
@@ -89,11 +89,11 @@ fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let size = 2.0 * FORCE / STIFFNESS;
     assert!(apart(&record, "lid.advance", |time| exact(time, 1)) < 1e-3 * size);
     assert!(apart(&record, "ball.z", |time| 0.5 - exact(time, 0)) < 1e-3 * size);
-    // A tenth more mass is another answer.
+    // A frequency higher by 5 % gives a visible difference.
     assert!(apart(&record, "lid.advance", |time| exact(time * 1.05, 1)) > 0.1 * size);
 }
 
-/// Damped, it comes to rest where two springs in a row carry its force; and so it does while it slides.
+/// With damping, the lid comes to rest where two springs in series carry its force, also while it slides.
 #[test]
 fn a_lid_at_rest_presses_with_its_force() {
     for motion in ["", "motion = [{ velocity = [0.5, 0.0, 0.0] }]"] {
@@ -115,7 +115,8 @@ fn a_run_with_a_lid_goes_on_to_the_same_bits_and_others_refuse_it() {
     assert_eq!(simulate(&["dem", "--out", "two", "--restart", "half"]).code, Some(0));
     let series = |folder: &str| std::fs::read(path.join(folder).join("series.csv")).unwrap();
     assert!(series("one") == series("two"));
-    // LAMMPS can (`passing_decks`); LIGGGHTS has a wall that seeks a force, and no mass that it accelerates.
+    // LAMMPS supports it (`passing_decks`). LIGGGHTS has a force-controlled wall, but no mass that the force
+    // accelerates.
     for solver in ["rigid", "liggghts"] {
         let answer = simulate(&[solver, "--out", "no"]);
         assert!(answer.code == Some(2) && answer.err.contains("a wall that is pressed"), "{}", answer.err);

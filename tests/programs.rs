@@ -1,4 +1,4 @@
-//! Rows of programs that are not installed.
+//! Claims with external solvers that are not installed.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -25,7 +25,8 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     assert_eq!(answer.err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
 }
 
-/// A race says who is missing, and whose laps were too short to tell; where nobody has run it has not succeeded.
+/// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a
+/// success.
 #[test]
 fn a_race_tells_who_took_no_part() {
     let directory = tempfile::tempdir().unwrap();
@@ -66,7 +67,7 @@ fn a_time_limit_that_is_no_time_is_refused() {
     assert_eq!(said, format!("error: lammps is not available: {reason}\n"));
 }
 
-/// However we end, the program ends with us, and the folder that it worked in goes.
+/// If our process is killed, the external solver ends and its working folder is removed.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_program_and_its_folder_go_when_we_are_killed() {

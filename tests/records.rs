@@ -1,4 +1,4 @@
-//! What snapshots hold is chosen: columns, digits, and the mean of the stress over the time between them.
+//! Options of snapshots: columns, digits, and the stress averaged over the time between snapshots.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ use grainbench::scene::solver::{Resolution, Watch};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Twelve hundred spheres of two sizes that fall through one another's way, between two walls and a period.
+/// Twelve hundred colliding spheres of two sizes between two walls and a periodic boundary.
 const SCENE: &str = r#"title = "Falling spheres"
 dimension = 3
 duration_cycles = 60
@@ -58,7 +58,7 @@ fn scene(output: &str) -> Scene {
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
 
-/// Keeps the checkpoints of a run on some threads.
+/// Watch that keeps the checkpoints of a run on some threads.
 struct Keeper {
     threads: usize,
     kept: Vec<Checkpoint>,
@@ -84,7 +84,8 @@ fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
     (record, keeper.kept)
 }
 
-/// V σ of every grain from the contacts of a snapshot: what the arm reaches is halfway through the overlap, or a `part` of it.
+/// Returns V σ of each grain from the contacts of a snapshot. The lever arm ends at the `part` of the overlap; 0.5 is
+/// its middle.
 fn virials(snapshot: &Snapshot, part: f64) -> Vec<Matrix3<f64>> {
     let mut sums = vec![Matrix3::zeros(); snapshot.grains.len()];
     for contact in snapshot.told_contacts() {
@@ -106,7 +107,7 @@ fn matrix([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
-/// The largest difference over the largest of what is compared with.
+/// Returns the largest difference over the largest expected value.
 fn apart(found: &[GrainState], of: impl Fn(&GrainState) -> Option<[f64; 6]>, exact: &[Matrix3<f64>]) -> f64 {
     let scale = exact.iter().map(Matrix3::norm).fold(0.0, f64::max);
     assert!(scale > 0.0);
@@ -114,7 +115,8 @@ fn apart(found: &[GrainState], of: impl Fn(&GrainState) -> Option<[f64; 6]>, exa
     each.fold(0.0, f64::max) / scale
 }
 
-/// The mean over the interval is that of the snapshots of every step of it, which another run tells with its contacts.
+/// The mean over an interval equals the mean over the snapshots of all its steps, which another run stores with
+/// contacts.
 #[test]
 fn the_mean_over_an_interval_is_that_of_its_steps() {
     let each = run(&scene("").each_step(), 1).0;
@@ -139,12 +141,12 @@ fn the_mean_over_an_interval_is_that_of_its_steps() {
                 sums.iter().map(|sum| sum / of.len() as f64).collect()
             };
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.5)) < 1e-13);
-            // Neither an arm to the other surface nor the stress of the instant is taken for it.
+            // A lever arm to the other surface, or the instantaneous stress, gives a visible difference.
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.0)) > 1e-4);
             let instant = virials(&each.snapshots[now.step as usize], 0.5);
             assert!(apart(&now.grains, |grain| grain.virial.as_deref().copied(), &instant) < 1e-13);
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &instant) > 0.05);
-            // Without contacts there are none, and what was not asked for is absent.
+            // The run stores no contacts and no other columns, because they are not requested.
             assert!(
                 now.contacts.is_none() && now.grains.iter().all(|grain| grain.force.is_none() && grain.spin.x.is_nan())
             );
@@ -167,7 +169,7 @@ fn bits(record: &Record) -> String {
     format!("{:?}{:?}", record.series, record.snapshots)
 }
 
-/// However many threads find it and wherever a run is taken up again, also amid an interval.
+/// Independent of the number of threads and of the checkpoint of a restart, also within an interval.
 #[test]
 fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     let scene = scene("columns = ['spin', 'mean-virial']\nmean_every_cycles = 3\ndigits = 9");
@@ -180,12 +182,12 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
         let continued = solver.restart(&scene, &STEP, checkpoint, &mut keeper).unwrap();
         assert!(bits(&continued) == bits(&whole), "from step {}", checkpoint.step());
     }
-    // What is looked at is not changed by it.
+    // Output options do not change the run.
     let plain = run(&self::scene(""), 1).0;
     assert_eq!(plain.series, whole.series);
 }
 
-/// Files hold the chosen columns and no others, and read back; digits are kept to the nearest.
+/// Files contain only the chosen columns and can be read back. Numbers are rounded to the chosen digits.
 #[test]
 fn files_hold_what_was_chosen() {
     let directory = tempfile::tempdir().unwrap();
@@ -228,7 +230,7 @@ fn files_hold_what_was_chosen() {
     assert_ne!(all[3].grains[0].spin, Vector3::zeros());
 }
 
-/// `fields` says which stress it read: the mean where it is told, and that of the instant where that is asked for.
+/// `fields` reports the stress that it reads: the mean if present, and the instantaneous stress on request.
 #[test]
 fn fields_says_which_stress_it_read() {
     let directory = tempfile::tempdir().unwrap();
@@ -260,7 +262,7 @@ fn fields_says_which_stress_it_read() {
     assert_eq!(pressure(&[], "bare").1, None);
 }
 
-/// What cannot be chosen is refused where it stands, and who does not take means says so.
+/// An invalid column is an error with its place. A solver without mean stresses reports that.
 #[test]
 fn what_cannot_be_chosen_is_refused() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! The stored runs are those that gates read, all there and of the scenes as they are; and what is said where they are
-//! not, or the programs.
+//! The stored runs are those that claims read. They are complete and belong to the present scenes. Messages report
+//! missing stored runs and missing external solvers.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -30,7 +30,7 @@ fn every_run_that_gates_read_is_stored_and_no_other() {
     }
 }
 
-/// A tolerance that is estimated has its estimate in the tree, and no estimate is of a row that is gone.
+/// Each estimated tolerance has a stored estimate, and each estimate belongs to a claim.
 #[test]
 fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
     for case in CASES {
@@ -46,7 +46,7 @@ fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
     }
 }
 
-/// Two runs of one name would be stored in one folder.
+/// Each stored run belongs to its present scene, and a changed scene is rejected.
 #[test]
 fn none_is_stale_and_another_scene_is() {
     for of in stored::all() {
@@ -59,7 +59,7 @@ fn none_is_stale_and_another_scene_is() {
     }
 }
 
-/// What half the time step changes, at most: the runs' own uncertainty.
+/// The largest difference at half the time step: the numerical uncertainty of the stored runs.
 #[test]
 fn the_time_step_is_worth_little_where_it_is_small() {
     for of in stored::all().iter().filter(|of| of.id.starts_with("incline") && of.id.ends_with("0.5")) {

@@ -1,4 +1,4 @@
-//! Restart equals straight run, in every bit: of every case's scene, and of a process that was killed.
+//! A restarted run equals an uninterrupted one in all bits: for the scene of each case, and for a killed process.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -20,7 +20,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
-/// Keeps every checkpoint of a run.
+/// Watch that keeps all checkpoints of a run.
 struct Keeper {
     every: u64,
     kept: Vec<Checkpoint>,
@@ -37,7 +37,7 @@ impl Watch for Keeper {
     }
 }
 
-/// The beginning of a scene, with samples at odd places.
+/// Returns the beginning of a scene, with samples at odd steps.
 fn begun(mut scene: Scene) -> Scene {
     let cycles = if scene.grains.len() > 1000 { 40 } else { 300 };
     scene.duration = Duration::Cycles(cycles);
@@ -46,14 +46,14 @@ fn begun(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Beds of more grains than this have the laws of smaller ones of their case.
+/// Beds of more grains have the same contact laws as smaller beds of their case, so they are skipped.
 const MANY: usize = 20_000;
 
-/// Moving walls, periodic faces, Hertz, rolling resistance, cohesion, spheres: whatever the cases hold, in every
-/// convention.
+/// Moving walls, periodic boundaries, Hertz contacts, rolling resistance, cohesion, spheres: all features of the cases,
+/// in each convention.
 #[test]
 fn every_case_continues_to_the_same_bits() {
-    // Of many packings by one law, some.
+    // At most twelve variants of a case.
     let variants = |case: &Case| -> Vec<Scene> {
         let names = case.variants().unwrap();
         names.iter().step_by(names.len().div_ceil(12)).map(|variant| case.variant(variant).unwrap()).collect()
@@ -69,7 +69,7 @@ fn every_case_continues_to_the_same_bits() {
             let resolution = Resolution::CriticalFraction(0.1);
             let mut keeper = Keeper { every: 19, kept: Vec::new() };
             let whole = match solver.run(scene, &resolution, &mut ()) {
-                // Scenes of deformable bodies alone.
+                // Scenes with only deformable bodies.
                 Err(RunError::Unsupported { .. }) => continue,
                 run => bits(run.unwrap()),
             };
@@ -88,7 +88,7 @@ fn every_case_continues_to_the_same_bits() {
     assert!(compared > 100, "{compared}");
 }
 
-/// Wants a run to end after some steps, and asks for no more.
+/// Watch that ends a run after some steps.
 struct Impatient {
     until: u64,
     done: u64,
@@ -103,7 +103,7 @@ impl Watch for Impatient {
     }
 }
 
-/// What is kept of a run that was ended twice is what is kept of one that was not, but for its time.
+/// The stored files of a run that was interrupted twice equal those of an uninterrupted run, except for the run time.
 #[test]
 fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let case = CASES.iter().find(|case| case.name == "impact-bed").unwrap();
@@ -137,7 +137,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     }
     assert!(files(go(from.as_ref(), u64::MAX).unwrap()) == straight);
 
-    // One that somebody else left: what it took is not known.
+    // The run time before a foreign checkpoint is unknown.
     let theirs = stored().with_output(b"snapshots".to_vec());
     assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
     let mut other = scene.clone();
@@ -147,7 +147,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }
 
-/// Discs that rattle in a box for long enough to be killed in the middle.
+/// Discs that bounce in a box long enough to be killed in the middle.
 const LONG: &str = r#"title = "Discs in a box"
 dimension = 2
 duration_cycles = 1_000_000
@@ -179,7 +179,7 @@ snapshots = 2
 all = { system = true }
 "#;
 
-/// What a run left, but for the times in it.
+/// Returns the output of a run without its times.
 fn left(directory: &Path) -> Vec<(String, String)> {
     let text = |name: &String| {
         let text = std::fs::read_to_string(directory.join(name)).unwrap();
@@ -191,17 +191,17 @@ fn left(directory: &Path) -> Vec<(String, String)> {
     files(directory).iter().map(|name| (name.clone(), text(name))).collect()
 }
 
-/// Grains on springs, and grains that deform.
+/// Tests grains on springs and deformable grains.
 #[test]
 fn a_killed_run_continues_to_the_same_files() {
     killed_and_continued(LONG, &["--solver", "dem"], "20000");
-    // A grid knows no cycles of another method.
+    // A grid has no cycles of another method.
     let timed =
         LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
     killed_and_continued(&timed, &["--solver", "mpm", "--cells", "2", "--points", "2"], "200");
 }
 
-/// So many snapshots that they wait on disk: the checkpoint names their parts, and holds none of them.
+/// With many snapshots, the snapshots are on disk: the checkpoint contains their names and not their data.
 #[test]
 fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
     let many = LONG
@@ -250,7 +250,7 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile:
     directory
 }
 
-/// A run that breaks leaves its series, its snapshots and the state that broke, and says how.
+/// A run that crashes leaves its series, its snapshots, the state at the crash, and its reason.
 #[test]
 fn a_run_that_breaks_leaves_what_there_is() {
     let timed =
@@ -279,8 +279,9 @@ fn a_run_that_breaks_leaves_what_there_is() {
     }
 }
 
-/// Memory is that of a snapshot however many there are: of 10,000 discs at most three times that of a run without. Held
-/// in memory, each would take five megabytes; the short run takes sixty of them and the long one a thousand.
+/// Memory does not depend on the number of snapshots: for 10,000 discs it is at most three times the memory of a run
+/// without snapshots. In memory, each snapshot would need five megabytes. The short test has sixty of them, the long
+/// one a thousand.
 #[test]
 #[cfg(target_os = "linux")]
 fn snapshots_and_checkpoints_take_no_memory() {
@@ -303,7 +304,7 @@ fn snapshots_and_checkpoints_take_no_memory() {
     assert!(many < 3 * none, "{many} kB with {snapshots} snapshots, {none} kB without");
 }
 
-/// Ctrl-C leaves what is finished, and says so.
+/// Ctrl-C leaves the finished results and reports it.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_leaves_what_is_finished() {
@@ -315,7 +316,7 @@ fn an_interrupted_run_leaves_what_is_finished() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // It listens once it catches the signal; the registry takes far longer than that.
+    // The process handles the signal once it catches it; the registry takes much longer.
     let catches = || {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();

@@ -1,4 +1,4 @@
-//! Walls that are the side of a cylinder or a cone, against what grains in them must do.
+//! Cylinder and cone walls, compared with exact motions of grains in them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use grainbench::scene::source::SceneSource;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Stiffness of contacts (N/m), gravity (m/s²), radius of the sphere (m), whose mass is one.
+/// Contact stiffness (N/m), gravity (m/s²), radius of the sphere (m), whose mass is one.
 const STIFFNESS: f64 = 1e6;
 const GRAVITY: f64 = 10.0;
 const RADIUS: f64 = 0.25;
@@ -35,7 +35,7 @@ fn run(scene: &Scene) -> Record {
     solver.run(scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Times at which a column goes through zero (s).
+/// Returns the times of zero crossings of a column (s).
 fn crossings(record: &Record, name: &str) -> Vec<f64> {
     let (values, time) = (record.series.column(name).unwrap(), &record.series.time);
     let between = |at: usize| {
@@ -45,8 +45,8 @@ fn crossings(record: &Record, name: &str) -> Vec<f64> {
     (0..values.len() - 1).filter_map(between).collect()
 }
 
-/// A sphere that rolls to and fro at the bottom of a cylinder at rest: (7/5)(R − r) θ″ = −g sin θ, hence a period of
-/// 2π √(7(R − r)/5g) (1 + θ₀²/16).
+/// A sphere rolls to and fro at the bottom of a resting cylinder: (7/5)(R − r) θ″ = −g sin θ. Hence its period is 2π
+/// √(7(R − r)/5g) (1 + θ₀²/16).
 #[test]
 fn a_sphere_rolls_in_a_trough_at_its_period() {
     const TROUGH: f64 = 2.0;
@@ -61,11 +61,11 @@ fn a_sphere_rolls_in_a_trough_at_its_period() {
     let exact = |factor: f64| TAU * (factor * (TROUGH - RADIUS) / GRAVITY).sqrt() * (1.0 + angle * angle / 16.0);
     let (rolling, sliding) = (period(1.0), period(0.0));
     assert!((rolling / exact(7.0 / 5.0) - 1.0).abs() < 1e-4, "{rolling} for {}", exact(7.0 / 5.0));
-    // Without friction it slides as a pendulum swings: the other answer, which the first would not pass for.
+    // Control: without friction, the sphere slides like a pendulum, with another period.
     assert!((sliding / exact(1.0) - 1.0).abs() < 1e-4, "{sliding} for {}", exact(1.0));
 }
 
-/// In a drum that turns, a sphere at the bottom stays there if its surface goes with the drum's: ω r = Ω R.
+/// In a rotating drum, a sphere stays at the bottom if its surface velocity equals that of the drum: ω r = Ω R.
 #[test]
 fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
     const DRUM: f64 = 2.0;
@@ -80,14 +80,14 @@ fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
         let record = run(&scene(3.0, 0.5, &grain, &wall));
         record.series.column("ball.x").unwrap().iter().fold(0.0_f64, |far, x| far.max(x.abs()))
     };
-    // Half an overlap of the torque's arm is 2e-5 of the spin.
+    // Half an overlap of the lever arm is 2e-5 of the spin.
     assert!(farthest(1.0) < 1e-4, "{}", farthest(1.0));
-    // What slips by .01 ΩR sets off rolling at 2/7 of that, and swings as far as v/ω with ω² = 5g/7(R − r).
+    // A slip of 0.01 ΩR starts rolling at 2/7 of this velocity v. The amplitude is v/ω with ω² = 5g/7(R − r).
     let swing = 2.0 / 7.0 * 0.01 * 3.0 * DRUM / (5.0 / 7.0 * GRAVITY / (DRUM - RADIUS)).sqrt();
     assert!((farthest(0.99) / swing - 1.0).abs() < 0.01, "{} for {swing}", farthest(0.99));
 }
 
-/// In a cone of 45° a sphere goes round at v² = g ρ, where the wall carries its weight and keeps it from flying out.
+/// In a cone of 45°, a sphere moves on a circle at v² = g ρ, where the wall balances weight and centrifugal force.
 #[test]
 fn a_sphere_goes_round_in_a_cone() {
     let (orbit, overlap) = (1.5_f64, GRAVITY * 2.0_f64.sqrt() / STIFFNESS);
@@ -115,7 +115,7 @@ fn what_has_no_round_walls_says_so() {
     assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("`round`")), "{refused:?}");
 }
 
-/// Grains in a drum that turns, between its ends, and in a funnel above it.
+/// Grains in a rotating drum, between its ends, and in a funnel above it.
 const DRUM_AND_FUNNEL: &str = r#"title = "Grains in a drum and a funnel"
 dimension = 3
 duration = 0.5
@@ -151,8 +151,8 @@ material = "m"
 cone = { axis = [[0.0, 0.0, 3.2], [0.0, 0.0, 6.5]], radii = [0.5, 2.5] }
 "#;
 
-/// The live program on the deck of the scene: the same energy and the same forces on both walls, before chaos has grown what
-/// rounding leaves. Where LAMMPS is not installed there is nothing to compare; under CI it is.
+/// The live external solver with the deck of the scene has the same energy and the same forces on both walls, before
+/// chaos amplifies rounding. Without LAMMPS nothing is compared; CI has it.
 #[test]
 fn lammps_has_the_same_round_walls() {
     let lammps = solvers::by_name("lammps").unwrap();

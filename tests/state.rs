@@ -1,4 +1,4 @@
-//! A scene that begins where a run ended.
+//! A scene that starts from the final state of a run.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ mod common;
 use common::{files, grainbench};
 use std::path::Path;
 
-/// Spheres that are dropped into a box, and held up by friction among other things.
+/// Returns a scene of spheres that are dropped into a box and come to rest with friction.
 fn scene(duration: f64, grains: &str) -> String {
     format!(
         r#"title = "Spheres in a box"
@@ -56,7 +56,7 @@ fn simulate(path: &Path, name: &str, text: &str, further: &[&str]) {
     assert_eq!(answer.code, Some(0), "{}", answer.err);
 }
 
-/// Positions at the end of a run, and those at its start.
+/// Returns the final and the initial positions of a run.
 fn ends(path: &Path, name: &str) -> [Vec<[f64; 3]>; 2] {
     let dump = std::fs::read_to_string(path.join(name).join("snapshots.dump")).unwrap();
     let snapshots: Vec<&str> = dump.split("ITEM: ATOMS").skip(1).collect();
@@ -79,7 +79,7 @@ fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     between.fold(0.0, f64::max)
 }
 
-/// A heap at rest that is taken over with its springs goes on as if nothing had been; without them it moves.
+/// A heap at rest continues unchanged if its state includes the springs. Without springs it moves.
 #[test]
 fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     let directory = tempfile::tempdir().unwrap();
@@ -95,7 +95,7 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert!(apart(&end, &start) == 0.0, "it begins where the other ended");
     let [uninterrupted, _] = ends(path, "whole");
     assert!(apart(&uninterrupted, &later) < 1e-10, "{}", apart(&uninterrupted, &later));
-    // So does one that is rounded, but for what rounding moves.
+    // A rounded state continues too, up to the effect of rounding.
     simulate(path, "rounding", &scene(12.0, DROPPED), &["--state", "rounded.state", "--rounded"]);
     let sizes = ["heap.state", "rounded.state"].map(|file| std::fs::metadata(path.join(file)).unwrap().len());
     assert!(sizes[1] < sizes[0], "{sizes:?}");
@@ -105,13 +105,13 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert!(0.0 < moved && moved < 1e-8, "{moved}");
     let [later, _] = ends(path, "without");
     assert!(apart(&uninterrupted, &later) > 1e-5, "{}", apart(&uninterrupted, &later));
-    // At rest the state is the same again, but for what still moves.
+    // At rest, the final state is the same again up to residual motion.
     let [first, again] = ["heap.state", "again.state"].map(|file| {
         let bytes = std::fs::read(path.join(file)).unwrap();
         grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap()
     });
     assert!(first.springs.pairs.len() > 100 && first.springs.walls.len() > 10);
-    // Their order is that of the grains, whatever lists a run had.
+    // Springs are in the order of the grains, independent of the neighbour lists.
     assert!(first.springs.pairs.is_sorted_by_key(|pair| (pair.0, pair.1)));
     assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
 }
@@ -136,7 +136,7 @@ fn what_is_no_state_is_refused() {
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
         std::fs::remove_file(path.join("scene.toml")).unwrap();
         assert_eq!(files(path), before);
-        // How long a file is depends on what is in it.
+        // The length of a file depends on its contents.
         let lengths = |line: &str| line.replace(|digit: char| digit.is_ascii_digit(), "#");
         let said = if what == "cut off" { lengths(&answer.err) } else { answer.err };
         refusals += &format!("{what}\n    {said}");

@@ -1,5 +1,5 @@
-//! The states that scenes of cases begin with say where they come from, and are those that are meant: each has a file beside it,
-//! `NAME.state.toml`, with the command that makes it again.
+//! The initial states of cases have a provenance and are unchanged. Each has a file `NAME.state.toml` beside it, with
+//! the command that makes it again.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,38 +14,38 @@ use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What stands beside a state.
+/// Provenance of a state.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Origin {
-    /// What made it, with its version.
+    /// Name and version of the program that made it.
     program: String,
-    /// The commit that it was built from.
+    /// Commit that the program was built from.
     commit: String,
-    /// The day (YYYY-MM-DD).
+    /// Date (YYYY-MM-DD).
     date: String,
     machine: String,
-    /// The scene whose end it is, beside it; its variant, and what is set in it.
+    /// Scene whose final state it is, in the same folder; its variant, and its changed keys.
     scene: String,
     variant: Option<String>,
     #[serde(default)]
     set: Vec<[String; 2]>,
-    /// BLAKE3 hash of everything in that scene that a run depends on, and the time step (s) that is part of it.
+    /// BLAKE3 hash of everything in that scene that a run depends on, and the time step (s), which is part of it.
     scene_blake3: String,
     time_step: f64,
-    /// What makes it again, from the root of the project.
+    /// Command that makes it again, from the root of the project.
     command: String,
-    /// What became of the state afterwards, or what is known of making it again.
+    /// Later changes to the state, or limits of its reproduction.
     note: String,
     grains: usize,
-    /// Packing fraction within a box, lower and upper corner (m): away from sides, floor and surface.
+    /// Packing fraction within a box with these lower and upper corners (m), away from sides, floor and surface.
     packing_fraction: f64,
     within: [[f64; 3]; 2],
     /// BLAKE3 hash of the file.
     blake3: String,
 }
 
-/// Every state of every case.
+/// Returns the files of all states of all cases.
 fn states() -> Vec<PathBuf> {
     let folders = CASES.iter().map(|case| case.directory());
     let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
@@ -94,14 +94,14 @@ fn a_state_is_the_one_whose_origin_is_told() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The scene whose end a state is.
+/// Returns the scene whose final state a state is.
 fn of(state: &Path, told: &Origin) -> SceneSource {
     let source = SceneSource::read(&state.with_file_name(&told.scene)).unwrap();
     let source = told.variant.iter().fold(source, |source, variant| source.variant(variant));
     told.set.iter().fold(source, |source, [key, value]| source.set(key, value))
 }
 
-/// Solid volume over the volume of the box, which reaches from end to end of the bed along y.
+/// Solid volume over the volume of the box, which extends over the whole bed along y.
 #[test]
 fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
     let mut wrong = Vec::new();

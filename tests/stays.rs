@@ -1,4 +1,4 @@
-//! Grains that come and go, and walls that are taken away.
+//! Insertion and removal of grains, and removal of walls.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ use grainbench::scene::solver::{Resolution, Threads};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// What scenes here have in common: spheres of mass one and a floor.
+/// Common part of the scenes: spheres of mass one and a floor.
 const HEAD: &str = r#"title = "Passing"
 dimension = 3
 duration = 2.0
@@ -42,8 +42,7 @@ fn end(record: &Record) -> &Snapshot {
     record.snapshots.last().unwrap()
 }
 
-/// Three grains that touch nothing: each is where a free fall from its own entry takes it, z₀ + vτ − gτ²/2, and none is there
-/// before it comes.
+/// Three grains without contacts. Each is in free fall from its own insertion, z₀ + vτ − gτ²/2, and absent before it.
 #[test]
 fn a_grain_that_is_poured_falls_from_when_it_comes() {
     let feed = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.5, 0.0, -3.0]\n\
@@ -70,11 +69,12 @@ fn a_grain_that_is_poured_falls_from_when_it_comes() {
     );
 }
 
-/// A grain that is poured where another one flies by at that moment, as fast: they strike a grain on the floor alike.
+/// A grain is inserted at the position and velocity of a grain in flight. Both hit a grain on the floor in the same
+/// way.
 #[test]
 fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     let target = "[grains.target]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
-    // From z = 10 at −3 m/s: after a second at 10 − 3 − ½ with −4 m/s.
+    // From z = 10 at −3 m/s: after one second at 10 − 3 − ½ with −4 m/s.
     let ball =
         "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\nposition = [-0.2, 2.1, 10.0]\n";
     let poured = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -4.0]\n\
@@ -88,7 +88,7 @@ fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     }
 }
 
-/// A bed at rest, and beside it a grain that is taken out: to the bed it makes no difference, to the bit.
+/// A grain that is removed beside a bed at rest has no effect on the bed, to the bit.
 #[test]
 fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     let bed = "[grains.bed]\nmaterial = 'm'\nradius = 0.5\n\
@@ -99,7 +99,7 @@ fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     let alone = run(&format!("{HEAD}{FLOOR}{bed}"), 1);
     let record = run(&format!("{HEAD}{removal}{FLOOR}{bed}{thrown}"), 1);
     assert_eq!((record.snapshots[0].grains.len(), end(&record).grains.len()), (37, 36));
-    // It leaves at (4 − 2.5)/4 s, and is looked for every fiftieth step.
+    // It leaves the box at (4 − 2.5)/4 s; removal is tested every fiftieth step.
     let left = record.series.column("grains.left").unwrap();
     let when = left.iter().position(|&left| left == 1.0).map(|at| record.series.time[at]);
     assert_eq!(when, Some(0.4));
@@ -110,7 +110,7 @@ fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     assert_eq!(contacts(&alone), contacts(&record));
 }
 
-/// A grain on a plug that is taken away falls ½g(t − t₀)² from there, but for what the spring still gave.
+/// A grain on a wall that is removed falls ½g(t − t₀)² afterwards, up to the last spring force.
 #[test]
 fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
     let floor = FLOOR.replace("material = 'm',", "material = 'm', until = 1.2,");
@@ -119,14 +119,14 @@ fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
     let z = |at: usize| record.snapshots[at].grains[0].position.z;
     assert!((z(2) - 0.49995).abs() < 1e-12, "at rest on mg/k until then: {}", z(2));
     let fallen = end(&record).time - 1.2;
-    // The last force is that of the step before: half a step of it.
+    // The last force belongs to the previous step and acts for half a step.
     assert!((end(&record).grains[0].position.z - (0.49995 - 0.5 * fallen * fallen)).abs() < 1e-3);
     assert!(record.snapshots[0].walls[0].corners.len() == 2 && end(&record).walls[0].corners.is_empty());
     let stays = run(&format!("{HEAD}{FLOOR}{ball}"), 1);
     assert!((end(&stays).grains[0].position.z - 0.49995).abs() < 1e-12);
 }
 
-/// A silo that is filled and drained.
+/// Returns the scene of a silo that is filled and drained.
 fn silo() -> String {
     format!(
         "{HEAD}{}{}",
@@ -155,7 +155,7 @@ until = 1.3
     .replace("duration = 2.0", "duration = 5.0")
 }
 
-/// Whatever the number of threads, and whether it was stopped on the way: the same bits.
+/// The number of threads and checkpoints do not change any bit.
 #[test]
 fn threads_and_checkpoints_leave_no_trace() {
     let directory = tempfile::tempdir().unwrap();
@@ -180,7 +180,7 @@ fn threads_and_checkpoints_leave_no_trace() {
     assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
 }
 
-/// Grains on a floor, the left ones of which are held and then lifted for a while.
+/// Grains on a floor. The left ones are fixed and then lifted for some time.
 const LIFTED: &str = r#"title = "Lifted for a while"
 dimension = 3
 duration = 1.0
@@ -215,7 +215,8 @@ lifted = { driven = "lifted" }
 all = { system = true }
 "#;
 
-/// The same bits for threads and checkpoints, one of which is left while the grains are held; `dem` alone does it.
+/// Threads and checkpoints do not change any bit, also for a checkpoint during the prescribed motion. Only `dem`
+/// supports it.
 #[test]
 fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     let directory = tempfile::tempdir().unwrap();
@@ -228,7 +229,7 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     };
     let of = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
     with(&["--out", "whole", "--threads", "2"]);
-    // Before, at the start, while, at the stop, after.
+    // Checkpoints before the prescribed motion, at its start, during it, at its end, and after it.
     for every in ["200", "300", "400", "600", "700", "900"] {
         with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
         with(&["--out", "two", "--restart", "half"]);
@@ -282,8 +283,8 @@ fn what_cannot_come_or_go_is_refused() {
     insta::assert_snapshot!(refusals);
 }
 
-/// Two groups from one box, a heap that has grown into the box, and a box that a wall crosses: each ends with who was poured into
-/// what, and never in an overlap.
+/// Two groups from one box, a heap that grows into the box, and a box that a wall crosses. Each ends with an error that
+/// names both grains or the wall, and never with an overlap.
 #[test]
 fn nothing_is_poured_into_what_stands_there() {
     let feed = |name: &str, seed: u32, count: u32, z: f64| {
@@ -303,14 +304,14 @@ fn nothing_is_poured_into_what_stands_there() {
     assert!(heap.contains("it was poured into grain") && heap.contains("pour at a lower rate"), "{heap}");
     let wall = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3)));
     assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
-    // Who comes at time zero is there from the start, and is looked at then.
+    // A grain with insertion time zero exists from the start and is checked then.
     let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
     let source = SceneSource::from_text("passing", Path::new(""), &text);
     let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
     assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
 }
 
-/// What comes outside of the box of `removal` would be taken out as it comes.
+/// A grain that is inserted outside of the box of `removal` would be removed at once.
 #[test]
 fn a_pour_outside_of_the_box_of_removal_is_refused() {
     let text = format!(

@@ -1,5 +1,4 @@
-//! The three studies as a user runs them: what they claim of themselves holds, and holds on when they are ended at any
-//! moment.
+//! The three studies as a user runs them. Their properties hold, also after an interruption at any time.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -33,7 +32,7 @@ fn exact_limits_are_found_to_half_a_hundredth() {
     }
 }
 
-/// The control: springs stiffer by a twentieth have a limit smaller by a fortieth, which is told from the exact one.
+/// Control: springs 5 % stiffer have a limit 2.5 % smaller, which the test distinguishes from the exact limit.
 #[test]
 fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     for mut assembly in assembly::all().unwrap() {
@@ -46,10 +45,10 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     }
 }
 
-/// None of our solvers ends quietly wrong, and springs hold all but what cannot be told at some step.
+/// None of our solvers is wrong without an error. Springs hold at some step, except for cases without a solution.
 #[test]
 fn hard_cases_hold_or_say_why_not() {
-    // A thousand thousand steps are for the command line.
+    // A million steps are too long for this test.
     for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
         for solver in ["dem", "rigid", "mpm"] {
             let row = hard::judge(case, &Registry, solver);
@@ -62,9 +61,9 @@ fn hard_cases_hold_or_say_why_not() {
     }
 }
 
-/// Effects that a case calls for and no gate feels; everything else that is on must turn a gate red when it is off. The
-/// blocks are long enough for what rolls on them not to come near their periodic ends.
-/// The ring of metal spins far below its yield stress: it is there for the rotation of stresses in that law.
+/// Effects of a case whose absence no claim detects. For each other active effect, a claim must fail when it is off.
+/// The blocks are so long that grains that roll on them stay away from their periodic ends. The metal ring spins far
+/// below its yield stress: it tests the rotation of stresses in the plastic law.
 const NOT_FELT: &[(&str, Effect)] = &[
     ("rolling-on-block", Effect::PeriodicAxes),
     ("sphere-on-block", Effect::PeriodicAxes),
@@ -92,7 +91,7 @@ fn an_effect_that_is_needed_is_caught_when_it_is_off() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// `results.json` of a directory without what may differ from run to run.
+/// Returns `results.json` of a directory without the values that vary between runs.
 fn results(out: &Path) -> Value {
     let mut results: Value = serde_json::from_str(&fs::read_to_string(out.join("results.json")).unwrap()).unwrap();
     results["provenance"] = Value::Null;
@@ -127,7 +126,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
         std::thread::sleep(Duration::from_millis(5 + (state >> 33) % 400));
         let _ = child.kill();
         child.wait().unwrap();
-        // Whatever stands there is whole.
+        // Each file is complete.
         for name in
             common::files(folder.path()).iter().filter(|name| name.starts_with("out/") && name.ends_with(".json"))
         {
@@ -145,7 +144,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
     assert!(again.out.contains("24 of 24 points were measured before"), "{}", again.out);
 }
 
-/// Gives every finished point times of its own: a quiet machine's, multiplied.
+/// Sets the times of each finished point: those of a quiet machine times a factor.
 fn retime(out: &Path, factor: f64) {
     for entry in fs::read_dir(out.join("points")).unwrap() {
         let path = entry.unwrap().path();
@@ -172,7 +171,7 @@ fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
     let against = || cost(&["--against", "old.json"]);
     let answer = against();
     assert!(answer.code == Some(0) && answer.out.contains("counts are the same to the last"), "{}", answer.out);
-    // A machine that happens to be slower by a twentieth is no news; a kernel slower by a quarter is.
+    // A machine slower by 5 % is not reported; a kernel slower by 25 % is.
     retime(&out, 1.05);
     assert_eq!(against().code, Some(0));
     retime(&out, 1.25);
@@ -227,7 +226,7 @@ fn a_study_is_drawn_again_from_its_directory() {
     assert_eq!(fs::read_to_string(folder.path().join("out/index.html")).unwrap(), page);
 }
 
-/// An effect that is absent is inert.
+/// An absent effect has no influence.
 #[test]
 fn an_absent_effect_is_inert() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What holds everywhere in the house, so that nobody has to remember it.
+//! Rules for the whole repository.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,8 +15,8 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every text file of the repository, as relative path and text; build products, programs that were
-/// installed beside their adapters and hidden folders but `.ci` left out.
+/// Returns all text files of the repository as relative path and text. Build products, programs installed beside their
+/// adapters and hidden folders except `.ci` are omitted.
 fn texts() -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![root().to_path_buf()];
@@ -45,14 +45,14 @@ fn rust() -> Vec<(String, String)> {
     texts().into_iter().filter(|(name, _)| name.ends_with(".rs")).collect()
 }
 
-/// Code without its comments and without what follows `#[cfg(test)]`. Strings with `//` in them are cut short, which
-/// hides nothing that is looked for here.
+/// Returns code without comments and without the text after `#[cfg(test)]`. Strings with `//` in them are truncated,
+/// which does not affect these tests.
 fn code(text: &str) -> String {
     let lines = text.lines().take_while(|line| line.trim() != "#[cfg(test)]");
     lines.map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 
-/// Whether `word` stands in `text` by itself, not as a part of another name.
+/// Returns true if `word` occurs in `text` and is not part of another name.
 fn has_word(text: &str, word: &str) -> bool {
     let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
     text.match_indices(word).any(|(at, _)| {
@@ -63,7 +63,7 @@ fn has_word(text: &str, word: &str) -> bool {
 
 #[test]
 fn crates_depend_in_one_direction() {
-    // Whom a crate may know. A new crate needs its line here.
+    // Allowed dependencies of each crate. A new crate needs a line here.
     let scene: &[&str] = &["scene"];
     let lanes: &[&str] = &["scene", "lanes"];
     let allowed: &[(&str, &[&str])] = &[
@@ -97,7 +97,8 @@ fn crates_depend_in_one_direction() {
             ],
         ),
     ];
-    // What tests of a crate may know beside it: solvers are held to the harness, and studies try one.
+    // Additional dependencies of a crate's tests: solver tests use the harness, and tests of the studies use one
+    // solver.
     let tested: &[(&str, &str)] =
         &[("solvers/dem", "harness"), ("solvers/mpm", "harness"), ("solvers/rigid", "harness"), ("studies", "dem")];
     let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
@@ -120,7 +121,7 @@ fn crates_depend_in_one_direction() {
 
 #[test]
 fn nothing_unsafe_unfinished_or_left_from_debugging() {
-    // In pieces, so that this file does not find itself.
+    // In pieces, so that this file does not match.
     let banned = [
         concat!("un", "safe"),
         concat!("todo", "!("),
@@ -138,7 +139,7 @@ fn nothing_unsafe_unfinished_or_left_from_debugging() {
     }
 }
 
-/// The body of a function: from its name to the brace that closes it.
+/// Returns the body of a function, from its name to the closing brace.
 fn body<'a>(code: &'a str, function: &str) -> Option<&'a str> {
     let start = code.find(&format!("fn {function}"))?;
     let open = start + code[start..].find('{')?;
@@ -154,8 +155,8 @@ fn body<'a>(code: &'a str, function: &str) -> Option<&'a str> {
     None
 }
 
-/// Contact laws and lists hold no hash map, string or trait object at all; the loops over particles and contacts
-/// allocate nothing either. (Growth of the list of contacts that a snapshot looks at is the one exception.)
+/// Contact laws and neighbour lists use no hash map, string or trait object. The loops over particles and contacts do
+/// not allocate. (The only exception is the growing list of contacts for a snapshot.)
 #[test]
 fn no_hash_map_string_or_allocation_in_hot_loops() {
     let source = root().join("solvers/dem/src");
@@ -185,7 +186,7 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
     let refuse = |file: &str, function: &str| {
         let code = code(&fs::read_to_string(source.join(file)).unwrap());
         let body = body(&code, function).unwrap_or_else(|| panic!("{file} has no `fn {function}` to look at"));
-        // A range is cloned to be used twice, which costs nothing.
+        // Cloning a range for a second use costs nothing.
         let body = body.replace("slots.clone()", "slots").replace("block.clone()", "block");
         for word in allocations {
             assert!(!body.contains(word), "`{function}` in {file} has `{word}`");
@@ -219,7 +220,7 @@ fn no_hash_map_string_or_allocation_in_hot_loops() {
     }
 }
 
-/// The same of the material point method: its loops over points, nodes, tracers and contacts.
+/// Applies the same rules to the material point method: its loops over points, nodes, tracers and contacts.
 #[test]
 fn no_hash_map_string_or_allocation_in_loops_over_points() {
     let source = root().join("solvers/mpm/src");
@@ -281,8 +282,8 @@ fn no_hash_map_string_or_allocation_in_loops_over_points() {
     }
 }
 
-/// What a system's library computes may differ from one processor to the next by its last bit, for it picks a version by
-/// what the processor can do. Solvers take logarithms and the like from plain Rust.
+/// Results of a system library may differ in the last bit between processors, because it selects a version by the
+/// processor's features. The solvers use logarithms and other functions in Rust.
 #[test]
 fn solvers_compute_the_same_bits_on_every_processor() {
     const OF_THE_SYSTEM: [&str; 21] = [
@@ -328,7 +329,7 @@ fn every_case_folder_is_whole() {
         assert!(path.join("scene.toml").is_file(), "cases/{name} has no scene.toml, so it is in no registry");
         let code =
             fs::read_to_string(path.join("case.rs")).unwrap_or_else(|error| panic!("cases/{name}/case.rs: {error}"));
-        // Two cases may share a derivation: then one includes the other's.
+        // Two cases may share a derivation, which one includes from the other.
         let derived = path.join("derivation.md").is_file() || code.contains("derivation.md\")");
         assert!(derived, "cases/{name} has no derivation");
         folders.insert(name);
@@ -364,7 +365,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
                 let folder = root().join("reference").join(work.id);
                 assert!(folder.join("provenance.toml").is_file(), "{place}: {} has no provenance", work.id);
             }
-            // A program's numbers are those of a run that is stored or done, never typed.
+            // Values of an external solver come from a stored or live run and are never typed.
             let has_program = claim.runs.iter().any(|run| solvers::is_program(run.solver));
             assert!(claim.evidence() != Evidence::OtherCode || has_program, "{place}: no program ran it");
             for run in &claim.runs {
@@ -374,8 +375,8 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     });
 }
 
-/// What rustfmt finds to mend in some files: `cargo fmt` sees no file that only a generated list names, as those of
-/// cases are.
+/// Returns the formatting errors of some files. `cargo fmt` does not find files that are only in a generated list, for
+/// example those of the cases.
 fn badly_formatted(files: &[PathBuf]) -> Option<String> {
     let settings = root().join("rustfmt.toml");
     let mut command = std::process::Command::new("rustfmt");
@@ -405,7 +406,7 @@ fn a_badly_formatted_file_is_seen() {
     }
 }
 
-/// rustfmt leaves comments and long strings as they are.
+/// rustfmt does not shorten comments and long strings.
 #[test]
 fn lines_are_short_enough_to_read() {
     const MOST: usize = 130;

@@ -1,5 +1,5 @@
-//! Every option of every command, given wrongly: refused before anything is done, with a message that is looked at as a whole.
-//! The options are those that the command's own help lists, so that none can be left out.
+//! Wrong values for every option of every command. Each is an error before any run, with its whole message in a
+//! snapshot. The options come from the command's own help, so that none is missing.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use grainbench::cases::registry::CASES;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Commands with what they cannot do without, which is right.
+/// Commands with their required arguments.
 const COMMANDS: [&[&str]; 26] = [
     &["list"],
     &["run", "squash"],
@@ -40,13 +40,13 @@ const COMMANDS: [&[&str]; 26] = [
     &["man"],
 ];
 
-/// An option as the help shows it: its long name, and what its value is called.
+/// An option in the help: its long name and the name of its value.
 struct Shown {
     name: String,
     value: Option<String>,
 }
 
-/// The options that a help lists.
+/// Returns the options in a help text.
 fn options(help: &str) -> Vec<Shown> {
     let read = |line: &str| {
         let line = line.trim_start();
@@ -66,7 +66,7 @@ fn options(help: &str) -> Vec<Shown> {
     help.lines().filter_map(read).filter(|shown| !["--help", "--version"].contains(&shown.name.as_str())).collect()
 }
 
-/// Values that no option whose value is called so can take.
+/// Returns values that are invalid for all options with this name of the value.
 fn wrong(option: &Shown) -> Vec<&'static str> {
     match (option.name.as_str(), option.value.as_deref()) {
         (_, None) => vec!["yes"],
@@ -80,7 +80,7 @@ fn wrong(option: &Shown) -> Vec<&'static str> {
     }
 }
 
-/// What stands in the directory: a scene, a table, an empty file, a directory.
+/// Writes the files of the directory: a scene, a table, an empty file, a directory.
 fn prepare(directory: &Path) {
     let scene = "title = \"One\"
 dimension = 2
@@ -98,19 +98,19 @@ position = [0.0, 0.0]
     std::fs::create_dir(directory.join("a-directory")).unwrap();
 }
 
-/// Names of all cases are not this test's business.
+/// Removes the names of all cases, which this test does not depend on.
 fn without_cases(message: &str) -> String {
     let cases: String = CASES.iter().map(|case| format!("  {}\n", case.name)).collect();
     message.replace(&cases, "  [cases]\n")
 }
 
-/// A command without an option that it has, and its value.
+/// Returns a command without one of its options and its value.
 fn without<'a>(command: &[&'a str], option: &str) -> Vec<&'a str> {
     let place = command.iter().position(|word| *word == option).unwrap_or(command.len());
     command.iter().enumerate().filter(|(at, _)| *at != place && *at != place + 1).map(|(_, word)| *word).collect()
 }
 
-/// What a command answers to each of its options given wrongly.
+/// Returns the messages of a command for wrong values of each of its options.
 fn answers(command: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     let directory = directory.path();

@@ -1,5 +1,5 @@
-//! Every key of a scene file given a value of another kind: refused with a message that names file, line and key, says what was
-//! expected, and shows its shape. The keys are those of the schema, so that none can be left out.
+//! Wrong values for every key of a scene file. Each is an error with file, line, key, expected value and its shape. The
+//! keys come from the schema, so that none is missing.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,10 +10,10 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// What is no value of any key.
+/// Values that are invalid for every key.
 const WRONG: [&str; 3] = ["{ wrong = 1 }", "[[\"wrong\"]]", "true"];
 
-/// The paths of all keys; `x` stands for names that are the user's.
+/// Returns the paths of all keys; `x` replaces the user's names.
 fn keys(schema: &Value) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     walk(schema, schema, "", 0, &mut found);
@@ -29,7 +29,7 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
         walk(schema, one, path, depth + 1, found);
     }
     for (key, of) in at.get("properties").and_then(Value::as_object).into_iter().flatten() {
-        // A variant may hold any other key.
+        // A variant may contain any other key.
         if key == "variants" {
             continue;
         }
@@ -43,7 +43,7 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
     }
 }
 
-/// What is answered to a scene with one line in front; nothing where it is a scene.
+/// Returns the error for a scene with one additional line at the start; `None` if the scene is valid.
 fn answer(line: &str) -> Option<String> {
     let rest = "title = \"One key\"\ndimension = 2\nduration = 1.0\n";
     let key = line.split(' ').next().unwrap_or_default();

@@ -1,6 +1,6 @@
-//! The program under test, run as a user runs it.
+//! Helpers that run the program as a user runs it.
 
-// Each test file uses its part of this.
+// Each test file uses a part of these helpers.
 #![allow(dead_code)]
 
 use grainbench::scene::kept_record;
@@ -8,9 +8,9 @@ use grainbench::scene::record::{Cost, Record};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// What a command answered.
+/// Result of a command.
 pub(crate) struct Answer {
-    /// Exit code; none when it was killed.
+    /// Exit code; `None` if the process was killed.
     pub(crate) code: Option<i32>,
     /// Standard output.
     pub(crate) out: String,
@@ -18,25 +18,25 @@ pub(crate) struct Answer {
     pub(crate) err: String,
 }
 
-/// A record in every bit, but without its times. (Printed numbers would take longer than most runs.)
+/// Returns all bits of a record except its times. (Printed numbers would take longer than most runs.)
 pub(crate) fn bits(record: Record) -> Vec<u8> {
     let untimed = Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record };
     kept_record::body("", &untimed).expect("a record can be kept")
 }
 
-/// The program, which keeps and takes no finished runs: what a test sees was done for it.
+/// Returns the program with its cache of runs switched off, so that each test does its own runs.
 pub(crate) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_grainbench"));
     command.env("GRAINBENCH_CACHE", "off");
     command
 }
 
-/// Runs the program in a directory, so that messages hold relative paths.
+/// Runs the program in a directory, so that messages contain relative paths.
 pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
     grainbench_in(directory, arguments, &[])
 }
 
-/// The same where neither LAMMPS nor LIGGGHTS is installed.
+/// Runs the program in a directory without LAMMPS and LIGGGHTS.
 pub(crate) fn grainbench_alone(directory: &Path, arguments: &[&str]) -> Answer {
     let absent = [("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")];
     grainbench_in(directory, arguments, &absent)
@@ -54,7 +54,7 @@ fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &st
     Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
 }
 
-/// The largest resident memory (kB) of a run, as the system counts it.
+/// Returns the largest resident memory (kB) of a run, as reported by the system.
 #[cfg(target_os = "linux")]
 pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
     let mut child = program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
@@ -69,7 +69,7 @@ pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
     peak
 }
 
-/// Every file below a directory, as sorted relative paths; an empty directory as its path and `/`.
+/// Returns all files below a directory as sorted relative paths. An empty directory is its path with `/`.
 pub(crate) fn files(directory: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![directory.to_path_buf()];
@@ -90,12 +90,12 @@ pub(crate) fn files(directory: &Path) -> Vec<String> {
     found
 }
 
-/// A path in the repository.
+/// Returns the path of a file in the repository.
 pub(crate) fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Compares a file with what it should hold, or writes it.
+/// Compares a file with its expected contents, or writes it if `UPDATE_README` is set.
 pub(crate) fn expect_file(path: &str, wanted: &str) {
     let path = root(path);
     if std::env::var_os("UPDATE_README").is_some() {
@@ -110,7 +110,7 @@ pub(crate) fn expect_file(path: &str, wanted: &str) {
     );
 }
 
-/// A text with the text between two marks replaced.
+/// Returns a text with the text between two marks replaced.
 pub(crate) fn with_generated(readme: &str, mark: &str, table: &str) -> String {
     let open = format!("<!-- generated: {mark} -->\n");
     let start = readme.find(&open).unwrap() + open.len();

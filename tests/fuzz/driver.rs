@@ -1,4 +1,4 @@
-//! Goes through items by number in processes of their own, so that what ends one, or never ends, is found and told.
+//! Runs numbered items in separate processes, so that a crash or a hang of one item is found and reported.
 
 use std::env;
 use std::fs;
@@ -14,42 +14,42 @@ use std::{ops, thread};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// What to go through: `scenes:SEED:FROM:COUNT`, or `files:…`.
+/// Environment variable with the items to run: `scenes:SEED:FROM:COUNT`, or `files:…`.
 const ASKED: &str = "GRAINBENCH_FUZZ";
-/// Where the process that tries items writes how far it is and what it found.
+/// Environment variable with the folder in which the process that runs items writes its progress and findings.
 const NOTES: &str = "GRAINBENCH_FUZZ_NOTES";
-/// Items that one process tries.
+/// Number of items per process.
 const CHUNK: u64 = 2500;
-/// Memory that such a process may take (kB): what is refused for want of memory must be refused before it is gone.
+/// Memory limit of this process (kB). A scene that is too large must be rejected before memory runs out.
 const MEMORY: u64 = 4 << 20;
-/// After which time with one item a process is taken to hang.
+/// Time with one item after which a process counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// After so many findings no more are looked for.
+/// Number of findings after which the search ends.
 const ENOUGH: usize = 40;
 
 /// A kind of items.
 pub(crate) struct Kind {
-    /// Its name, which is that of the test too.
+    /// Name, equal to the name of the test.
     pub(crate) name: &'static str,
-    /// How many are tried by default.
+    /// Number of items by default.
     pub(crate) few: u64,
-    /// How many are tried with `GRAINBENCH_LONG`.
+    /// Number of items with `GRAINBENCH_LONG`.
     pub(crate) many: u64,
-    /// Tries the item that is made from a lot; says what is wrong.
+    /// Runs the item of a random draw and reports what is wrong.
     pub(crate) try_out: fn(&mut Lot) -> Result<(), String>,
 }
 
-/// Whatever is drawn for one item, and what it is in words.
+/// Random draws for one item, with its description.
 pub(crate) struct Lot {
     runner: TestRunner,
-    /// The item in words, for whoever wants to see it.
+    /// Description of the item.
     shown: String,
-    /// Where the words stand too, should the item end the process.
+    /// File with the description, in case the item ends the process.
     beside: Option<PathBuf>,
 }
 
 impl Lot {
-    /// The same for the same seed and number, whatever was drawn before.
+    /// Gives the same draws for the same seed and number, independent of earlier draws.
     fn new(seed: u64, number: u64, beside: Option<PathBuf>) -> Self {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
@@ -58,7 +58,7 @@ impl Lot {
         Self { runner: TestRunner::new_with_rng(Config::default(), rng), shown: String::new(), beside }
     }
 
-    /// Puts more words in front of what the item is.
+    /// Adds text in front of the description.
     pub(crate) fn show(&mut self, words: &str) {
         self.shown.insert_str(0, &format!("{words}\n"));
         if let Some(beside) = &self.beside {
@@ -66,18 +66,18 @@ impl Lot {
         }
     }
 
-    /// Draws.
+    /// Draws a value.
     pub(crate) fn draw<S: Strategy>(&mut self, strategy: S) -> S::Value {
         strategy.new_tree(&mut self.runner).expect("nothing is filtered").current()
     }
 
-    /// Draws one of some.
+    /// Draws one of several values.
     pub(crate) fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
         &of[self.draw(0..of.len())]
     }
 }
 
-/// Which items.
+/// Range of items.
 #[derive(Clone, Copy)]
 struct Range {
     seed: u64,
@@ -86,7 +86,7 @@ struct Range {
 }
 
 impl Range {
-    /// Those asked for, or some by default; none when others are asked for.
+    /// Returns the requested items, or some by default. `None` if items of another kind are requested.
     fn of(kind: &Kind) -> Option<Self> {
         let Ok(asked) = env::var(ASKED) else {
             let count = if env::var_os("GRAINBENCH_LONG").is_some() { kind.many } else { kind.few };
@@ -100,7 +100,7 @@ impl Range {
     }
 }
 
-/// Tries the items of a kind that are asked for.
+/// Runs the requested items of a kind.
 pub(crate) fn go(kind: &Kind) {
     let Some(range) = Range::of(kind) else { return };
     match env::var_os(NOTES) {
@@ -109,11 +109,11 @@ pub(crate) fn go(kind: &Kind) {
     }
 }
 
-/// What a process notes: the item it is at, and what it found.
+/// Notes of a process: the present item and its findings.
 struct Notes {
     at: PathBuf,
     found: PathBuf,
-    /// The item in words.
+    /// Description of the item.
     shown: PathBuf,
 }
 
@@ -123,7 +123,7 @@ impl Notes {
     }
 }
 
-/// Tries items one after the other, in this process.
+/// Runs items one after the other, in this process.
 fn work(kind: &Kind, range: Range, folder: &Path) {
     static PANIC: Mutex<String> = Mutex::new(String::new());
     set_hook(Box::new(|panic| {
@@ -135,7 +135,7 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
     let mut at = fs::File::create(&notes.at).expect("notes");
     let mut found = fs::File::create(&notes.found).expect("notes");
     for number in range.from..range.from + range.count {
-        // In one place, so that the last one written is the one that counts.
+        // At a fixed position in the file, so that the last number overwrites the earlier ones.
         std::io::Seek::rewind(&mut at).expect("notes");
         write!(at, "{number:020}").expect("notes");
         let mut lot = Lot::new(range.seed, number, (range.count == 1).then(|| notes.shown.clone()));
@@ -151,11 +151,11 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
     }
 }
 
-/// Has items tried by processes of their own, a chunk each, and tells what they found.
+/// Runs items in separate processes, in chunks, and reports their findings.
 fn watch(kind: &Kind, range: Range) {
     let Range { seed, from, count } = range;
     let (done, begun) = (AtomicU64::new(0), Instant::now());
-    // Each core goes through its share.
+    // Each core runs its part of the items.
     let cores = thread::available_parallelism().map_or(1, |cores| cores.get() as u64).min(count.max(1));
     let share = |core: u64| from + count * core / cores..from + count * (core + 1) / cores;
     let go_through = |share: ops::Range<u64>| {
@@ -181,14 +181,14 @@ fn watch(kind: &Kind, range: Range) {
     assert!(wrong.is_empty(), "{} of {count} {}:\n{}", wrong.len(), kind.name, findings.join("\n"));
 }
 
-/// What a process finds in a chunk, and the item to go on with: past the one that ended it.
+/// Returns the findings of a process in a chunk, and the next item: the one after the item that ended the process.
 fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
     let Range { seed, from, count } = range;
     let folder = tempfile::tempdir().expect("a place for notes");
     let notes = Notes::of(folder.path());
     let said = folder.path().join("said");
     let mut child = Command::new("sh")
-        // A system without such a limit goes without.
+        // On a system without this limit, there is no limit.
         .args(["-c", &format!("ulimit -v {MEMORY} 2>/dev/null; exec \"$@\""), "sh"])
         .arg(env::current_exe().expect("this program"))
         .args([kind.name, "--exact", "--nocapture", "--test-threads=1"])

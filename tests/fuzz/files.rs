@@ -1,4 +1,4 @@
-//! A damaged file, and whatever reads it: what it holds, or a refusal that names its place.
+//! Damaged files and their readers. A reader returns the contents or an error that names the place.
 
 use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
 use crate::driver::Lot;
@@ -31,18 +31,18 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-/// Rows that a snapshot of the case below can have.
+/// Largest number of rows in a snapshot of the case below.
 const MOST_ROWS: u64 = 1000;
 
 type Answer = Result<(), String>;
 
-/// What reads a file: its name, its share of the lot, and what it says of a file.
+/// A reader of a file: its name, its weight in the draw, and its test.
 type Reader = (&'static str, usize, fn(&mut Lot) -> Answer);
 
-/// Files by name.
+/// Files with their names.
 type Files = Vec<(String, Vec<u8>)>;
 
-/// What reads a file, each in its own way, and how often: those that draw, simulate or read many files less often.
+/// Readers of files with their weights. Readers that draw, simulate or read many files have smaller weights.
 const READERS: [Reader; 12] = [
     ("dump", 4, of_dump),
     ("log", 4, of_log),
@@ -58,7 +58,7 @@ const READERS: [Reader; 12] = [
     ("stored run", 1, of_stored),
 ];
 
-/// Damages a file and has it read.
+/// Damages a file and reads it.
 pub(crate) fn try_out(lot: &mut Lot) -> Answer {
     let mut drawn = lot.draw(0..READERS.iter().map(|(_, weight, _)| weight).sum());
     for (name, weight, reader) in READERS {
@@ -71,20 +71,20 @@ pub(crate) fn try_out(lot: &mut Lot) -> Answer {
     Ok(())
 }
 
-/// A folder for those that read by name, for as long as the process lives.
+/// Returns a folder for readers that need a file name. It exists as long as the process.
 fn folder() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER.get_or_init(|| tempfile::tempdir().unwrap()).path()
 }
 
-/// Leaves a file in the folder.
+/// Writes a file to the folder.
 fn left(name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder().join(name);
     fs::write(&path, bytes).unwrap();
     path
 }
 
-/// Damages by lot, noted in words.
+/// Damages bytes at random and adds the damage to the description.
 fn damaged(lot: &mut Lot, bytes: &[u8]) -> Vec<u8> {
     let damages = lot.draw(damages());
     let bytes = apply(bytes, &damages);
@@ -96,7 +96,7 @@ fn refused(error: &ReadError) -> Answer {
     damage::well_said(error).map_err(|error| error.to_string())
 }
 
-/// What an error of another kind owes: one line that begins with the file.
+/// Checks an error of another kind: one line that names the file.
 fn one_line_of(path: &Path, error: &dyn ToString) -> Answer {
     let message = error.to_string();
     let names = message.contains(&*path.to_string_lossy());
@@ -149,7 +149,7 @@ fn packed(bytes: &[u8], zstd: bool) -> Vec<u8> {
     out.finish().unwrap()
 }
 
-/// Damaged before it is packed, or after.
+/// Damages a dump before or after its compression.
 fn of_packed_dump(lot: &mut Lot) -> Answer {
     let text = lot.one(&DUMPS).as_bytes();
     let (zstd, before) = lot.draw(any::<(bool, bool)>());
@@ -169,7 +169,7 @@ fn of_bytes(lot: &mut Lot) -> Answer {
     read_dump(&bytes).map_or_else(|error| refused(&error), |_| Ok(()))
 }
 
-/// The scene of a case, for a moment.
+/// Returns the scene of a case with a short duration.
 fn scene() -> Scene {
     let mut scene = registry::by_name("nine-discs").unwrap().variant("plain").unwrap();
     scene.duration = grainbench::scene::scene::Duration::Cycles(40);
@@ -178,7 +178,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Keeps the last checkpoint.
+/// Watch that keeps the last checkpoint.
 struct Keeper(Option<Checkpoint>);
 
 impl Watch for Keeper {
@@ -195,7 +195,7 @@ impl Watch for Keeper {
 const SOLVER: Convention = Convention::LAMMPS;
 const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
 
-/// A record, and a checkpoint on the way to it.
+/// Returns a record and a checkpoint of its run.
 fn run() -> &'static (Record, Vec<u8>) {
     static RUN: OnceLock<(Record, Vec<u8>)> = OnceLock::new();
     RUN.get_or_init(|| {
@@ -205,7 +205,7 @@ fn run() -> &'static (Record, Vec<u8>) {
     })
 }
 
-/// As it is found, or with a length and a hash that are those of the damaged bytes.
+/// Damages a checkpoint, with its old length and hash or with those of the damaged bytes.
 fn of_checkpoint(lot: &mut Lot) -> Answer {
     let whole = &run().1;
     let line = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
@@ -239,7 +239,7 @@ fn of_record(lot: &mut Lot) -> Answer {
     }
 }
 
-/// Figures drawn, or refused.
+/// Draws figures or checks their errors.
 fn draw(figures: &[Figure]) -> Answer {
     for figure in figures {
         if let Err(error) = plot::draw(figure) {
@@ -250,7 +250,7 @@ fn draw(figures: &[Figure]) -> Answer {
     Ok(())
 }
 
-/// A report with rows, controls and figures.
+/// Returns a report with results, controls and figures.
 fn report() -> &'static Vec<u8> {
     static REPORT: OnceLock<Vec<u8>> = OnceLock::new();
     REPORT.get_or_init(|| {
@@ -291,7 +291,7 @@ fn report() -> &'static Vec<u8> {
     })
 }
 
-/// Read and told again, as `grainbench report` does.
+/// Reads a report and renders it again, as `grainbench report` does.
 fn of_report(lot: &mut Lot) -> Answer {
     let path = left("report.json", &damaged(lot, report()));
     let report = match Report::load(folder()) {
@@ -341,7 +341,7 @@ fn of_results(lot: &mut Lot) -> Answer {
     points_of(&path).map_or_else(|error| one_line_of(&path, &error), |_| Ok(()))
 }
 
-/// Compared with each other, or observed as what is left of a scene.
+/// Compares two files, or reads them as output of a scene.
 fn of_two(lot: &mut Lot) -> Answer {
     let text = *lot.one(&[DUMPS[0], DUMPS[1], DUMPS[3], TABLE]);
     let first = left("first", &damaged(lot, text.as_bytes()));
@@ -369,7 +369,7 @@ fn of_two(lot: &mut Lot) -> Answer {
     }
 }
 
-/// One file of a stored run is damaged; its hash is still that of the whole one, or there is none.
+/// Damages one file of a stored run, with or without its original hash.
 fn of_stored(lot: &mut Lot) -> Answer {
     static RUN: OnceLock<(PathBuf, Files)> = OnceLock::new();
     let (folder, files) = RUN.get_or_init(|| {
@@ -389,7 +389,7 @@ fn of_stored(lot: &mut Lot) -> Answer {
         (to, files)
     });
     let (name, bytes) = lot.one(files);
-    // The provenance more often than the others, which their hashes betray.
+    // The provenance is damaged more often than the other files, because their hashes reveal the damage.
     let (name, bytes) = if lot.draw(any::<bool>()) {
         files.iter().find(|(name, _)| name == "provenance.toml").map_or((name, bytes), |(name, bytes)| (name, bytes))
     } else {

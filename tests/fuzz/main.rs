@@ -1,8 +1,8 @@
-//! Scenes and files with random mistakes: an error that says where, or numbers; never a panic, an end of the program, a
-//! hang, or more memory than a bound. A few by default; `GRAINBENCH_LONG=1` tries a hundred thousand scenes and a million
-//! files, and `GRAINBENCH_FUZZ=scenes:SEED:FROM:COUNT` (or `files:…`) any range, with `--nocapture` to see how far it is.
-//! An item depends on the seed and its number alone, so that a finding is found again by the words that it begins with;
-//! a range of one is shown in any case.
+//! Scenes and files with random mistakes. Each gives an error with its place, or numbers: never a panic, an end of the
+//! process, a hang, or more memory than a limit. The default is a few items. `GRAINBENCH_LONG=1` runs a hundred
+//! thousand scenes and a million files. `GRAINBENCH_FUZZ=scenes:SEED:FROM:COUNT` (or `files:…`) runs any range, and
+//! `--nocapture` shows the progress. An item depends only on the seed and its number, so the words at the start of a
+//! finding reproduce it. A range of one item is always described.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test fails by panicking")]
 
@@ -53,7 +53,7 @@ fn every_strange_value_in_every_place() {
                 Err(error) => scenes::well_said(&error.to_string()).unwrap(),
                 Ok(mut scene) => {
                     scene.duration = Duration::Cycles(4);
-                    // The answer may be any; that there is one is the point.
+                    // Any result is accepted; the test is that there is one.
                     let _ = Dem::new(Convention::LAMMPS).run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
                 }
             }

@@ -1,4 +1,4 @@
-//! A scene with mistakes in it, and any solver: an error that names its place, or a record that holds numbers.
+//! A scene with mistakes and any solver: an error that names its place, or a record of finite numbers.
 
 use crate::driver::Lot;
 use crate::mistakes::{PLANE, SPACE, make, mistake, two_grains};
@@ -16,18 +16,18 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Steps that a scene is given.
+/// Number of steps of a scene.
 const STEPS: u64 = 12;
-/// Grains, or material points and nodes, from which on a scene is too big to be stepped here, ...
+/// Number of grains, or of material points and nodes, above which a scene is too large to be stepped here.
 const BIG: f64 = 1.5e3;
 const MANY: f64 = 1e4;
-/// ... and from which on no machine has room for it: the solver itself is to refuse it.
+/// Number above which no machine has enough memory, so the solver itself must reject the scene.
 const ABSURD: f64 = 1e12;
-/// Cells a reference length, and points a cell and axis.
+/// Cells per reference length, and points per cell and axis.
 const CELLS: f64 = 2.0;
 const POINTS: u32 = 2;
 
-/// Ends a run after some steps, by refusing its checkpoint.
+/// Watch that ends a run after some steps by rejecting its checkpoint.
 struct Brief;
 
 impl Watch for Brief {
@@ -40,7 +40,7 @@ impl Watch for Brief {
     }
 }
 
-/// Makes a scene and tries it.
+/// Makes a scene and runs it.
 pub(crate) fn try_out(lot: &mut Lot) -> Result<(), String> {
     let which = lot.draw(0..2 * CASES.len());
     let mistakes = lot.draw(prop::collection::vec(mistake(), 1..4));
@@ -66,14 +66,14 @@ pub(crate) fn try_out(lot: &mut Lot) -> Result<(), String> {
     }
 }
 
-/// An error about a scene.
+/// Checks an error message about a scene.
 pub(crate) fn well_said(message: &str) -> Result<(), String> {
     let one_line = !message.chars().any(char::is_control);
     let named = message.starts_with("scene.toml") && message.contains("expected ") && message.contains("found ");
     if one_line && named { Ok(()) } else { Err(format!("badly said: {message:?}")) }
 }
 
-/// Takes a few steps of a scene: those of its own run, or of one that is as short.
+/// Runs a few steps of a scene, by its own short run or by ending the run early.
 fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Result<(), String> {
     if scene.grains.iter().any(|grain| !(grain.mass > 0.0 && grain.inertia > 0.0)) {
         return Err("a grain has no mass".to_owned());
@@ -94,7 +94,7 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
             let step = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
             scene.duration = Duration::Seconds(steps * step);
         }
-        // It leaves no checkpoints, so that nothing can end it sooner.
+        // The rigid solver has no checkpoints, so its run cannot be ended early.
         Some(Method::Rigid) => scene.duration = Duration::Seconds(steps / 2.0 * Resolution::RIGID_STEP),
         _ if brief => scene.duration = Duration::Cycles(STEPS),
         _ => {}
@@ -113,7 +113,7 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
     }
 }
 
-/// Bodies settle for a few steps only, unless for so many that the solver itself is to refuse them.
+/// Shortens the relaxation of bodies to a few steps, unless it has so many that the solver itself must reject it.
 fn shorten_settling(scene: &mut Scene) {
     const REFUSED: f64 = 4e15;
     let courant = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
@@ -124,7 +124,7 @@ fn shorten_settling(scene: &mut Scene) {
     }
 }
 
-/// Whether a scene is too big to be stepped in a moment, though a machine may have room for it.
+/// Returns true if a scene is too large for a short test, although a machine may have enough memory for it.
 fn is_big(scene: &Scene, resolution: &Resolution) -> bool {
     let between = |count: f64, low: f64| count > low && count < ABSURD;
     if between(scene.grains.len() as f64, BIG) {
@@ -141,7 +141,7 @@ fn is_big(scene: &Scene, resolution: &Resolution) -> bool {
     between(nodes * f64::from(POINTS).powi(dimensions as i32), MANY)
 }
 
-/// That a record holds numbers only, and reads back as it was written.
+/// Checks that a record contains only finite numbers and is unchanged after writing and reading.
 fn sound(record: &Record) -> Result<(), String> {
     let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
     let series = &record.series;

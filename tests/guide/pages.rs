@@ -1,4 +1,4 @@
-//! Chapters: what they include, and where their links lead.
+//! Chapters of the guide: their includes and their links.
 
 use crate::common::root;
 use std::fs;
@@ -11,7 +11,7 @@ pub(crate) struct Chapter {
     pub(crate) text: String,
 }
 
-/// Every chapter, by name.
+/// Returns all chapters by name.
 pub(crate) fn chapters() -> Vec<Chapter> {
     let mut found: Vec<Chapter> = fs::read_dir(root("guide/src"))
         .unwrap()
@@ -28,7 +28,7 @@ pub(crate) fn chapters() -> Vec<Chapter> {
     found
 }
 
-/// The text that a path, or a part of it by the anchors of mdBook, has.
+/// Returns the text of a file, or of a part of it between mdBook anchors.
 fn included(path: &str) -> Result<String, String> {
     let (path, anchor) = path.split_once(':').map_or((path, None), |(path, anchor)| (path, Some(anchor)));
     let file = root("guide/src").join(path);
@@ -42,7 +42,7 @@ fn included(path: &str) -> Result<String, String> {
     Ok(text.lines().skip(start + 1).take(end.saturating_sub(start + 1)).collect::<Vec<_>>().join("\n"))
 }
 
-/// A chapter with what it includes.
+/// Returns a chapter with its includes expanded.
 pub(crate) fn expanded(chapter: &Chapter) -> Result<String, String> {
     let mut found = String::new();
     let mut rest = chapter.text.as_str();
@@ -56,7 +56,7 @@ pub(crate) fn expanded(chapter: &Chapter) -> Result<String, String> {
     Ok(found + rest)
 }
 
-/// What a link to a heading is called.
+/// Returns the link target of a heading.
 fn slug(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();
     words
@@ -66,7 +66,7 @@ fn slug(heading: &str) -> String {
         .collect()
 }
 
-/// The targets of links of a text, outside of blocks and code.
+/// Returns the link targets of a text, outside of blocks and code.
 fn links(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut is_code = false;
@@ -81,7 +81,7 @@ fn links(text: &str) -> Vec<String> {
     found
 }
 
-/// Links, includes and blocks that lead nowhere, and chapters that the summary does not have.
+/// Returns broken links, includes and blocks, and chapters that the summary lacks.
 pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     const LANGUAGES: [&str; 6] = ["console", "toml", "rust", "python", "cpp", "text"];
     let summary = fs::read_to_string(root("guide/src/SUMMARY.md")).unwrap();
@@ -113,7 +113,7 @@ pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     lost
 }
 
-/// Files beside the chapters that none of them includes, and scenes that none of them simulates.
+/// Returns files beside the chapters that no chapter includes, and scenes that no chapter simulates.
 pub(crate) fn untold(chapters: &[Chapter]) -> Vec<String> {
     let mut found = Vec::new();
     for folder in ["scenes", "claims"] {

@@ -1,10 +1,10 @@
-//! Scenes with random mistakes in them.
+//! Scenes with random mistakes.
 
 use grainbench::scene::resolve::FileGrain;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Everything that a scene in the plane can hold.
+/// A scene in two dimensions with all features.
 pub(crate) const PLANE: &str = r#"title = "Everything in the plane"
 dimension = 2
 grain_shape = "sphere"
@@ -77,7 +77,7 @@ system = { system = true }
 gravity.slope_deg = 60.0
 "#;
 
-/// Everything that a scene in space can hold.
+/// A scene in three dimensions with all features.
 pub(crate) const SPACE: &str = r#"title = "Everything in space"
 dimension = 3
 gravity = [0.0, 0.0, -9.8]
@@ -110,7 +110,7 @@ motion = [{ velocity = [0.0, 0.0, 0.1] }]
 every_cycles = 2
 "#;
 
-/// Values that stand where others should.
+/// Values that replace other values.
 pub(crate) const STRANGE: &[&str] = &[
     "1e308",
     "-1e308",
@@ -134,7 +134,7 @@ pub(crate) const STRANGE: &[&str] = &[
     "[1e-200, 0.0]",
 ];
 
-/// One mistake. Numbers pick places, modulo how many there are.
+/// One mistake. Its numbers select positions, modulo the number of positions.
 #[derive(Clone, Debug)]
 pub(crate) enum Mistake {
     FlipBit(usize, u8),
@@ -143,11 +143,11 @@ pub(crate) enum Mistake {
     RepeatLine(usize, usize),
     StrangeValue(usize, usize),
     SwapValues(usize, usize),
-    /// A number gets so many powers of ten larger.
+    /// Multiplies a number by a power of ten.
     Scale(usize, i32),
 }
 
-/// One mistake by lot.
+/// Returns a random mistake.
 pub(crate) fn mistake() -> impl Strategy<Value = Mistake> {
     let place = || any::<usize>();
     prop_oneof![
@@ -165,7 +165,7 @@ pub(crate) fn mistake() -> impl Strategy<Value = Mistake> {
 /// Makes a mistake in a text.
 pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    // Places of values: line, where it begins, where it ends; those inside braces too.
+    // Positions of values: line, start and end, also inside braces.
     let values: Vec<(usize, usize, usize)> = lines
         .iter()
         .enumerate()
@@ -211,7 +211,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
         Mistake::Scale(at, power) if !values.is_empty() => {
             let (line, start, end) = values[at % values.len()];
             let text = &lines[line][start..end];
-            // The first number of a value, which may be a list.
+            // First number of a value, which may be a list.
             let digits = |letter: char| letter.is_ascii_digit() || "+-.eE_".contains(letter);
             if let Some(begin) = text.find(|letter: char| letter.is_ascii_digit()) {
                 let rest = &text[begin..];
@@ -228,7 +228,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
             let (a, b) = (values[a % values.len()], values[b % values.len()]);
             let text_of = |(line, start, end): (usize, usize, usize)| lines[line][start..end].to_owned();
             let (of_a, of_b) = (text_of(a), text_of(b));
-            // Values of one line may lie within each other: one replacement then.
+            // Values of one line may contain each other, so only one is replaced then.
             lines[a.0].replace_range(a.1..a.2, &of_b);
             if a.0 != b.0 {
                 lines[b.0].replace_range(b.1..b.2, &of_a);
@@ -239,7 +239,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
     lines.join("\n") + "\n"
 }
 
-/// What a data file holds: two grains.
+/// Returns the contents of a data file: two grains.
 pub(crate) fn two_grains(_: &Path) -> Result<Vec<FileGrain>, String> {
     let grain = |x: f64| FileGrain {
         type_number: 1,
