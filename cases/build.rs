@@ -1,5 +1,5 @@
-//! Lists the case folders, so that adding a case touches one folder and nothing else; and the works that expected
-//! values come from, so that there is a handle of a work where there is a folder with its provenance and nowhere else.
+//! Generates the registry of cases from the case folders, so that a new case touches only its folder. Also generates a
+//! handle of each work that expected values come from: one for each reference folder with a provenance.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ fn main() -> Result<(), Failure> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("registry.rs"), registry(&root)?)?;
-    // The crate `reference` says where it is: beside this one in a checkout, and somewhere else as a package.
+    // The crate `reference` reports its folder. It is beside this crate in a checkout, and elsewhere in a package.
     let references = PathBuf::from(env::var("DEP_GRAINBENCH_REFERENCE_FOLDER")?);
     fs::write(out.join("sources.rs"), sources(&references)?)?;
     println!("cargo::rerun-if-changed={}", root.display());
@@ -21,7 +21,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Names of the folders in a folder that have a file, in their order.
+/// Returns the sorted names of the subfolders that contain a file.
 fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -36,7 +36,7 @@ fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// The modules of the cases, and the list of them.
+/// Returns the code of the case modules and of the registry.
 fn registry(root: &Path) -> Result<String, Failure> {
     let names = folders_with(root, "scene.toml")?;
     let mut code = String::new();
@@ -54,7 +54,7 @@ fn registry(root: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Cases that say themselves what accuracy is measured by have a `cost.rs`.
+/// Adds the modules and the list of cases with their own target quantities of accuracy, in `cost.rs`.
 fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Result {
     let own: Vec<&String> = names.iter().filter(|name| root.join(name).join("cost.rs").is_file()).collect();
     for name in &own {
@@ -69,10 +69,10 @@ fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Res
     writeln!(code, "];")
 }
 
-/// Folders of works among the references.
+/// Reference folders that contain works.
 const KINDS: [&str; 2] = ["literature", "prototype"];
 
-/// A module for each kind, in it one for each work, in it the work and the numbers that it gives.
+/// Returns the code of a module for each kind. It contains a module for each work, with the work and its values.
 fn sources(references: &Path) -> Result<String, Failure> {
     let mut code = String::new();
     for kind in KINDS {
@@ -88,7 +88,7 @@ fn sources(references: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// The module of one work.
+/// Adds the module of one work.
 fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
     let text = |table: &toml::Table, key: &str| -> Result<String, Failure> {
         let value = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());

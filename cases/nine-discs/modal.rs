@@ -75,9 +75,10 @@ impl Modal {
     }
 
     /// Returns the decay rate γ (1/s) of the slow mode in the calculation cycle after the walls have stopped. α is the
-    /// global damping, β k the contact damping. A cycle changes velocity and position of a mode to `v' = [v(1 − αΔt/2)
-    /// − ω²Δt(x + βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`. The product of its eigenvalues is `(1 − αΔt/2 − βω²Δt)/(1 +
-    /// αΔt/2) = exp(−2γΔt)`.
+    /// global damping, β k the contact damping.
+    /// A cycle changes velocity and position of a mode to
+    /// `v' = [v(1 − αΔt/2) − ω²Δt(x + βv)]/(1 + αΔt/2)`, `x' = x + v'Δt`. The product of its eigenvalues is
+    /// `(1 − αΔt/2 − βω²Δt)/(1 + αΔt/2) = exp(−2γΔt)`.
     pub(crate) fn decay(&self, scene: &Scene, time_step: f64) -> f64 {
         let (alpha, beta) = (scene.global_damping, law(scene).stiffness_damping);
         let omega = self.frequencies()[0];

@@ -10,10 +10,10 @@ pub fn lag(damping_ratio: f64) -> f64 {
     0.5 * PI * damping_ratio * damping_ratio / (1.0 - damping_ratio * damping_ratio).powf(1.5)
 }
 
-/// Returns the coefficient of restitution of a contact that ends when its force is zero. The oscillator x″ + 2ζ x′ + x
-/// = 0 starts with x = 0 and x′ = 1. At t = 2φ/√(1 − ζ²), cos φ = ζ, it has x″ = 0 and −x′ = exp(−ζ t). Above critical
-/// damping, acosh ζ and √(ζ² − 1) replace acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager & Pöschel 2007;
-/// Hertz contacts obey it in δ^{5/4}).
+/// Returns the coefficient of restitution of a contact that ends when its force is zero. The oscillator x″ + 2ζ x′ +
+/// x = 0 starts with x = 0 and x′ = 1. At t = 2φ/√(1 − ζ²), cos φ = ζ, it has x″ = 0 and −x′ = exp(−ζ t). Above
+/// critical damping, acosh ζ and √(ζ² − 1) replace acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager &
+/// Pöschel 2007; Hertz contacts obey it in δ^{5/4}).
 #[must_use]
 pub fn no_tension_restitution(damping_ratio: f64) -> f64 {
     (-2.0 * damping_ratio * arc(damping_ratio)).exp()

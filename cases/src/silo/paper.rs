@@ -45,7 +45,7 @@ pub(crate) struct Drained {
     pub(crate) others: &'static [Other],
 }
 
-/// Negative control: sin φ read as its tangent, which is what the paper's definition of μ says.
+/// Negative control: sin φ read as its tangent, which matches the paper's wording for μ.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
 }
