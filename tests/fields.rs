@@ -69,9 +69,9 @@ fn packing() -> Snapshot {
     record.snapshots.into_iter().next_back().unwrap()
 }
 
-/// At rest, ΣF = −m g and the sum of lever arm ⊗ force over contacts between grains equals Σ_walls x_c ⊗ F − Σ_grains x
-/// ⊗ ΣF. Both sides are measured independently. A wall's lever arm is R − δ/2; with R, the identity would be wrong by
-/// δ/2 at each wall contact.
+/// At rest, ΣF = −m g. The sum of lever arm ⊗ force over contacts between grains is Σ_walls x_c ⊗ F − Σ_grains x ⊗ ΣF.
+/// Both sides are measured independently. A wall's lever arm is R − δ/2; with R, the identity would be wrong by δ/2 at
+/// each wall contact.
 #[test]
 fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     let packing = packing();

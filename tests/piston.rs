@@ -70,9 +70,9 @@ fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
     assert!(apart(&damped, "lid.advance", |time| 0.5 * FORCE / MASS * time * time) > 0.1);
 }
 
-/// A mass m between two springs k and a mass M on the upper spring, with a sudden force F. Until the first return, no
-/// contact opens and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k, 2F/k); V and ω² are the modes
-/// of M^(−½) K M^(−½).
+/// A mass m is between two springs k, and a mass M on the upper spring. A force F acts suddenly on M. Until the first
+/// return, no contact opens and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k, 2F/k); V and ω²
+/// are the modes of M^(−½) K M^(−½).
 #[test]
 fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let root = Vector2::new(1.0, MASS.sqrt());

@@ -53,7 +53,7 @@ fn conventions_table() -> String {
     table
 }
 
-/// Table of the stored throughput benchmark. `grainbench race` on a quiet machine writes a new `race.json`.
+/// Returns the table of the stored throughput benchmark. `grainbench race` on a quiet machine writes a new `race.json`.
 fn race_table() -> String {
     let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
     serde_json::from_str::<Race>(&kept).unwrap().table().trim_end().to_owned()
@@ -74,8 +74,8 @@ fn tables_are_generated() {
     expect_file(CHAPTER, &chapter);
 }
 
-/// Cells of the feature matrix that name a case without a claim of the column's kind of evidence, as `case: evidence`. An empty
-/// matrix is an error too.
+/// Returns the cells of the feature matrix that name a case without a claim of the column's kind of evidence, as
+/// `case: evidence`. An empty matrix is an error too.
 fn wrong_cells(readme: &str) -> Vec<String> {
     const COLUMNS: [&[Evidence]; 5] = [
         &[Evidence::Analytic],

@@ -53,7 +53,7 @@ impl Minimal {
         minimal
     }
 
-    /// One calculation cycle.
+    /// Runs one calculation cycle.
     pub(crate) fn step(&mut self, time_step: f64) {
         self.farthest = 0.0;
         for k in 0..self.position.len() {

@@ -32,9 +32,9 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
     })
 }
 
-/// Returns the decrease of the height of the disc's centre over R, at rest under its weight W (N per metre), on a grid
-/// with `cells` cells a radius. It includes the springs at the surface. K = 10 MPa and G = 2.5 MPa, so ν = 5/13; 3000
-/// kg/m³ and R = 0.5 m. See [`Pressed::gives`] for the displacement of the disc.
+/// Returns the flattening of the disc at rest: the decrease of the height of its centre, over R. The load is its weight
+/// W (N per metre), on a grid with `cells` cells a radius. It includes the springs at the surface. K = 10 MPa and G =
+/// 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`Pressed::gives`] for the displacement of the disc.
 fn flattened(cells: f64) -> f64 {
     let radius = 0.5;
     let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };

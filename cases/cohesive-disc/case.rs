@@ -42,8 +42,8 @@ fn with_cohesion(factor: f64) -> Run {
     })
 }
 
-/// Compares the growth rate of the surface's slip, d(v − ΩR)/dt, over the second half of the run with the exact rate,
-/// in units of g sin θ.
+/// Compares the growth rate of the surface's slip, d(v − ΩR)/dt, with the exact rate, in units of g sin θ. The rate is
+/// that of the second half of the run.
 fn slip(done: &Done) -> Result<Measured, Missing> {
     let scene = &done.scene;
     let grain = OneGrain::of(scene);

@@ -144,7 +144,7 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     })
 }
 
-/// Negative control: the other release convention.
+/// Returns the control: the other release convention.
 fn other(solver: &'static str) -> Control {
     if solver == "dem" {
         Control::solver("the dashpot may pull", "dem:1979")

@@ -71,8 +71,8 @@ fn enskog(scene: &Scene) -> f64 {
         * (1.0 + 3.0 / 16.0 * A2)
 }
 
-/// Returns the number of collisions of a disc in the duration of a contact, ω t_c, for a stiffness k (N/m) at the mean
-/// temperature of the run, T = 1/(1 + 0.058 t)² from t = 2 to 12.
+/// Returns ω t_c, the number of collisions of a disc during a contact, for a stiffness k (N/m). The temperature is the
+/// mean of the run, with T = 1/(1 + 0.058 t)² from t = 2 to 12.
 fn in_contact(stiffness: f64) -> f64 {
     // The scene has φ = 0.2 and d = m = 1; the time average of √T is 0.73.
     let (packing_fraction, mean_root) = (0.2_f64, 0.73);

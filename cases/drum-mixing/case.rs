@@ -90,7 +90,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Negative control: counts in the other lower quarter.
+/// Returns the control: counts in the other lower quarter.
 fn beside() -> Control {
     Control::misread("counted on the other side, x > 0", zones::on_the_other_side)
 }
@@ -164,7 +164,7 @@ fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], c
     bulk::mean(&format!("mean {words} from .03 to .1 s"), unit, (column, 0.03), runs, control)
 }
 
-/// Returns the counts in zone 2 over time with those of the codes, if the published start is given, and the
+/// Returns the figures: counts in zone 2 over time with those of the codes, if the published start is given;
 /// acceleration of the small drum's bed.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = Vec::new();

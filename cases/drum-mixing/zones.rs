@@ -38,7 +38,7 @@ impl Reader for Zones {
     }
 }
 
-/// Negative control: swaps zone 2 and the other lower quarter.
+/// Swaps zone 2 and the other lower quarter, for a control.
 pub(super) fn on_the_other_side(tables: &mut [Table]) {
     for table in tables.iter_mut().filter(|table| table.name == NAME) {
         table.values.swap(1, 2);

@@ -157,7 +157,7 @@ fn softer() -> Control {
     Control::scene("four per cent softer", |scene| stiffen(scene, 0.96))
 }
 
-/// Negative control: plane stress (E, 4.6 % slower), or another transverse contraction.
+/// Returns the control: plane stress (E, 4.6 % slower), or another transverse contraction.
 fn no_contraction() -> Control {
     Control::scene("no contraction across: E in place of E/(1 − ν²)", |scene| {
         for material in scene.deformable.iter_mut().flatten() {

@@ -75,8 +75,8 @@ struct Pressed {
     pressure: f64,
 }
 
-/// Returns the material points of the block at the end whose initial depth was between `from` and `to` cells and whose
-/// distance from the middle is below 1.5 b.
+/// Returns the material points of the block at the end. Their initial depth was between `from` and `to` cells, and
+/// their distance from the middle is below 1.5 b.
 fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
     let snapshots = &done.record.snapshots;
     let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));

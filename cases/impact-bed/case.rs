@@ -227,7 +227,7 @@ fn half_the_density() -> Control {
     Control::scene("half the density of the ball", lighten)
 }
 
-/// Negative control: half the mass and half the moment of inertia of the ball.
+/// Halves the mass and the moment of inertia of the ball.
 fn lighten(scene: &mut Scene) {
     let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
     (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
@@ -241,7 +241,7 @@ fn smooth() -> Control {
     Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
 }
 
-/// Negative control: ball and walls have the contact law between grains.
+/// Returns the control: ball and walls have the contact law between grains.
 fn pair_of_m1() -> Control {
     Control::scene("the pair of M1 for steel", |scene| {
         let place = |name: &str| scene.materials.iter().position(|known| known == name);

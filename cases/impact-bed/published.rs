@@ -34,8 +34,8 @@ impl Spread {
     }
 }
 
-/// Returns time (ms) and deviation of our beds' mean from the codes' mean, in standard deviations, at each published
-/// time at which codes and beds differ.
+/// Returns time (ms) and deviation of our beds' mean from the codes' mean, in standard deviations. It covers each
+/// published time at which codes and beds differ.
 pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, Missing> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let told = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;

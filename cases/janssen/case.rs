@@ -150,8 +150,8 @@ fn known() -> Tolerance {
     one_interval("in units of half the 99 % confidence interval of the mean, from the means over 8 blocks of time")
 }
 
-/// Returns the mean over the steady descent of the sum of some force columns over the weight, against 1, in units of
-/// half the confidence interval of the mean.
+/// Sums some force columns over the weight and compares the mean over the steady descent with 1. The unit is half the
+/// confidence interval of the mean.
 fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
     let weight = weight(&done.scene);
     let mut borne = Vec::new();

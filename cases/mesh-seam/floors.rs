@@ -35,7 +35,7 @@ pub(super) fn turned(scene: &mut Scene) {
     }
 }
 
-/// Negative control: lifts the part of a floor beyond a line on the sphere's path by a thousandth of its radius.
+/// Lifts the part of a floor beyond a line on the sphere's path by a thousandth of its radius, for a control.
 pub(super) fn with_a_step(scene: &mut Scene) {
     let height = 1e-3 * scene.grains[0].radius;
     for wall in &mut scene.walls {
@@ -49,8 +49,8 @@ pub(super) fn with_a_step(scene: &mut Scene) {
     }
 }
 
-/// Negative control: replaces the floor by two rectangles, each a wall of its own, with their common edge on the
-/// sphere's path.
+/// Replaces the floor by two rectangles, for a control. Each is a separate wall; their common edge is on the sphere's
+/// path.
 pub(super) fn of_two_rectangles(scene: &mut Scene) {
     let Some(mut second) = scene.walls.first().cloned() else { return };
     second.name.push_str(", again");
@@ -61,7 +61,7 @@ pub(super) fn of_two_rectangles(scene: &mut Scene) {
     scene.walls.push(second);
 }
 
-/// Negative control: replaces the cube by the plane of its upper face.
+/// Replaces the cube by the plane of its upper face, for a control.
 pub(super) fn of_a_plane(scene: &mut Scene) {
     for wall in &mut scene.walls {
         wall.shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };

@@ -118,8 +118,8 @@ fn static_forces() -> Vec<Claim> {
     claims
 }
 
-/// Returns the error of the static forces, in units of k_n δ. It is the force b that rotates by (a − b)/2R with its
-/// contact, zero at κ = 0, plus rounding of the walls' positions by ε 3R in each cycle of motion.
+/// Returns the error of the static forces, in units of k_n δ. The first part is the force b that rotates by (a − b)/2R
+/// with its contact, zero at κ = 0. The second is rounding of the walls' positions by ε 3R in each cycle of motion.
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let over_radius = over_radius(variant);
@@ -239,8 +239,8 @@ fn geometry() -> Claim {
         }))
 }
 
-/// Sets a ramp that lasts 40 steps of 0.1 of the critical step, independent of the step of the run, and a run of ten
-/// periods of the slow mode.
+/// Sets a ramp that lasts 40 steps of 0.1 of the critical step, for any step of the run. The run lasts ten periods of
+/// the slow mode after it.
 fn fixed_ramp(scene: &mut Scene) {
     let modal = Modal::of(scene);
     let ramp = RAMP_TIME / modal.rate.sqrt();

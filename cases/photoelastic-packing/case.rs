@@ -106,7 +106,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Negative control: walls that move a tenth too far after stage A.
+/// Returns the control: walls that move a tenth too far after stage A.
 fn further_to_b() -> Control {
     Control::scene("walls that go a tenth further from stage A to stage B", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity *= 1.1);

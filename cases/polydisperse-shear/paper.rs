@@ -24,7 +24,7 @@ const FIGURE_7: Source =
 const FIGURE_8: Source =
     Source::Printed(&PAPER, "Fig. 8: motion of the grains is concentrated near the moving boundary");
 
-/// Negative control: the other side moves instead.
+/// Moves the other side instead, for a control.
 fn other_side(scene: &mut Scene) {
     let velocity = scene.driven[1].velocity;
     for (driven, velocity) in scene.driven.iter_mut().zip([velocity, velocity * 0.0]) {
@@ -33,7 +33,7 @@ fn other_side(scene: &mut Scene) {
     }
 }
 
-/// Negative control: constant chains. The walls are at rest and the grains are slightly enlarged.
+/// Stops the walls and enlarges the grains slightly, for a control with constant chains.
 fn swollen(scene: &mut Scene) {
     Effect::MovingWalls.switch_off(scene);
     for grain in &mut scene.grains {
@@ -41,8 +41,8 @@ fn swollen(scene: &mut Scene) {
     }
 }
 
-/// Negative control for deformable grains. Because their sides are open, enlarged grains fly apart unless they come to
-/// rest within 1 % of the time.
+/// Enlarges deformable grains for the same control. Their sides are open, so they fly apart unless they come to rest
+/// within 1 % of the time.
 fn at_rest(scene: &mut Scene) {
     swollen(scene);
     scene.global_damping = 1e7;

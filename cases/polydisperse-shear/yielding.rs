@@ -43,8 +43,8 @@ fn voids(done: &Done, snapshot: &Snapshot) -> f64 {
     large_voids(done, snapshot) as f64
 }
 
-/// Negative control: every second of the larger free grains has a tenth of its area. Smaller grains would be smaller
-/// than a cell.
+/// Reduces every second of the larger free grains to a tenth of its area, for a control. Smaller grains would then be
+/// smaller than a cell.
 fn shrunk(scene: &mut Scene) {
     const LARGER: f64 = 2.6e-5;
     let groups = scene.driven_group_of_grains();

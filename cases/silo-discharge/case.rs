@@ -162,7 +162,7 @@ fn near(
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }
 
-/// Negative control: no friction between grains, unchanged friction on steel.
+/// Returns the control: no friction between grains, unchanged friction on steel.
 fn smooth() -> Control {
     Control::scene("no friction between grains", |scene| {
         let Some(m1) = scene.materials.iter().position(|name| name == "m1") else { return };

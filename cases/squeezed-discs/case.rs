@@ -46,8 +46,8 @@ fn exact(scene: &Scene) -> f64 {
     Pressed::of(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
-/// Returns the mean contact force at the walls (N per metre), with three discs on each, over the last quarter of the
-/// run, because material points continue to oscillate by one per cent.
+/// Returns the mean contact force at the walls (N per metre), with three discs on each. The mean is over the last
+/// quarter of the run, because material points continue to oscillate by one per cent.
 fn mean_force(done: &Done) -> Result<f64, Missing> {
     let mut sum = 0.0;
     for wall in WALLS {

@@ -53,7 +53,7 @@ impl Stage {
         }
     }
 
-    /// F_H/F_V.
+    /// Returns F_H/F_V.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         self.horizontal / self.vertical

@@ -100,7 +100,7 @@ fn spin_in_drum() -> Claim {
         .fair_to_any_springs()
 }
 
-/// Compliance of the disc along the tray (m/N): 1/k_t + R²/k_r.
+/// Returns the compliance of the disc along the tray (m/N): 1/k_t + R²/k_r.
 fn softness(scene: &Scene) -> f64 {
     let (law, radius) = (scene.laws[0].unwrap_or_default(), scene.grains[0].radius);
     let rolling = 2.25 * law.normal_stiffness() * (law.rolling_friction * radius).powi(2);

@@ -35,7 +35,7 @@ pub(crate) struct Kind {
     pub(crate) few: u64,
     /// Number of items with `GRAINBENCH_LONG`.
     pub(crate) many: u64,
-    /// Runs the item of a random draw and reports what is wrong.
+    /// Function that runs the item of a random draw and reports what is wrong.
     pub(crate) try_out: fn(&mut Lot) -> Result<(), String>,
 }
 

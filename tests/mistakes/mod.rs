@@ -143,7 +143,7 @@ pub(crate) enum Mistake {
     RepeatLine(usize, usize),
     StrangeValue(usize, usize),
     SwapValues(usize, usize),
-    /// Multiplies a number by a power of ten.
+    /// A number multiplied by a power of ten.
     Scale(usize, i32),
 }
 

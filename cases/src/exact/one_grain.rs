@@ -231,7 +231,7 @@ impl OneGrain {
     }
 
     /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm `a` instead of
-    /// R: v(1 + i(R/a)²) = g_t t, from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
+    /// R. v(1 + i(R/a)²) = g_t t follows from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
     #[must_use]
     pub fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
         self.along * t / (1.0 + self.inertia_factor * (self.radius / arm).powi(2))

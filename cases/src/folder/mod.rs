@@ -1,7 +1,7 @@
 //! A user's case without Rust: a folder with `scene.toml` and `claims.toml`.
 //!
 //! A claim states the quantity, the expected value and its source, the tolerance and its reason, and the negative
-//! control, as a claim in Rust does. Expected values are arithmetic over the numbers of the scene.
+//! control. It has the same parts as a claim in Rust. Expected values are arithmetic over the numbers of the scene.
 
 mod claims_file;
 mod expression;

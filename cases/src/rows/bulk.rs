@@ -38,7 +38,7 @@ pub(crate) fn mean(
     })
 }
 
-/// Claims the mean over our own packings, one run each, in units of the allowed error against two codes on one packing:
+/// Claims the mean over our own packings, one run each, against two codes on one packing. The unit is the allowed error
 /// 2 √(s_code² + s_own² (1/m + 1)). s_code is half the difference of the codes, times √2. s_own is the standard
 /// deviation between our m packings.
 pub(crate) fn of_packings(

@@ -27,7 +27,7 @@ pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-/// Negative control: smaller friction, which matters while the grain slides.
+/// Returns the control for the sliding phase: smaller friction.
 pub(crate) fn slippery() -> Control {
     Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }

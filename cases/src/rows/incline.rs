@@ -118,13 +118,13 @@ pub fn more_friction(scene: &mut Scene) {
     scene.change_laws(|law| law.friction *= 1.05);
 }
 
-/// Negative control for sliding grains: friction 5 % larger.
+/// Returns the control for sliding grains: friction 5 % larger.
 #[must_use]
 pub fn stronger_friction() -> Control {
     Control::scene("friction ×1.05", more_friction)
 }
 
-/// Negative control for rolling grains: the inertia of the other shape.
+/// Returns the control for rolling grains: the inertia of the other shape.
 #[must_use]
 pub fn other_inertia() -> Control {
     Control::scene("the inertia of the other shape", wrong_inertia)

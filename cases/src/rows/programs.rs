@@ -51,7 +51,7 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     claims
 }
 
-/// Negative control: a slightly wrong tangential spring. It affects the Coulomb limit of a slipping grain and every
+/// Returns the control: a slightly wrong tangential spring. It affects the Coulomb limit of a slipping grain and every
 /// start of rolling.
 fn telling() -> Control {
     Control::ours("tangential stiffness × 1.001 in ours", |scene| {

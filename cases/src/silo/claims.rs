@@ -64,19 +64,19 @@ const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median"
 /// Reason for tolerances from the spread over packings.
 const PACKINGS: &str = "a deposit is one draw of many: the 99 % interval of the difference of two, from ten of our own";
 
-/// Negative control: half the friction.
+/// Returns the control: half the friction.
 fn half_the_friction() -> Control {
     Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
 }
 
-/// Negative control: no tangential springs.
+/// Returns the control: no tangential springs.
 pub(crate) fn no_springs() -> Control {
     Control::scene("tangential springs a millionth as stiff", |scene| {
         scene.change_laws(|law| law.scale_tangential(1e-6))
     })
 }
 
-/// Negative control: the ratio of shear to normal stress, tan φ, read as sin φ.
+/// Returns the control: the ratio of shear to normal stress, tan φ, read as sin φ.
 fn tangent_for_sine() -> Control {
     Control::misread("tan φ taken for sin φ", |tables| {
         for table in tables {
@@ -89,7 +89,7 @@ fn tangent_for_sine() -> Control {
     })
 }
 
-/// Negative control: gravity turned by ten degrees about y.
+/// Returns the control: gravity turned by ten degrees about y.
 fn turned_gravity() -> Control {
     Control::scene("gravity turned by 10°", |scene| {
         let (sine, cosine) = 10.0_f64.to_radians().sin_cos();

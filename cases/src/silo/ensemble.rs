@@ -271,8 +271,8 @@ pub(crate) fn angles(done: &Done, flow: Flow, averaged: bool, name: &str) -> Res
     if values.len() < 4 { Err(Missing("four flowing blocks".to_owned())) } else { Ok(values) }
 }
 
-/// Returns the mean rotation about y from the axes of T to the axes of D, multiplied by the sign of x, so that both
-/// halves of a symmetric flow contribute with the same sign.
+/// Returns the mean rotation about y from the axes of T to the axes of D, multiplied by the sign of x. With this sign,
+/// both halves of a symmetric flow contribute equally.
 pub(crate) fn turn(done: &Done, flow: Flow) -> Result<f64, Missing> {
     let (turns, places) = (angles(done, flow, false, "turn")?, angles(done, flow, false, "x")?);
     // The sense from x to z is opposite to a positive rotation about y.
@@ -313,17 +313,17 @@ fn rotate(tables: &mut [Table], name: &str) {
     }
 }
 
-/// Negative control: friction of other elements.
+/// Gives each element the friction of another element, for a control.
 pub(crate) fn friction_elsewhere(tables: &mut [Table]) {
     rotate(tables, "sine_of_friction");
 }
 
-/// Negative control: the tangent of the friction angle instead of its sine.
+/// Replaces the sine of the friction angle by its tangent, for a control.
 pub(crate) fn tangent(tables: &mut [Table]) {
     change(tables, "sine_of_friction", |table, row| at(table, "sine_of_friction", row).asin().tan());
 }
 
-/// Negative control: rates of other elements.
+/// Gives each element the rate of another element, for a control.
 pub(crate) fn rate_elsewhere(tables: &mut [Table]) {
     rotate(tables, "shear_rate_between");
 }
@@ -342,31 +342,31 @@ fn at(table: &Table, name: &str, row: usize) -> f64 {
     table.column(name).map_or(f64::NAN, |values| values[row])
 }
 
-/// Negative control: D of each block compared with the stress of another block.
+/// Compares D of each block with the stress of another block, for a control.
 pub(crate) fn stress_elsewhere(tables: &mut [Table]) {
     change(tables, "largest", |table, row| at(table, "largest_elsewhere", row));
 }
 
-/// Negative control: D turned by ten degrees about y.
+/// Turns D by ten degrees about y, for a control.
 pub(crate) fn rate_turned(tables: &mut [Table]) {
     change(tables, "turn", |table, row| at(table, "turn", row) - 10.0 * at(table, "x", row).signum());
 }
 
-/// Negative control: the inertial number with a density of 1 instead of 6/π.
+/// Computes the inertial number with a density of 1 instead of 6/π, for a control.
 pub(crate) fn density_of_one(tables: &mut [Table]) {
     change(tables, "inertial_number", |table, row| {
         at(table, "inertial_number", row) * (std::f64::consts::PI / 6.0).sqrt()
     });
 }
 
-/// Negative control: omits elements after the end of the prototype's runs from φ over |I₀|.
+/// Omits elements after the end of the prototype's runs from φ over |I₀|, for a control.
 pub(crate) fn without_the_end(tables: &mut [Table]) {
     change(tables, "inertial_number", |table, row| {
         if at(table, "time", row) > 14.0 + 1e-9 { f64::NAN } else { at(table, "inertial_number", row) }
     });
 }
 
-/// Negative control: radii taken 1 % too large.
+/// Takes radii 1 % too large, for a control.
 pub(crate) fn larger_radii(tables: &mut [Table]) {
     change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.01_f64.powi(3));
 }

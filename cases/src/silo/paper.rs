@@ -25,19 +25,19 @@ pub(crate) struct PaperSize {
     pub(crate) step: Level,
     /// Packing fractions of the prototype in the first bins of |I₀|.
     pub(crate) bins: &'static [Cited],
-    /// Claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over the
-    /// inertial number.
+    /// Expected values, if the silo drains. In draining silos, enough elements strain for paths of tracers and for
+    /// curves over the inertial number.
     pub(crate) drained: Option<Drained>,
 }
 
-/// Claims on a draining silo at the paper's size.
+/// Expected values of a draining silo at the paper's size.
 pub(crate) struct Drained {
     /// Packing fraction of strained tracers in the prototype.
     pub(crate) plateau: Cited,
     /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which is not met (derivation).
     pub(crate) onset: Cited,
-    /// Number of bins of |I₀| that are compared up to 14 τ. If the last bin is not among them, its mean over the whole
-    /// flow is compared, because few elements over the slit are in it.
+    /// Number of bins of |I₀| that are compared up to 14 τ. A last bin outside this number is compared by its mean over
+    /// the whole flow, because few elements over the slit are in it.
     pub(crate) bins: usize,
     /// Another draining silo, for the curve over |I₀|. If present, all other flows are compared over |E|.
     pub(crate) beside: Option<&'static Other>,
@@ -45,7 +45,7 @@ pub(crate) struct Drained {
     pub(crate) others: &'static [Other],
 }
 
-/// Negative control: sin φ read as its tangent, which matches the paper's wording for μ.
+/// Returns the control: sin φ read as its tangent, which matches the paper's wording for μ.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
 }
