@@ -316,7 +316,7 @@ fn an_interrupted_run_leaves_what_is_finished() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The process handles the signal once it catches it; the registry takes much longer.
+    // Ctrl-C can be sent once the process catches the signal. The run of the registry takes much longer than that.
     let catches = || {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();
