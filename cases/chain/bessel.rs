@@ -3,7 +3,7 @@
 /// Returns J_0 … J_{orders−1} at x > 0 by Miller's downward recurrence, J_{n−1} = (2n/x) J_n − J_{n+1}, normalised by
 /// J_0 + 2 Σ J_{2k} = 1.
 pub(crate) fn bessel(x: f64, orders: usize) -> Vec<f64> {
-    // So far above x and the orders that the effect of the arbitrary start vanishes.
+    // The start is far above x and the orders, so the effect of its arbitrary value vanishes.
     let top = 2 * (orders.max(x.ceil() as usize) / 2) + 60;
     let mut values = vec![0.0; top + 2];
     values[top] = 1e-300;
