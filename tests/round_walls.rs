@@ -65,7 +65,7 @@ fn a_sphere_rolls_in_a_trough_at_its_period() {
     assert!((sliding / exact(1.0) - 1.0).abs() < 1e-4, "{sliding} for {}", exact(1.0));
 }
 
-/// In a rotating drum, a sphere stays at the bottom if its surface velocity equals that of the drum: ω r = Ω R.
+/// In a rotating drum, a sphere remains at the bottom if its surface velocity equals that of the drum: ω r = Ω R.
 #[test]
 fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
     const DRUM: f64 = 2.0;

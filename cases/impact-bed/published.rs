@@ -1,4 +1,4 @@
-//! Published results of seven codes on ten beds, and the comparison of ours with them.
+//! Published results of seven codes on ten beds, and their comparison with our results.
 
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::Cited;

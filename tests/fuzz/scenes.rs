@@ -113,7 +113,8 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
     }
 }
 
-/// Shortens the relaxation of bodies to a few steps, unless it has so many that the solver itself must reject it.
+/// Shortens the relaxation of bodies to a few steps. A relaxation beyond the solver's limit of steps is unchanged,
+/// because the solver itself must reject it.
 fn shorten_settling(scene: &mut Scene) {
     const REFUSED: f64 = 4e15;
     let courant = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);

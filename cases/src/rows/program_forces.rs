@@ -17,7 +17,7 @@ fn stiffer() -> Control {
     })
 }
 
-/// Claims the forces at some contacts of runs of each external solver and of ours, in units of `unit`.
+/// Claims that the forces at some contacts of our runs equal those of each external solver, in units of `unit`.
 #[must_use]
 pub fn forces(
     runs: impl Fn(&'static str) -> Run,
