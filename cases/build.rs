@@ -5,6 +5,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+/// Source folders of our solvers by kind, in the root of the workspace; for external programs those of the decks.
+const SOURCES: [(&str, &[&str]); 4] = [
+    ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/lanes/src"]),
+    ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/lanes/src"]),
+    ("RIGID", &["solvers/rigid/src", "solvers/scene/src"]),
+    ("PROGRAMS", &["reference/src/deck"]),
+];
+
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
@@ -18,7 +26,56 @@ fn main() -> Result<(), Failure> {
     for kind in KINDS {
         println!("cargo::rerun-if-changed={}", references.join(kind).display());
     }
+    let workspace = root.parent().unwrap_or(&root);
+    for (name, folders) in SOURCES {
+        println!("cargo::rustc-env=GRAINBENCH_SOURCES_{name}={}", fingerprint(workspace, folders));
+        for folder in folders.iter().map(|folder| workspace.join(folder)).filter(|folder| folder.is_dir()) {
+            println!("cargo::rerun-if-changed={}", folder.display());
+        }
+    }
     Ok(())
+}
+
+/// Hash of all files in some folders except tests, by their paths and texts; comments of Rust sources do not count. A package
+/// has none of them: its version and the checksums in its lock identify its sources.
+fn fingerprint(root: &Path, folders: &[&str]) -> String {
+    if folders.iter().any(|folder| !root.join(folder).is_dir()) {
+        return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
+    }
+    let mut files: Vec<PathBuf> = Vec::new();
+    let mut open: Vec<PathBuf> = folders.iter().map(|folder| root.join(folder)).collect();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                open.push(path);
+            } else if !path.ends_with("tests.rs") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    let mut hasher = blake3::Hasher::new();
+    for file in files {
+        let name = file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned();
+        for part in [name.into_bytes(), code(&file)] {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(&part);
+        }
+    }
+    hasher.finalize().to_hex()[..16].to_owned()
+}
+
+/// The text of a file; of a Rust source the lines of code without their indentation.
+fn code(file: &Path) -> Vec<u8> {
+    let bytes = fs::read(file).unwrap_or_default();
+    match (file.extension(), str::from_utf8(&bytes)) {
+        (Some(end), Ok(text)) if end == "rs" => {
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+            lines.collect::<Vec<_>>().join("\n").into_bytes()
+        }
+        _ => bytes,
+    }
 }
 
 /// Returns the sorted names of the subfolders that contain a file.

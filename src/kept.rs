@@ -1,24 +1,12 @@
 //! What accuracy costs and what stays stable, as it was measured when somebody measured it, and of which sources.
 
+pub use grainbench_cases::kept::sources;
 use grainbench_reports::measured::{Costs, Measurements, Stability};
 use grainbench_reports::study::Study;
 use grainbench_studies::kept::{COST, STABILITY};
 
 /// Other people's solvers beside ours in some scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
-
-/// Hash of the sources of a solver as this program has them; of a program, of what we hand it.
-#[must_use]
-pub fn sources(solver: &str) -> Option<String> {
-    let hash = match solver.split([':', '+']).next() {
-        Some("dem") => env!("GRAINBENCH_SOURCES_DEM"),
-        Some("mpm") => env!("GRAINBENCH_SOURCES_MPM"),
-        Some("rigid") => env!("GRAINBENCH_SOURCES_RIGID"),
-        Some("lammps" | "liggghts") => env!("GRAINBENCH_SOURCES_PROGRAMS"),
-        _ => return None,
-    };
-    Some(hash.to_owned())
-}
 
 /// What was measured before.
 ///

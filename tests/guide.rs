@@ -177,6 +177,7 @@ fn the_words_of_a_row_are_explained() {
         Outcome::Fail,
         Outcome::Known,
         Outcome::Stale,
+        Outcome::Outdated,
         Outcome::NoReference,
         Outcome::Unsupported,
         Outcome::NotAvailable,

@@ -99,7 +99,8 @@ fn claims() -> Vec<Claim> {
         .of(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and its distribution over beads in contact \
              depends on the solution order of the engine",
-        ))
+        )
+        .up_to(2.0))
         .equals(BESSEL, |done| bead(&done[0], 22, "v22.vx"))
         .within(judged(4e-4, "what a solver with springs reaches, in units of V"))
         .refuses(Control::without_the_error("dem in its place", "dem", FINEST.resolution));

@@ -122,7 +122,7 @@ fn claims() -> Vec<Claim> {
     let depth = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
     let lowest = Spread::of(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
     let speed = Spread::of(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
-    let known = on_all().map(|run| run.known(SLOW));
+    let known = on_all().map(|run| run.known(SLOW).up_to(0.5));
     let mut all_claims = vec![
         of_beds(
             on_all(),

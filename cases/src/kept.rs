@@ -9,7 +9,7 @@ use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::control::Wrong;
 use grainbench_harness::reading::Table;
-use grainbench_harness::run::{Done, Run, Set};
+use grainbench_harness::run::{Done, Made, Run, Set};
 use grainbench_harness::solvers::Kept;
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::stored::{compressed, is_scene_of, scene_hash_by_bits};
@@ -28,6 +28,20 @@ const ENDING: &str = ".csv.gz";
 /// Significant digits of numbers in tables. Tables average many grains, so a rounding error of 1e-6 is negligible.
 const DIGITS: usize = 6;
 
+/// Returns the hash of the sources of a solver that this program is built from. For an external program it is the hash of
+/// the sources that write its input. Comments do not count.
+#[must_use]
+pub fn sources(solver: &str) -> Option<String> {
+    let hash = match solver.split([':', '+']).next() {
+        Some("dem") => env!("GRAINBENCH_SOURCES_DEM"),
+        Some("mpm") => env!("GRAINBENCH_SOURCES_MPM"),
+        Some("rigid") => env!("GRAINBENCH_SOURCES_RIGID"),
+        Some("lammps" | "liggghts") => env!("GRAINBENCH_SOURCES_PROGRAMS"),
+        _ => return None,
+    };
+    Some(hash.to_owned())
+}
+
 /// Provenance of a stored result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -45,6 +59,9 @@ pub struct Provenance {
     /// BLAKE3 hash of everything in the scene that the run depends on, by [`scene_hash_by_bits`]. Older results have a
     /// hash over the decimal digits of the grains.
     pub scene: String,
+    /// Hash of the sources of the solver, by [`sources`]. Older results have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sources: Option<String>,
     /// Command that makes the result again.
     pub command: String,
     /// BLAKE3 hash of each file, by file name.
@@ -180,11 +197,12 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
     }
     let place = tables.iter().position(|table| table.name == SERIES);
     let series = place.map(|place| series(scene, &tables.remove(place))).unwrap_or_default();
-    let made = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
+    let words = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
+    let is_current = is_program(run.solver) || provenance.sources == sources(run.solver);
     Ok(Kept {
         record: Record { provenance: provenance.run, series, snapshots: Vec::new(), cost: provenance.cost },
         tables,
-        made,
+        made: Made { words, is_current },
     })
 }
 
@@ -251,6 +269,7 @@ pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result
         title: format!("{}/{}{control}, {}, {}", of.case.name, of.run.scene_words(), of.run.solver, of.run.resolution),
         reading: of.run.reading.map_or("", |reading| reading.name).to_owned(),
         scene: scene_hash_by_bits(given, &Stepping::of(given, &of.run.resolution)?),
+        sources: sources(of.run.solver).filter(|_| !is_program(of.run.solver)),
         command: format!("grainbench reference keep {}{paper_size}", of.case.name),
         blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
         run: record.provenance.clone(),

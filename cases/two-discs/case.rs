@@ -119,7 +119,8 @@ fn claims() -> Vec<Claim> {
             .of(run("head-on", "mpm:2000").known(
                 "lower than the lowest of six results of the prototype: it depends on the position of the discs on the grid, \
                  which is not reported",
-            ))
+            )
+            .up_to(0.05))
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
             .within(exactly("the least of what the prototype has at three resolutions, with two kinds of normals"))
             .refuses(Control::without_the_error("four cells a radius", "mpm:2000", grid(4.0))),
@@ -127,7 +128,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("energy after over before", "1")
             .of(run("head-on", "mpm:2000")
-                .known("contact ends on separation, for any traction: each release adds energy"))
+                .known("contact ends on separation, for any traction: each release adds energy")
+                .up_to(0.2))
             .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
             .within(required(5e-3, "what springs at the surface reach"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
@@ -161,7 +163,8 @@ fn three() -> Vec<Claim> {
     let mut claims: Vec<Claim> = ["mpm", "mpm:gap"].map(|solver| of(run("three", solver), alone())).into();
     for solver in ["mpm:2000", "mpm:2001"] {
         let known = run("three", solver)
-            .known("each body matches the common velocity along its own normal: the sum of the impulses is not zero");
+            .known("each body matches the common velocity along its own normal: the sum of the impulses is not zero")
+            .up_to(0.02);
         claims.push(of(known, Control::without_the_error("springs at the surface", "mpm", grid(8.0))));
     }
     claims

@@ -27,6 +27,8 @@ pub struct Run {
     pub adjustment: Option<(String, Change)>,
     /// What is expected of the row.
     pub standing: Standing,
+    /// Largest |error| of a known error, in units of the claim's scale; a larger one is red.
+    pub known_up_to: f64,
     /// The smallest set that it belongs to.
     pub set: Set,
     /// Whether it is there to judge by, and no negative control touches it.
@@ -35,6 +37,15 @@ pub struct Run {
     pub reading: Option<Reading>,
     /// Whether what it leaves is kept with the case: sets that it does not belong to judge that.
     pub kept: bool,
+}
+
+/// Provenance of a stored result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Made {
+    /// Date, program and commit, in words.
+    pub words: String,
+    /// True if the sources of the solver are those of this program.
+    pub is_current: bool,
 }
 
 /// Sets of runs, each with all of those before it.
@@ -75,6 +86,7 @@ impl Run {
             resolution,
             adjustment: None,
             standing: Standing::Passes,
+            known_up_to: f64::INFINITY,
             set: Set::Main,
             aside: false,
             reading: None,
@@ -99,6 +111,15 @@ impl Run {
     #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
         Self { standing: Standing::Known(reason), ..self }
+    }
+
+    /// The run of a known error with a second bound: a larger |error|, in units of the claim's scale, is red.
+    ///
+    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It holds what was found before, so it is
+    /// evidence of a change and not of an answer.
+    #[must_use]
+    pub fn up_to(self, error: f64) -> Self {
+        Self { known_up_to: error, ..self }
     }
 
     /// The run as one that only the tests do, not the main job.
@@ -178,7 +199,7 @@ pub struct Done {
     /// What was read of its snapshots.
     pub tables: Arc<Vec<Table>>,
     /// Of a run that is kept and was not done now: when and by what it was done, in words.
-    pub kept: Option<String>,
+    pub kept: Option<Made>,
 }
 
 /// A quantity that the records do not have.

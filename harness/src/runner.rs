@@ -6,9 +6,9 @@ use crate::control::{self, Wrong};
 use crate::data::{Data, NotMade};
 use crate::expect::Measured;
 use crate::reading::{self, Table};
-use crate::run::{Done, Run, Set, Standing};
+use crate::run::{Done, Made, Run, Set, Standing};
 use crate::solvers::{Kept, Solvers};
-use crate::tolerance::Made;
+use crate::tolerance;
 use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::record::Record;
@@ -21,7 +21,7 @@ use std::time::Instant;
 
 /// What a run leaves: its record, what was read of its snapshots, and, of a run that is kept and was not done now, when and by
 /// what it was done.
-type Left = (Arc<Record>, Arc<Vec<Table>>, Option<String>);
+type Left = (Arc<Record>, Arc<Vec<Table>>, Option<Made>);
 /// The place of what a run leaves, which is there once it has been done.
 type Slot = Arc<OnceLock<Result<Left, RunError>>>;
 /// The place of a scene, which is there once somebody has asked for it.
@@ -224,7 +224,9 @@ impl Runner {
         let (standing, outcome) = (claim.standing(), row.outcome);
         let control = Control::of(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
         match standing {
-            Standing::Known(_) => Control { turned_red: outcome == Outcome::Pass, ..control },
+            Standing::Known(_) => {
+                Control { turned_red: matches!(outcome, Outcome::Pass | Outcome::Outdated), ..control }
+            }
             Standing::Passes | Standing::Refused => control,
         }
     }
@@ -441,14 +443,14 @@ impl Runner {
     /// How far a claim may be off, of these runs, and how that was made: what it says, or what is stored of it where that is
     /// less; none where an estimate should be stored and is not.
     #[must_use]
-    pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, Made)> {
+    pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, tolerance::Made)> {
         let stated = (claim.tolerance.of(done), claim.tolerance.made_without_estimate());
-        if claim.tolerance.made != Made::Estimated || self.stranger.is_some() {
+        if claim.tolerance.made != tolerance::Made::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
         // A bound below its estimate is a judgement, and says so.
         let found = self.solvers.uncertainty(self.case, claim)?;
-        Some(if found < claim.tolerance.up_to { (found, Made::Estimated) } else { stated })
+        Some(if found < claim.tolerance.up_to { (found, tolerance::Made::Estimated) } else { stated })
     }
 
     /// The row of a claim, from its runs.
@@ -477,10 +479,28 @@ impl Runner {
                     // A solver of another's need not tell all that ours do.
                     Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
-                    Ok(found) => known(row.judged(&found), claim.standing(), &found),
+                    Ok(found) => {
+                        let row = known(row.judged(&found), claim, &found);
+                        self.unless_outdated(row, &done)
+                    }
                 }
             }
         }
+    }
+
+    /// The row, amber if it passes on a stored result of other solver sources.
+    fn unless_outdated(&self, row: Verdict, done: &[Done]) -> Verdict {
+        let is_outdated = |done: &Done| done.kept.as_ref().is_some_and(|made| !made.is_current);
+        if row.outcome == Outcome::Pass && done.iter().any(is_outdated) {
+            let case = self.case.name;
+            return row.left(
+                Outcome::Outdated,
+                format!(
+                    "the stored run has other solver sources; `grainbench reference keep {case} --anew` repeats it"
+                ),
+            );
+        }
+        row
     }
 
     /// The row says which programs it was compared with, and what was not run now.
@@ -488,10 +508,10 @@ impl Runner {
         for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
             row.source.push_str(&format!(": {}", run.options.join(", ")));
         }
-        let mut kept: Vec<&String> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
+        let mut kept: Vec<&Made> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
         kept.dedup();
-        for made in kept {
-            row.source.push_str(&format!("; judged on what is kept of a run of {made}"));
+        for Made { words, .. } in kept {
+            row.source.push_str(&format!("; judged on the stored result of a run of {words}"));
         }
         row
     }
@@ -503,11 +523,14 @@ fn misread(mut done: Done, change: fn(&mut [Table])) -> Done {
     done
 }
 
-/// A method's own documented error is amber for as long as it is there and finite.
-fn known(row: Verdict, standing: Standing, found: &Measured) -> Verdict {
-    match standing {
-        Standing::Known(reason) if row.outcome == Outcome::Fail && found.error().is_finite() => {
-            row.left(Outcome::Known, reason)
+/// A method's own documented error is amber while it is finite and within its second bound.
+fn known(row: Verdict, claim: &Claim, found: &Measured) -> Verdict {
+    let Standing::Known(reason) = claim.standing() else { return row };
+    let most = claim.runs.first().map_or(f64::INFINITY, |run| run.known_up_to);
+    match row.outcome {
+        Outcome::Fail if found.error().abs() <= most && found.error().is_finite() => row.left(Outcome::Known, reason),
+        Outcome::Fail if found.error().is_finite() => {
+            row.left(Outcome::Fail, format!("beyond the known error, {most} of the scale: {reason}"))
         }
         _ => row,
     }

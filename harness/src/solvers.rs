@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::reading::Table;
-use crate::run::Run;
+use crate::run::{Made, Run};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, RunError, Solver};
@@ -16,8 +16,8 @@ pub struct Kept {
     pub record: Record,
     /// What was read of them.
     pub tables: Vec<Table>,
-    /// When and by what it was done, in words.
-    pub made: String,
+    /// Provenance.
+    pub made: Made,
 }
 
 /// A program beside the solvers of the registry.

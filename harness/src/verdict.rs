@@ -31,6 +31,8 @@ pub enum Outcome {
     Known,
     /// The reference was made from another scene.
     Stale,
+    /// It passes on a stored result of other solver sources.
+    Outdated,
     /// There is nothing to compare with.
     NoReference,
     /// The solver cannot express this scene.
@@ -48,7 +50,9 @@ impl Outcome {
         match self {
             Self::Pass => Severity::Green,
             Self::Fail | Self::Broken | Self::Stale => Severity::Red,
-            Self::Known | Self::NoReference | Self::Unsupported | Self::NotAvailable => Severity::Amber,
+            Self::Known | Self::Outdated | Self::NoReference | Self::Unsupported | Self::NotAvailable => {
+                Severity::Amber
+            }
         }
     }
 
@@ -66,6 +70,7 @@ impl Outcome {
             Self::Fail => "fail",
             Self::Known => "known",
             Self::Stale => "stale",
+            Self::Outdated => "outdated",
             Self::NoReference => "no-reference",
             Self::Unsupported => "unsupported",
             Self::NotAvailable => "not-available",

@@ -7,12 +7,13 @@ use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use crate::report::{Report, Section};
 
 /// All outcomes in the order in which a reader wants to know of them.
-pub const OUTCOMES: [Outcome; 8] = [
+pub const OUTCOMES: [Outcome; 9] = [
     Outcome::Pass,
     Outcome::Fail,
     Outcome::Broken,
     Outcome::Stale,
     Outcome::Known,
+    Outcome::Outdated,
     Outcome::NoReference,
     Outcome::Unsupported,
     Outcome::NotAvailable,
@@ -29,6 +30,8 @@ pub struct Headline {
     pub known: usize,
     /// References made from another scene.
     pub stale: usize,
+    /// Rows that pass on a stored result of other solver sources.
+    pub outdated: usize,
     /// Rows with nothing to compare with.
     pub no_reference: usize,
     /// Scenes that the solver cannot express.
@@ -147,6 +150,7 @@ impl Headline {
             Outcome::Fail => &mut self.fail,
             Outcome::Known => &mut self.known,
             Outcome::Stale => &mut self.stale,
+            Outcome::Outdated => &mut self.outdated,
             Outcome::NoReference => &mut self.no_reference,
             Outcome::Unsupported => &mut self.unsupported,
             Outcome::NotAvailable => &mut self.not_available,
@@ -171,7 +175,7 @@ pub fn worst(section: &Section) -> Option<&Verdict> {
     section
         .verdicts
         .iter()
-        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail | Outcome::Known))
+        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail | Outcome::Known | Outcome::Outdated))
         .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 

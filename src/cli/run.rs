@@ -262,8 +262,8 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
 
 /// Whether a row says something of its quantity: a solver that refuses the scene does, what is not there does not.
 pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
-    use verdict::Outcome::{Broken, Fail, Known, Pass, Unsupported};
-    matches!(verdict.outcome, Pass | Fail | Known | Unsupported | Broken)
+    use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
+    matches!(verdict.outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
 }
 
 /// Whether no row says anything of a quantity: of a program that was asked for, what it cannot express does not.

@@ -98,7 +98,7 @@ impl PaperSize {
 
     /// Returns a quantity with a known deviation.
     fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
-        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run().known(reason))
+        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run().known(reason).up_to(0.02))
     }
 
     /// Returns the claims.

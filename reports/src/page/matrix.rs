@@ -30,7 +30,7 @@ const fn order(outcome: Outcome) -> u8 {
         Outcome::Broken => 5,
         Outcome::Fail => 4,
         Outcome::Stale => 3,
-        Outcome::Known => 2,
+        Outcome::Known | Outcome::Outdated => 2,
         Outcome::Pass => 1,
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
     }
@@ -59,6 +59,7 @@ fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
         Outcome::Known if worst <= 10.0 => "k0",
         Outcome::Known if worst <= 1e3 => "k1",
         Outcome::Known => "k2",
+        Outcome::Outdated => "old",
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => "cannot",
     }
 }
@@ -110,7 +111,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
             p.key {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 of what is allowed" }
                 span { i.k0 {} i.k1 {} i.k2 {} "a published method's known error: ≤ 10, ≤ 1000, more times it" }
-                span { i.f0 {} "fails" } span { i.cannot {} "cannot express it" }
+                span { i.f0 {} "fails" } span { i.old {} "stored result of other sources" } span { i.cannot {} "cannot express it" }
             }
             @if !report.judged.is_empty() {
                 p.note {
