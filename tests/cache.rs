@@ -64,6 +64,33 @@ fn what_was_finished_is_taken_and_says_so() {
     assert_eq!((portable, rows(here, "portable")), ((Some(0), 0), rows(here, "first")));
 }
 
+/// A folder that every user can write is not trusted, and a CI job has no cache unless a folder is named.
+#[cfg(unix)]
+#[test]
+fn a_folder_of_everybody_is_not_used() {
+    use std::os::unix::fs::PermissionsExt;
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    let mode = |mode| fs::set_permissions(here.join("cache"), fs::Permissions::from_mode(mode)).unwrap();
+    mode(0o777);
+    let answer = program(here, "open").output().unwrap();
+    let said = String::from_utf8_lossy(&answer.stderr).into_owned();
+    assert!(answer.status.success() && said.contains("not used") && said.contains("mode 777"), "{said}");
+    assert_eq!(taken(&mut program(here, "open"), here, "open"), (Some(0), 0));
+    mode(0o775);
+    assert!(taken(&mut program(here, "group"), here, "group").1 > 5);
+    let results = fs::read_to_string(here.join("group/results.json")).unwrap();
+    assert!(results.contains("owned by user") && results.contains("writable by group"), "{results}");
+    let in_ci = |out: &str| {
+        let mut command = program(here, out);
+        command.env_remove("GRAINBENCH_CACHE").envs([("CI", "true"), ("XDG_CACHE_HOME", here.to_str().unwrap())]);
+        taken(&mut command, here, out)
+    };
+    assert_eq!((in_ci("once"), in_ci("twice")), ((Some(0), 0), (Some(0), 0)));
+    assert!(!here.join("grainbench").exists());
+}
+
 #[test]
 fn what_is_damaged_foreign_or_older_is_done_again() {
     let directory = tempfile::tempdir().unwrap();

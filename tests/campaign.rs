@@ -448,6 +448,8 @@ fn what_is_no_sweep_is_refused() {
         ("equals = 'sin(theta * pi/180)'", "equals = 'sin(theta'"),
         ("equals = 'sin(theta * pi/180)'\n", "allowed = 1\n"),
         ("value = 'grain.vx / (9.8 * 0.3)'", "value = '1 +'"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = 'grian.vx / (9.8 * 0.3)'"),
+        ("equals = 'sin(theta * pi/180)'", "equals = 'sin(thta * pi/180)'"),
         ("'dt=.1', 'dt=.05'", "'fine'"),
         ("'dt=.1', 'dt=.05'", "'dt=.1', 'dt=0.1'"),
         ("'dt=.1', 'dt=.05'", "'cells=4'"),

@@ -1,11 +1,18 @@
-//! Where finished runs are kept: outside the tree, for whoever runs the same again.
+//! Folder of the cache of finished runs, outside the tree.
+//!
+//! The key of a run is a plain hash, so whoever can write the folder decides the results. A folder that other users own or can
+//! write is not used.
 
 use super::exit;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::solvers::Solvers;
 use grainbench::studies::run_cache::{RunCache, WithCache};
 use std::env;
-use std::path::PathBuf;
+#[cfg(unix)]
+use std::fs;
+#[cfg(unix)]
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The folder, or `off`.
@@ -13,15 +20,64 @@ const VARIABLE: &str = "GRAINBENCH_CACHE";
 /// Bytes that it may have.
 const MOST: u64 = 2 << 30;
 
-/// The cache; none where it is off, where there is no place for it, or where that cannot be written to.
+/// Opens the cache; none if it is off, if there is no folder for it, or if the folder cannot be written or trusted. Under
+/// `CI=true` it is off unless the variable names a folder.
 pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
+    let is_ci = env::var_os("CI").is_some_and(|word| word == "true");
     let folder = match env::var_os(VARIABLE) {
         Some(word) if word == "off" => return None,
         Some(folder) if !folder.is_empty() => PathBuf::from(folder),
+        _ if is_ci => return None,
         _ => usual()?,
     };
-    let cache = RunCache::open(&folder, MOST, fresh, edition);
-    cache.map(Arc::new).map_err(|error| exit::say("warning", &format!("finished runs are not kept: {error}"))).ok()
+    let warn = |reason: String| exit::say("warning", &format!("the cache of finished runs is not used: {reason}"));
+    let cache = RunCache::open(&folder, MOST, fresh, edition).map_err(|error| warn(error.to_string())).ok()?;
+    match distrust(&folder) {
+        Some(reason) => {
+            warn(format!("{}: {reason}", folder.display()));
+            None
+        }
+        None => Some(Arc::new(cache)),
+    }
+}
+
+/// Says which runs of a report come from the cache: their number, its folder, and the folder's owner.
+pub(crate) fn words(cache: &RunCache) -> Option<String> {
+    let taken = cache.taken();
+    let about = owner(cache.folder()).map(|owner| format!(", {owner}")).unwrap_or_default();
+    let folder = cache.folder().display();
+    (taken > 0)
+        .then(|| format!("{taken} runs taken from the cache of finished runs, with their times: {folder}{about}"))
+}
+
+/// The reason why a folder cannot be trusted: another user owns it, or every user can write it.
+#[cfg(unix)]
+fn distrust(folder: &Path) -> Option<String> {
+    let about = fs::metadata(folder).ok()?;
+    let user = rustix::process::geteuid().as_raw();
+    if ![user, 0].contains(&about.uid()) {
+        return Some(format!("expected a folder of user {user} or of root, found one of user {}", about.uid()));
+    }
+    let mode = about.mode() & 0o7777;
+    (mode & 0o002 != 0).then(|| format!("expected a folder that not every user can write, found mode {mode:o}"))
+}
+
+#[cfg(not(unix))]
+const fn distrust(_: &Path) -> Option<String> {
+    None
+}
+
+/// The owner of a folder, and its group if the group can write it.
+#[cfg(unix)]
+fn owner(folder: &Path) -> Option<String> {
+    let about = fs::metadata(folder).ok()?;
+    let group = if about.mode() & 0o020 == 0 { String::new() } else { format!(", writable by group {}", about.gid()) };
+    Some(format!("owned by user {}{group}", about.uid()))
+}
+
+#[cfg(not(unix))]
+const fn owner(_: &Path) -> Option<String> {
+    None
 }
 
 /// The solvers of the registry, with a cache where there is one.

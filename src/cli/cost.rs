@@ -110,7 +110,9 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         print(&text(&study, &arguments.out))?;
         print(&format!("{reused} of {pieces} points were measured before and taken as they were\n"))?;
     }
-    Ok(if study.changes.iter().any(|change| change.worse) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    let measures = study.diagrams.iter().flat_map(|diagram| &diagram.points).any(|point| point.error.is_some());
+    let is_worse = study.changes.iter().any(|change| change.worse);
+    Ok(if is_worse || !measures { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
 /// Compares a study with the points of another session, which stand at a path.

@@ -146,12 +146,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     }
     if let Some(cache) = &cache {
         cache.make_room();
-        if cache.taken() > 0 {
-            words.push(format!(
-                "{} runs taken from the cache of finished ones, with the times that they took",
-                cache.taken()
-            ));
-        }
+        words.extend(cache::words(cache));
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     let mut report = report(provenance, sections, is_whole && options.solver.is_empty())?;

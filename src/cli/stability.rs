@@ -9,7 +9,7 @@ use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::reports::number;
-use grainbench::reports::study::stability::{Hardness, Limit};
+use grainbench::reports::study::stability::{Hard, Hardness, Limit};
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly::{self, Assembly};
@@ -99,7 +99,13 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
             format!("{reused} of {} were done before\n{}\n", pieces.len(), arguments.out.join("index.html").display());
         print(&(text(&study) + &end))?;
     }
-    Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    Ok(if is_red(&study) || measures_nothing(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+}
+
+/// Returns true if no solver gave a limit and none ran a hard case.
+fn measures_nothing(study: &Study) -> bool {
+    let is_run = |row: &Hard| !matches!(row.standing, Hardness::NotAvailable | Hardness::Unsupported);
+    study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(is_run)
 }
 
 /// The options that are not the default, in words.

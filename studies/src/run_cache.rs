@@ -59,6 +59,12 @@ impl RunCache {
         Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
     }
 
+    /// Returns the folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Returns the number of runs that were read from the cache.
     #[must_use]
     pub fn taken(&self) -> u64 {
@@ -117,9 +123,12 @@ impl RunCache {
             if all <= self.most {
                 break;
             }
-            // Another process may have removed the file.
-            let _ = fs::remove_file(path);
-            all -= bytes;
+            match fs::remove_file(path) {
+                Ok(()) => all -= bytes,
+                // Another process has removed the file.
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => all -= bytes,
+                Err(_) => {}
+            }
         }
     }
 }

@@ -10,6 +10,7 @@ use grainbench_harness::run::{Done, Missing};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reports::sweep::{Looked, Quantity};
 use grainbench_scene::error::did_you_mean;
+use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
@@ -108,6 +109,38 @@ impl Look {
             scale: recorded.scale.as_ref().map(|formula| read("scale", &formula.text())).transpose()?,
             allowed: recorded.allowed,
         })))
+    }
+
+    /// Checks the names in the arithmetic of the sweep file against a scene: columns of the record, numbers of the scene,
+    /// factors and the time `t`.
+    pub(super) fn check_names(
+        &self,
+        file: &str,
+        (source, scene): (&SceneSource, &Scene),
+        is_factor: &dyn Fn(&str) -> bool,
+    ) -> Result<(), Fault> {
+        let Self::Own(own) = self else { return Ok(()) };
+        let place = |key: &str| format!("{file}: record ({}): {key}", own.quantity);
+        let table = source.table().map_err(|error| Fault::Input(error.to_string()))?;
+        let numbers = Numbers::of(table, scene).map_err(Fault::Input)?;
+        let is_column = |name: &str| numbers.columns.iter().any(|column| column == name);
+        // The columns of bodies that deform are those of the solver.
+        let knows_columns = scene.needs_deformable().is_none();
+        let unknown = |name: &&str| numbers.is_of_record(name) && !is_column(name);
+        if let Some(name) = own.value.names().into_iter().find(unknown).filter(|_| knows_columns) {
+            let help = did_you_mean(name, numbers.columns.iter().map(String::as_str)).map(|help| format!(" ({help})"));
+            let expected = format!("columns of the record, among {}", numbers.columns.join(", "));
+            return Err(Fault::expected(place("value"), expected, format!("`{name}`{}", help.unwrap_or_default())));
+        }
+        for (key, formula) in [("equals", &own.equals), ("scale", &own.scale)] {
+            let names = formula.iter().flat_map(Expression::names);
+            let unknown = |name: &&str| *name != "t" && !is_factor(name) && numbers.get(name).is_none();
+            if let Some(name) = names.into_iter().find(unknown) {
+                let expected = "factors, the time `t`, or numbers of the scene by their keys";
+                return Err(Fault::expected(place(key), expected, format!("`{name}`")));
+            }
+        }
+        Ok(())
     }
 
     /// Returns the table entry that describes the quantity.

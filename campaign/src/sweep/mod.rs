@@ -192,6 +192,12 @@ impl Sweep {
                 if patience > 0.0 || looked == 0 {
                     let start = Instant::now();
                     let scene = self.scene(&set)?;
+                    if tasks.is_empty() {
+                        let (source, is_factor) =
+                            (self.source(&set), |name: &str| self.file.factors.contains_key(name));
+                        let check = |look: &Look| look.check_names(&self.name, (&source, &scene), &is_factor);
+                        self.looks.iter().try_for_each(check)?;
+                    }
                     let once = nominal_seconds(&scene, &level.resolution);
                     let once = if is_program { START + PROGRAM * once } else { once };
                     seconds = once * f64::from(self.file.repetitions);
