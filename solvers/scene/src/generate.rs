@@ -78,7 +78,7 @@ pub fn random(
     let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
     sizes.sort_by(|a, b| b.total_cmp(a));
     let cell = 2.0 * radii.largest();
-    let mut taken = Taken::new(cell, sizes.len());
+    let mut taken = Taken::new(cell, sizes.len(), dimension);
     let mut placed = Vec::with_capacity(sizes.len());
     for &radius in &sizes {
         let position = (0..TRIES).find_map(|_| {
@@ -140,6 +140,8 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
 struct Taken {
     /// Edge of a cell (m).
     cell: f64,
+    /// Number of layers of cells along z that are searched: 1 in the plane, 3 in space.
+    layers: usize,
     /// Last sphere of each bucket.
     last: Vec<Option<u32>>,
     /// Centre (m), radius (m), and the previous sphere of the same bucket.
@@ -147,8 +149,9 @@ struct Taken {
 }
 
 impl Taken {
-    fn new(cell: f64, most: usize) -> Self {
-        Self { cell, last: vec![None; most.next_power_of_two()], spheres: Vec::with_capacity(most) }
+    fn new(cell: f64, most: usize, dimension: Dimension) -> Self {
+        let layers = if dimension == Dimension::Two { 1 } else { 3 };
+        Self { cell, layers, last: vec![None; most.next_power_of_two()], spheres: Vec::with_capacity(most) }
     }
 
     /// Returns the cell of a position along each axis.
@@ -173,21 +176,33 @@ impl Taken {
         // For very large coordinates, this keeps the indices of adjacent cells in range.
         let [i, j, k] = self.cell_of(centre).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
         // The cell itself comes first, because most overlaps occur there.
-        [0, -1, 1].into_iter().all(|dk| {
-            [0, -1, 1].into_iter().all(|dj| {
-                [0, -1, 1].into_iter().all(|di| {
-                    let mut at = self.last[self.bucket([i + di, j + dj, k + dk])];
-                    while let Some(number) = at {
-                        let (other, size, before) = self.spheres[number as usize];
-                        if (centre - other).norm() < radius + size {
-                            return false;
-                        }
-                        at = before;
+        let beside = [0, -1, 1];
+        for dk in &beside[..self.layers] {
+            for dj in beside {
+                for di in beside {
+                    if self.overlaps_in([i + di, j + dj, k + dk], centre, radius) {
+                        return false;
                     }
-                    true
-                })
-            })
-        })
+                }
+            }
+        }
+        true
+    }
+
+    /// Returns true if a sphere overlaps one of the spheres in the bucket of a cell.
+    fn overlaps_in(&self, cell: [i64; 3], centre: Vector3<f64>, radius: f64) -> bool {
+        // Most spheres are farther apart than rounding, and need no square root.
+        const ROUNDING: f64 = 1.0 + 1e-12;
+        let mut at = self.last[self.bucket(cell)];
+        while let Some(number) = at {
+            let (other, size, before) = &self.spheres[number as usize];
+            let (between, reach) = (centre - other, radius + size);
+            if between.norm_squared() <= reach * reach * ROUNDING && between.norm() < reach {
+                return true;
+            }
+            at = *before;
+        }
+        false
     }
 }
 
