@@ -1,4 +1,4 @@
-//! A case: scenes, a sequence of resolution levels, claims.
+//! Benchmark cases: scenes, resolution levels and claims.
 
 use crate::claim::Claim;
 use crate::figure::Figure;
@@ -20,74 +20,76 @@ pub struct Level {
     pub resolution: Resolution,
 }
 
-/// A time step as a fraction of the critical one.
+/// Returns a level whose time step is a fraction of the critical time step.
 #[must_use]
 pub const fn fraction(name: &'static str, fraction: f64) -> Level {
     Level { name, resolution: Resolution::CriticalFraction(fraction) }
 }
 
-/// Cells per reference length and material points per cell and axis, of a method with a grid.
+/// Returns a level of a method with a grid: cells per reference length, and material points per cell along each axis.
 #[must_use]
 pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
     Level { name, resolution: Resolution::grid(cells, points) }
 }
 
-/// A benchmark case. Its folder holds scene, claims and derivation.
+/// A benchmark case. Its folder holds the scene, the claims and the derivation.
 pub struct Case {
-    /// Name, as on the command line and as its folder.
+    /// Name of the case on the command line, and of its folder.
     pub name: &'static str,
     /// Title.
     pub title: &'static str,
-    /// What is claimed as a whole, in a sentence or two.
+    /// Summary of all claims, in one or two sentences.
     pub claim: &'static str,
     /// Text of `scene.toml`.
     pub scene: &'static str,
-    /// Text of `derivation.md`: where the expected values come from.
+    /// Text of `derivation.md`, which derives the expected values.
     pub derivation: &'static str,
-    /// Where this test is weak.
+    /// Limitations of this test.
     pub weakness: &'static str,
-    /// Resolutions, coarse to fine.
+    /// Resolution levels, coarse to fine.
     pub levels: &'static [Level],
-    /// The level that most claims take.
+    /// Level that most claims use.
     pub default_level: Level,
-    /// The claims.
+    /// Builds the claims.
     pub claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
-    /// The figures, from runs of the case.
+    /// Builds the figures that are not part of a claim, from runs of the case.
     pub figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
-    /// Where its files are, and who reads grains from them.
+    /// Directory of the case folders, and the reader of their grain files.
     pub home: &'static Home,
 }
 
-/// Where the folders of cases are, and who reads the data files in them: the harness reads no file of a program itself.
+/// Directory of the case folders, and the reader of their grain files.
+///
+/// The harness itself parses no file format of another program.
 pub struct Home {
-    /// The folder in which each case has its own.
+    /// Directory that contains one folder for each case.
     pub folder: &'static str,
     /// Reads grains for a scene from a data file.
     pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
-    /// Scenes of many grains, made once for all who ask; none where files may change meanwhile.
+    /// Cache of scenes with many grains, shared by all callers. None if the scene files can change during the process.
     pub made: Option<&'static Made>,
 }
 
-/// Scenes of many grains by case and variant: cases look at each other's, and to read one from its files takes a while.
+/// Cache of scenes with many grains, by case and variant. Cases read each other's scenes, and parsing one takes time.
 pub type Made = Mutex<Vec<(&'static str, String, Scene)>>;
 
-/// So many grains are worth it.
+/// Smallest number of grains for which a scene is cached.
 const MANY: usize = 1000;
 
 impl Case {
-    /// Folder of the case's files.
+    /// Returns the folder of the case.
     #[must_use]
     pub fn directory(&self) -> PathBuf {
         Path::new(self.home.folder).join(self.name)
     }
 
-    /// The scene file.
+    /// Returns the scene file.
     #[must_use]
     pub fn source(&self) -> SceneSource {
         SceneSource::from_text(&format!("{}/scene.toml", self.name), &self.directory(), self.scene)
     }
 
-    /// The scene of a variant.
+    /// Returns the scene of a variant.
     ///
     /// # Errors
     /// When the scene file is wrong or there is no such variant.
@@ -106,7 +108,7 @@ impl Case {
         Ok(scene)
     }
 
-    /// Names of the variants; [`PLAIN`] alone where the scene has none.
+    /// Returns the names of the variants, or [`PLAIN`] alone if the scene has none.
     ///
     /// # Errors
     /// When the scene file is wrong.
@@ -116,5 +118,5 @@ impl Case {
     }
 }
 
-/// Name of the scene without a variant.
+/// Name of a scene without variants.
 pub const PLAIN: &str = "plain";

@@ -1,7 +1,7 @@
-//! A claim: a quantity of one or more records, what is expected of it and from which source, how far it may be off and
-//! why, and which wrong physics it must refuse.
+//! Claims: a quantity of one or more records, its expected value and source, its tolerance and reason, and a negative
+//! control.
 //!
-//! It is said in this order, and the compiler asks for each part:
+//! A claim is built in this order, and the compiler requires each part:
 //!
 //! ```
 //! # use grainbench_harness::claim::claim;
@@ -32,72 +32,72 @@ use crate::tolerance::{Tolerance, exactly};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
-/// Reads the records of a claim's runs, in their order.
+/// Reads the measured value from the records of a claim's runs, in the order of the runs.
 pub type Measure = Arc<dyn Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync>;
 
-/// What kind of thing is expected.
+/// Kind of expectation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expectation {
-    /// A value, which the scene or a work gives.
+    /// A value from the scene or from a cited work.
     Equals,
-    /// That a conserved quantity stays what it was, or that a law holds whatever the answer is.
+    /// Conservation of a quantity, or a law that holds for every solution.
     Holds,
-    /// What another run gives.
+    /// Agreement with another run.
     Agrees,
     /// A bound or a band.
     Bound(Bound),
-    /// An order of convergence, or a bound of one.
+    /// An order of convergence, or a bound on it.
     Converges(Bound),
-    /// That the solver refuses the scene.
+    /// A scene that the solver must reject as unsupported.
     Refusal,
 }
 
 /// A claim.
 #[derive(Clone)]
 pub struct Claim {
-    /// What is measured, in words.
+    /// Measured quantity, in words.
     pub quantity: String,
-    /// Unit of value, expectation and scale; `1` for a pure number.
+    /// Unit of the value, the expectation and the scale; `1` for a pure number.
     pub unit: &'static str,
-    /// Whom it is fair to.
+    /// Solvers that the claim applies to.
     pub scope: Scope,
-    /// What is read. The first run names the row.
+    /// Runs that the claim reads. The first run gives the result its variant, solver and expected outcome.
     pub runs: Vec<Run>,
-    /// What is expected.
+    /// Expectation.
     pub expectation: Expectation,
-    /// Where the expectation comes from.
+    /// Source of the expectation.
     pub source: Source,
-    /// How far it may be off, and why.
+    /// Tolerance and its reason.
     pub tolerance: Tolerance,
-    /// How it is measured.
+    /// Reads the measured value from the runs.
     pub measure: Measure,
-    /// What it must refuse.
+    /// Negative control, which the claim must refuse.
     pub control: Control,
-    /// Both curves, where a whole course is compared.
+    /// Measured and expected curves, if the claim compares curves.
     pub trace: Option<Trace>,
-    /// The graph that it is drawn in, and its label there.
+    /// Figure that shows the claim, and the label of its curve.
     pub drawn: Option<(&'static Plate, String)>,
-    /// How far it may be off where a scene of its kind has other numbers; none where that is not known.
+    /// Tolerance for scenes of the same kind with other parameters; none if it is not known.
     pub elsewhere: Option<Elsewhere>,
 }
 
-/// What is claimed of scenes of a kind whatever their numbers, with a tolerance that follows the scene.
+/// A claim about every scene of one kind, whatever its parameters. The tolerance is computed from the scene.
 #[derive(Clone)]
 pub struct Elsewhere {
-    /// What is measured, in words.
+    /// Measured quantity, in words.
     pub quantity: &'static str,
     /// Largest |error| that passes.
     pub allowed: Arc<dyn Fn(&Scene) -> f64 + Send + Sync>,
-    /// Why, with the formula.
+    /// Reason for the tolerance, with its formula.
     pub because: &'static str,
 }
 
-/// Begins a claim: a quantity in words, and its unit.
+/// Begins a claim with a quantity in words and its unit.
 pub fn claim(quantity: impl Into<String>, unit: &'static str) -> Quantity {
     Quantity { quantity: quantity.into(), unit, runs: Vec::new() }
 }
 
-/// A claim of which nothing is expected yet.
+/// A claim without an expectation.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Quantity {
     quantity: String,
@@ -105,7 +105,7 @@ pub struct Quantity {
     runs: Vec<Run>,
 }
 
-/// A claim of which something is expected, but not how nearly.
+/// A claim with an expectation and without a tolerance.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Expecting {
     pub(crate) quantity: Quantity,
@@ -115,7 +115,7 @@ pub struct Expecting {
     pub(crate) trace: Option<Trace>,
 }
 
-/// A claim that has no control yet.
+/// A claim without a negative control.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Tolerated {
     expecting: Expecting,
@@ -123,13 +123,13 @@ pub struct Tolerated {
 }
 
 impl Quantity {
-    /// Read of this run too.
+    /// Adds a run that the claim reads.
     pub fn of(mut self, run: Run) -> Self {
         self.runs.push(run);
         self
     }
 
-    /// Read of these runs too.
+    /// Adds several runs that the claim reads.
     pub fn of_all(mut self, runs: impl IntoIterator<Item = Run>) -> Self {
         self.runs.extend(runs);
         self
@@ -144,7 +144,7 @@ impl Quantity {
         Expecting { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
     }
 
-    /// Equals, at one moment or over time, what the source says of the scene.
+    /// Expects the value that the source gives for the scene, at one time or over time.
     pub fn equals(
         self,
         source: Source,
@@ -153,7 +153,7 @@ impl Quantity {
         self.expects(Expectation::Equals, source, measure)
     }
 
-    /// Equals a number that a work gives, in units of `scale`.
+    /// Expects a number from a cited work. The error is in units of `scale`.
     pub fn equals_cited(
         self,
         cited: Cited,
@@ -164,7 +164,7 @@ impl Quantity {
         self.expects(Expectation::Equals, cited.source(), measure)
     }
 
-    /// Stays what it was: a conserved quantity, a law that holds whatever the answer is.
+    /// Expects a law that holds for every solution, such as the conservation of a quantity.
     pub fn holds(
         self,
         law: &'static str,
@@ -173,7 +173,7 @@ impl Quantity {
         self.expects(Expectation::Holds, Source::Derived(law), measure)
     }
 
-    /// Is what another of the runs gives.
+    /// Expects the value of another run of the claim.
     pub fn agrees(
         self,
         source: Source,
@@ -193,7 +193,7 @@ impl Quantity {
         self.expects(expectation, source, measure)
     }
 
-    /// Is this or more.
+    /// Expects a value of at least `bound`.
     pub fn at_least(
         self,
         bound: f64,
@@ -204,7 +204,7 @@ impl Quantity {
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
-    /// Is this or less.
+    /// Expects a value of at most `bound`.
     pub fn at_most(
         self,
         bound: f64,
@@ -215,7 +215,7 @@ impl Quantity {
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
-    /// Lies between two values.
+    /// Expects a value within a band.
     pub fn between(
         self,
         band: [f64; 2],
@@ -226,7 +226,7 @@ impl Quantity {
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
-    /// Converges with this order.
+    /// Expects this order of convergence.
     pub fn converges(
         self,
         order: f64,
@@ -237,7 +237,7 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// Converges with this order or a higher one.
+    /// Expects at least this order of convergence.
     pub fn converges_at_least(
         self,
         order: f64,
@@ -248,7 +248,7 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// Converges with this order at most, or not at all.
+    /// Expects at most this order of convergence, or none.
     pub fn converges_at_most(
         self,
         order: f64,
@@ -259,8 +259,9 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// A scene that the solver must refuse: the row is amber, with the solver's reason. The control makes a scene of it
-    /// that the solver can run, and then the row is red.
+    /// Expects that the solver rejects the scene as unsupported. The result is then amber, with the solver's reason.
+    ///
+    /// The control changes the scene to one that the solver can run. The result is then red.
     #[must_use]
     pub fn refused(self, because: &'static str, control: Control) -> Claim {
         let refused = |run| Run { standing: Standing::Refused, ..run };
@@ -272,7 +273,7 @@ impl Quantity {
     }
 }
 
-/// What errors of a bound are divided by: the bound itself, the width of a band, 1 for an order and for zero.
+/// Returns the scale of the error of a bound: the bound itself, the width of a band, or 1 for an order and for zero.
 fn scale_of(bound: Bound) -> f64 {
     match bound {
         Bound::AtLeast(at) | Bound::AtMost(at) if at != 0.0 => at.abs(),
@@ -286,14 +287,14 @@ impl Expecting {
         Self { trace: Some(trace), ..self }
     }
 
-    /// How far it may be off.
+    /// Sets the tolerance.
     pub fn within(self, tolerance: Tolerance) -> Tolerated {
         Tolerated { expecting: self, tolerance }
     }
 }
 
 impl Tolerated {
-    /// What it must refuse, by its value.
+    /// Sets the negative control, which must make the claim fail by value.
     #[must_use]
     pub fn refuses(self, control: Control) -> Claim {
         let Self { expecting: Expecting { quantity, expectation, source, measure, trace }, tolerance } = self;
@@ -302,7 +303,8 @@ impl Tolerated {
         Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn, elsewhere }
     }
 
-    /// Wrong physics that ends the run, or leaves nothing to read.
+    /// Sets a negative control that must make the claim fail by error: the run ends with an error or cannot be
+    /// measured.
     #[must_use]
     pub fn breaks(self, control: Control) -> Claim {
         self.refuses(Control { red: Red::Breaking, ..control })
@@ -310,25 +312,25 @@ impl Tolerated {
 }
 
 impl Claim {
-    /// The claim as one that is fair to any solver that can express the scene.
+    /// Makes the claim solver-independent: it applies to any solver that can run the scene.
     #[must_use]
     pub fn fair_to_any(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
     }
 
-    /// The claim as one that is fair to any solver whose bodies deform.
+    /// Makes the claim apply to any solver with deformable bodies.
     #[must_use]
     pub fn fair_to_any_continuum(self) -> Self {
         Self { scope: Scope::AnyContinuum, ..self }
     }
 
-    /// The claim as one that is fair to any solver with the springs of the scene.
+    /// Makes the claim apply to any solver whose contacts have the springs of the scene.
     #[must_use]
     pub fn fair_to_any_springs(self) -> Self {
         Self { scope: Scope::AnySprings, ..self }
     }
 
-    /// The claim as one that holds of scenes of its kind with other numbers too, within a tolerance that follows them.
+    /// Extends the claim to scenes of the same kind with other parameters. `allowed` computes their tolerance.
     #[must_use]
     pub fn at_other_numbers(
         self,
@@ -339,20 +341,21 @@ impl Claim {
         Self { elsewhere: Some(Elsewhere { quantity, allowed: Arc::new(allowed), because }), ..self }
     }
 
-    /// Draws what is compared, of a claim of a whole course.
+    /// Plots the measured and the expected curve of the claim in a figure.
     #[must_use]
     pub fn drawn(self, plate: &'static Plate, label: impl Into<String>) -> Self {
         Self { drawn: Some((plate, label.into())), ..self }
     }
 
-    /// What kind of evidence it is: by its source and by what is expected.
+    /// Returns the kind of evidence, which follows from the source and the expectation.
     #[must_use]
     pub fn evidence(&self) -> Evidence {
         use crate::source::Kind;
         match (self.source, self.expectation) {
             (Source::Program, _) => Evidence::OtherCode,
             (Source::Regression(_), _) => Evidence::Regression,
-            // That a prototype has the order of a method tells it no better than the method does.
+            // The method already states its own order. Agreement of a prototype with this order is no stronger
+            // evidence.
             (Source::Printed(..), Expectation::Converges(_)) => Evidence::Convergence,
             (Source::Printed(work, _), _) => match work.kind {
                 Kind::Literature => Evidence::Paper,
@@ -367,19 +370,19 @@ impl Claim {
         }
     }
 
-    /// What is expected of the row: that of its first run.
+    /// Returns the expected outcome, which is the expected outcome of the first run.
     #[must_use]
     pub fn standing(&self) -> Standing {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 
-    /// The smallest set in which it can be judged.
+    /// Returns the smallest set of runs in which the claim can be judged.
     #[must_use]
     pub fn set(&self) -> Set {
         self.runs.iter().map(Run::judged_in).max().unwrap_or_default()
     }
 
-    /// Resolutions in words: one, or the first and the last of several.
+    /// Returns the resolution in words: one level, or the first and the last of several.
     #[must_use]
     pub fn resolution(&self) -> String {
         let words: Vec<String> = self.runs.iter().map(|run| run.resolution.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Comparing two runs: sample by sample, up to where perturbed runs part, and by means after it.
+//! Comparison of two runs: sample by sample until a perturbed run diverges, and by means after that.
 
 pub mod peers;
 pub mod perturbed;

@@ -1,22 +1,24 @@
-//! A series against several runs of the same scene: the one that is nearest as a whole, column by column, within what
-//! these runs differ by and what half their time step changes.
+//! Comparison of an observed series with several runs of the same scene.
+//!
+//! Each column is compared with the run that is nearest to the whole series. The tolerance can use the difference
+//! between the runs and the change from halving their time step.
 
 use super::pointwise::largest;
 use crate::expect::{Measured, larger, weight};
 use grainbench_scene::record::Series;
 use std::collections::VecDeque;
 
-/// One of the runs.
+/// A run to compare with.
 pub struct Peer {
-    /// What it is called.
+    /// Name of the run.
     pub name: String,
     /// Its series.
     pub series: Series,
-    /// The same with half the time step, where that was run.
+    /// Series with half the time step; none if this run was not done.
     pub half_step: Option<Series>,
 }
 
-/// A column beside the nearest run.
+/// A column of the observed series, compared with the nearest run.
 pub struct Compared<'a> {
     /// Name of the column.
     pub name: &'a str,
@@ -24,45 +26,46 @@ pub struct Compared<'a> {
     pub unit: &'a str,
     /// Scale that differences are divided by.
     pub scale: f64,
-    /// Samples that both have.
+    /// Samples at the times that both series share.
     pub samples: Vec<Sample>,
-    /// Largest uncertainty of what was observed, as a part of the scale.
+    /// Largest uncertainty of the observed values, as a fraction of the scale.
     pub open: f64,
 }
 
-/// One sample of a column beside the nearest run.
+/// A sample of an observed column, compared with the nearest run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time (s).
     pub time: f64,
-    /// Value that was observed.
+    /// Observed value.
     pub found: f64,
     /// Value of the nearest run.
     pub expected: f64,
-    /// By how much the runs differ, as a part of the scale.
+    /// Difference between the runs, as a fraction of the scale.
     pub between: f64,
-    /// Change by half the time step around this time, as a part of the scale.
+    /// Change from halving the time step around this time, as a fraction of the scale.
     pub halved: f64,
 }
 
-/// The sample that decides on a column.
+/// The sample that decides the result of a column.
 pub struct Decisive {
     /// The sample.
     pub sample: Sample,
-    /// Largest |error| that passes there.
+    /// Largest |error| that passes at the sample.
     pub allowed: f64,
-    /// Number of samples that allow more than [`WIDE`].
+    /// Number of samples whose allowed error is larger than [`WIDE`].
     pub wide: usize,
-    /// Time of the first sample outside (s).
+    /// Time of the first sample outside the allowed error (s).
     pub first_outside: Option<f64>,
 }
 
-/// Largest allowed error, as a part of the scale, by which a sample can be judged.
+/// Allowed error, as a fraction of the scale, above which a sample is too uncertain to decide.
 pub const WIDE: f64 = 0.05;
 
 impl Compared<'_> {
-    /// The sample with the largest error in units of what is allowed. Where none is outside, samples that allow more than
-    /// [`WIDE`] are passed over as long as there are others.
+    /// Returns the sample with the largest ratio of error to allowed error.
+    ///
+    /// If no sample is outside, samples that allow more than [`WIDE`] are skipped as long as other samples remain.
     #[must_use]
     pub fn decisive(&self, allowed: impl Fn(&Sample) -> f64) -> Option<Decisive> {
         let ratio = |sample: &Sample| weight((sample.found - sample.expected) / self.scale) / allowed(sample);
@@ -81,16 +84,17 @@ impl Compared<'_> {
         Some(Decisive { sample, allowed: allowed(&sample), wide, first_outside })
     }
 
-    /// Measured value at a sample.
+    /// Returns the observed value at a sample with its expected value and scale.
     #[must_use]
     pub fn measured(&self, sample: &Sample) -> Measured {
         Measured::new(sample.found, sample.expected, self.scale)
     }
 }
 
-/// Compares the columns of an observed series that `is_compared` takes and that every run has. `scale` says what
-/// differences of a unit are divided by, from the largest extent of that unit; a column whose scale is zero is left
-/// out. The name of the nearest run, and a comparison a column; none where there are no runs.
+/// Compares the observed columns that `is_compared` selects and every run has.
+///
+/// `scale` computes the scale of a unit from the largest extent of the columns with that unit. Columns with a scale of
+/// zero are left out. Returns the name of the nearest run and one comparison per column; none if there are no runs.
 pub fn against<'a>(
     observed: &'a Series,
     uncertainty: &[Vec<f64>],
@@ -102,7 +106,7 @@ pub fn against<'a>(
     let known = |name: &str| peers.iter().all(|peer| peer.series.column(name).is_some());
     columns.retain(|(_, column)| is_compared(&column.name) && known(&column.name));
     let scale_in = |peer: &Peer, unit: &str| {
-        // One scale for all columns of a unit: what does not move along one axis is not judged by its rounding there.
+        // Columns of a unit share one scale, so that rounding along an axis without motion is not judged.
         let of_unit = |unit: &str| {
             let extents = columns.iter().filter(|(_, column)| column.unit == unit);
             extents.filter_map(|(_, column)| Some(extent(peer.series.column(&column.name)?, unit))).fold(0.0, f64::max)
@@ -117,14 +121,15 @@ pub fn against<'a>(
         parts.sum()
     };
     let nearest = peers.iter().min_by(|a, b| weight(distance(a)).total_cmp(&weight(distance(b))))?;
-    // Of runs that are alike, one with half the step stands for all.
+    // If the nearest run has no half-step run, the first other run with one is used.
     let with_half = [nearest].into_iter().chain(peers).find_map(|peer| Some((peer, peer.half_step.as_ref()?)));
     let compared = columns.iter().filter_map(|&(at, column)| {
         let scale = scale_in(nearest, &column.unit);
         let (times, found, expected) = together(observed, &observed.values[at], &nearest.series, &column.name)?;
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
-        // Conventions ring and drift otherwise: how far they are apart at one time says little of another program there.
+        // Contact conventions differ in free vibration and drift, so a difference at one time says little: take the
+        // largest.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
@@ -148,19 +153,21 @@ pub fn against<'a>(
     Some((&nearest.name, compared.collect()))
 }
 
-/// How far two runs are apart in the course of time.
+/// Difference between two runs as a function of time.
 struct Envelope {
     times: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// Half the width of the window of an envelope, as a part of the course.
+/// Half-width of the window of an envelope, as a fraction of the series.
 const WINDOW: f64 = 0.01;
 
 impl Envelope {
-    /// Of two runs at times they share (s): at each time the largest difference of the samples around it, or what nine in ten
-    /// samples are within, which is nearly the amplitude of what oscillates. What differs at impacts alone does not widen what is
-    /// allowed between them.
+    /// Computes the envelope of two runs at times that they share (s).
+    ///
+    /// Each value is the larger of two numbers: the largest difference within a window, and the 90th percentile of all
+    /// differences, which is close to the amplitude of an oscillation. A difference at an impact alone therefore widens
+    /// the allowed error only around that impact.
     fn of(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         let mut sorted = off.clone();
@@ -171,7 +178,7 @@ impl Envelope {
         Self { times, values }
     }
 
-    /// The value at the sample nearest to a time (s).
+    /// Returns the value at the sample nearest to a time (s).
     fn at(&self, time: f64) -> f64 {
         let next = self.times.partition_point(|other| *other < time).min(self.values.len().saturating_sub(1));
         let before = next.saturating_sub(1);
@@ -184,7 +191,7 @@ impl Envelope {
     }
 }
 
-/// The largest of the values from `half` places before each to `half` behind it; not a number where one is not.
+/// Returns, for each value, the largest from `half` places before it to `half` places after it; NaN if one is NaN.
 fn windowed(values: &[f64], half: usize) -> Vec<f64> {
     let mut queue: VecDeque<usize> = VecDeque::new();
     let mut found = Vec::with_capacity(values.len());
@@ -205,11 +212,11 @@ fn windowed(values: &[f64], half: usize) -> Vec<f64> {
     found
 }
 
-/// Times (s) that two series share, and the values of a column there; none where fewer than two are shared.
+/// Returns the times (s) that two series share, and the values of a column at them; none for fewer than two times.
 #[must_use]
 pub fn together(first: &Series, values: &[f64], second: &Series, name: &str) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let others = second.column(name)?;
-    // Times are printed with few digits; samples lie farther apart than that.
+    // Printed times have few digits. The spacing of samples is larger than this rounding.
     let interval = second.time.get(1).zip(second.time.first()).map_or(0.0, |(next, first)| next - first);
     let near = (1e-6 * second.time.last().copied().unwrap_or_default()).min(0.01 * interval);
     let (mut times, mut a, mut b) = (Vec::new(), Vec::new(), Vec::new());
@@ -224,13 +231,13 @@ pub fn together(first: &Series, values: &[f64], second: &Series, name: &str) -> 
     (times.len() > 1).then_some((times, a, b))
 }
 
-/// Coordinates from where they start, all else as it is.
+/// Returns the largest |value|. Coordinates (unit m) are taken relative to the first value.
 fn extent(values: &[f64], unit: &str) -> f64 {
     let start = if unit == "m" { values.first().copied().unwrap_or(0.0) } else { 0.0 };
     values.iter().map(|value| (value - start).abs()).fold(0.0, f64::max)
 }
 
-/// The largest difference.
+/// Returns the largest difference; NaN if one is NaN.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger)
 }
@@ -240,7 +247,7 @@ mod tests {
     use super::*;
     use grainbench_scene::record::Column;
 
-    /// A column of a length.
+    /// Builds a series with one column of lengths (m).
     fn series(values: [f64; 3]) -> Series {
         let column = Column { name: "a.x".to_owned(), unit: "m".to_owned() };
         Series { step: vec![0, 1, 2], time: vec![0.0, 1.0, 2.0], columns: vec![column], values: vec![values.to_vec()] }
@@ -250,7 +257,7 @@ mod tests {
         Peer { name: name.to_owned(), series: series(values), half_step: half_step.map(series) }
     }
 
-    /// A run that is not a number somewhere is no nearer than any other, and is not taken for one that agrees.
+    /// A run with a NaN is never the nearest one, and it never counts as a run that agrees.
     #[test]
     fn what_is_not_a_number_is_far_from_everything() {
         let observed = series([0.0, 1.0, 2.0]);
@@ -271,7 +278,7 @@ mod tests {
         assert!(against_all(&peers[..1]).is_some_and(|(_, error, ..)| error.is_nan()));
     }
 
-    /// A run whose half step differs at an impact alone is not judged as loosely long after it.
+    /// If the half-step run differs at an impact alone, the tolerance is not wider long after the impact.
     #[test]
     fn what_is_allowed_follows_the_course() {
         let mut off = vec![0.0; 1000];

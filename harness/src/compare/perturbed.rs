@@ -1,11 +1,11 @@
-//! Comparing runs that no two machines can repeat for long: moment by moment up to the predictability horizon, by means
-//! with confidence intervals after it.
+//! Comparison of chaotic runs: sample by sample up to the predictability horizon, and by means with confidence
+//! intervals after it.
 //!
-//! The horizon is measured: a run perturbed by one unit in the last place of one position is within [`PARTED`]
-//! of it up to there. Two programs that do the same arithmetic in another order differ by many such units at once,
-//! which is what [`ALLOWED`] leaves room for.
+//! The horizon is measured. Up to the horizon, a run with one position perturbed by one unit in the last place stays
+//! within [`PARTED`] of the original run. Two programs that sum in another order differ by many such units at once;
+//! [`ALLOWED`] leaves room for that.
 //!
-//! Runs of a claim stand in one order: ours, the program's, our run again and its perturbed run.
+//! The runs of a claim have a fixed order: our run, the other program's run, our run again, and its perturbed run.
 
 use super::pointwise::{largest, together};
 use crate::claim::{Claim, claim};
@@ -18,19 +18,19 @@ use crate::tolerance::{computed, one_interval};
 use grainbench_scene::perturbed::PARTED;
 use grainbench_scene::scene::Duration;
 
-/// How far two programs may be apart before that, in the same units.
+/// Allowed difference between two programs up to the horizon, as a fraction of the largest value of the column.
 pub const ALLOWED: f64 = 1e-8;
-/// The adjustment that makes a perturbed run, by name.
+/// Name of the adjustment that makes a perturbed run.
 pub const PERTURBED: &str = "one position moved by 1 ulp";
 
-/// Which columns of the series perturbed runs are watched by.
+/// Columns of the series in which the divergence of perturbed runs is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Parting {
     /// The columns.
     pub columns: &'static [&'static str],
 }
 
-/// The last sample up to which perturbed runs are within [`PARTED`].
+/// Returns the index of the last sample up to which the perturbed run is within [`PARTED`].
 fn last_together(of: Parting, run: &Done, perturbed: &Done) -> Result<usize, Missing> {
     let mut last = run.series().step.len();
     for column in of.columns {
@@ -42,12 +42,12 @@ fn last_together(of: Parting, run: &Done, perturbed: &Done) -> Result<usize, Mis
     last.checked_sub(1).ok_or_else(|| Missing("moment at which perturbed runs are together".to_owned()))
 }
 
-/// The step of the horizon, from our run and its perturbed run.
+/// Returns the step number of the horizon, from our run and its perturbed run.
 fn step_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<u64, Missing> {
     Ok(run.series().step[last_together(of, run, perturbed)?])
 }
 
-/// The time of the horizon (s).
+/// Returns the time of the horizon (s).
 ///
 /// # Errors
 /// When a column is missing.
@@ -55,7 +55,7 @@ pub fn time_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<f64,
     Ok(run.series().time[last_together(of, run, perturbed)?])
 }
 
-/// The horizon itself, which nobody knows beforehand: what it was when the case was written.
+/// Returns the claim about the horizon itself. The expected value is a regression value from when the case was written.
 #[must_use]
 pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
@@ -74,8 +74,10 @@ pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
         }))
 }
 
-/// All watched columns of ours (first run) and a program (second) up to the horizon that the perturbed runs (third and fourth)
-/// have.
+/// Returns the claim that compares all watched columns of our run (first) with another program (second) up to the
+/// horizon.
+///
+/// The third and the fourth run give the horizon.
 #[must_use]
 pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
@@ -106,21 +108,23 @@ pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
         .refuses(control)
 }
 
-/// What a mean is taken of.
+/// Column whose mean is compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Sum {
     /// The column of the series.
     pub column: &'static str,
-    /// What it is called.
+    /// Name of the averaged quantity.
     pub words: &'static str,
-    /// Unit of what the mean is taken of.
+    /// Unit of the averaged quantity.
     pub unit: &'static str,
-    /// Whether the mean is that of the logarithm: of what grows and falls by factors, for its largest values would
-    /// otherwise outweigh all others.
+    /// True for the mean of the logarithm. It suits a quantity that changes by factors, whose largest values would
+    /// dominate the mean.
     pub logarithm: bool,
 }
 
-/// The mean of a column after the horizon, in units of half the confidence interval of the difference.
+/// Returns the claim about the mean of a column after the horizon.
+///
+/// The error is in units of half the confidence interval of the difference.
 #[must_use]
 pub fn statistics(of: Parting, Sum { column, words, unit, logarithm }: Sum, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;

@@ -1,11 +1,11 @@
-//! How a run ended, and how far two ends are apart.
+//! Final state of a run, and the difference between two final states.
 
 use crate::expect::larger;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 
-/// The end of a run.
+/// Final state of a run.
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub(super) time: f64,
@@ -15,10 +15,10 @@ pub(super) struct End {
     pub(super) steps: f64,
 }
 
-/// Why there is no end to compare.
+/// Reason why there is no final state to compare.
 pub(super) enum NoEnd {
     Run(RunError),
-    /// The record lacks something, or a scene is wrong, in words.
+    /// The record lacks data, or a scene is wrong: the reason in words.
     Record(String),
 }
 
@@ -29,7 +29,7 @@ impl From<RunError> for NoEnd {
 }
 
 impl End {
-    /// Runs a scene to its end.
+    /// Runs a scene and returns its final state.
     pub(super) fn of(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Self, NoEnd> {
         Self::read(scene, &solver.run(scene, resolution, &mut ())?)
     }
@@ -46,8 +46,9 @@ impl End {
         Ok(Self { time: last.time, grains, time_step, steps: last.step as f64 })
     }
 
-    /// How far two ends are apart, as a speed (m/s): the worst grain's velocity, spin times radius, or position over
-    /// the time that led there.
+    /// Returns the largest difference between two final states, as a speed (m/s).
+    ///
+    /// Compares velocity, spin times radius, and position divided by the time of the run, for each grain.
     pub(super) fn apart(&self, other: &Self) -> f64 {
         let pairs = self.grains.iter().zip(&other.grains);
         let worst = pairs.map(|(a, b)| {
@@ -58,7 +59,7 @@ impl End {
         worst.fold((self.time - other.time).abs() / self.time, larger)
     }
 
-    /// Farthest coordinate from the origin (m) and fastest point of any grain (m/s).
+    /// Returns the largest distance from the origin (m) and the largest surface speed of any grain (m/s).
     pub(super) fn reach(&self) -> (f64, f64) {
         let far = self.grains.iter().map(|grain| grain.position.norm()).fold(0.0, larger);
         let fast = self.grains.iter().map(|grain| grain.velocity.norm() + grain.spin.norm() * grain.radius);
@@ -66,8 +67,10 @@ impl End {
     }
 }
 
-/// What rounding may add up to in a speed (m/s) between two runs of collisions: every step rounds positions of size L
-/// by εL, which is worth ω²εLΔt of velocity with the stiffest contact's ω = 2/Δt_crit, and velocities U by εU.
+/// Returns the speed error (m/s) that rounding can cause between two runs of collisions.
+///
+/// Every step rounds positions of size L by εL, which changes velocities by ω²εLΔt; ω = 2/Δt_crit is the frequency of
+/// the stiffest contact. Every step also rounds velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
     let rate = 2.0 / scene.critical_time_step();
     let of = |end: &End| {
@@ -82,7 +85,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// Two ends of two grains are as far apart as the worst of them; what is not a number is the worst.
+    /// The difference of two states with two grains is that of the worst grain. NaN counts as the worst.
     #[test]
     fn ends_that_are_not_numbers_are_apart() {
         let grain = |speed: f64| GrainState {

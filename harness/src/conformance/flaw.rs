@@ -1,5 +1,5 @@
-//! Solvers that are wrong on purpose, each in one way and by about a billionth, or by a hundredth where less is not
-//! seen.
+//! Deliberate defects for solvers. Each changes one thing by about 1e-9, or by 1e-2 if a smaller change is not
+//! detected.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
@@ -10,38 +10,41 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Size of a flaw, as a fraction of the velocities.
 const SIZE: f64 = 1e-9;
-/// The same for what falls, where a solver claims no more than the first order and may be off by gΔt/2.
+/// Size of a larger flaw. It is used in free fall if a solver claims no second order, because its error may be gΔt/2.
 const LARGE: f64 = 1e-2;
-/// Part by which walls, or bodies without walls, turn slower.
+/// Fraction by which walls turn slower, or grains if no wall turns.
 const SLOWER: f64 = 0.05;
 
-/// How a solver is wrong. All but the last three act on the velocities it starts from, which any solver can express.
+/// A deliberate defect of a solver.
+///
+/// `Pumped` and `FirstOrder` change the record, and `Restarted` the record after a restart. `SlowerWalls` changes spins
+/// and material points. All others change the initial velocities, which any solver can express.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
-    /// Something holds every grain back, as if there were a medium at rest.
+    /// Every grain is slower by 1e-9, as if by drag in a medium at rest.
     Drag,
-    /// The same ten million times as strong.
+    /// Every grain is slower by 1e-2.
     StrongDrag,
-    /// It tells left from right: in the plane velocities turn a little, in space they gain along the spin.
+    /// Left and right differ: velocities turn slightly in two dimensions, and gain a part along the spin in three.
     Handed,
-    /// The x axis is another one than the others.
+    /// The x axis differs from the other axes.
     Anisotropic,
-    /// The first grain in the list is treated otherwise than the rest.
+    /// The first grain in the list is treated differently from the other grains.
     Listed,
-    /// Walls turn slower than prescribed. Without walls that turn, grains turn slower, and points of bodies move outwards.
+    /// Walls turn slower than prescribed, or grains if no wall turns. Material points move outwards.
     SlowerWalls,
     /// Velocities and forces on walls grow during a run.
     Pumped,
-    /// The end is off by the first order in the time step.
+    /// The final state has an error of first order in the time step.
     FirstOrder,
-    /// No run is like the one before.
+    /// Every run differs from the previous run.
     Irreproducible,
-    /// A run that is continued is not quite the run that was interrupted.
+    /// A run continued from a checkpoint differs slightly from the uninterrupted run.
     Restarted,
 }
 
 impl Flaw {
-    /// The flaw in words.
+    /// Returns the flaw in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -96,10 +99,10 @@ fn swell(record: &mut Record) {
     }
 }
 
-/// Part by which velocities and forces grow over a run: beyond what dissipation takes of the energy.
+/// Growth of velocities and forces over a run, as a fraction. It exceeds the energy that dissipation removes.
 const GROWTH: f64 = 99.0;
 
-/// Lets velocities, spins and forces on walls grow to a hundred times as much at the end.
+/// Lets velocities, spins and forces on walls grow to a hundred times their value at the end.
 fn pump(record: &mut Record) {
     let end = record.snapshots.last().map_or(1.0, |last| last.time);
     for snapshot in &mut record.snapshots {
@@ -125,14 +128,16 @@ pub struct Flawed<'a> {
 }
 
 impl<'a> Flawed<'a> {
-    /// Builds a flaw into a solver.
+    /// Adds a flaw to a solver.
     #[must_use]
     pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Self {
         Self { solver, flaw, runs: AtomicU64::new(0) }
     }
 
-    /// The same of a solver that has run a thousand times before: no run of it is like one of a new one, also where one of the
-    /// two has refused some scenes that the other was not given.
+    /// Adds a flaw to a solver that counts as having run a thousand times.
+    ///
+    /// Its runs then differ from all runs of a new solver, even if one of the two skipped scenes that it does not
+    /// support.
     pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
         Self { solver, flaw, runs: AtomicU64::new(1000) }
     }
@@ -159,7 +164,7 @@ impl Solver for Flawed<'_> {
             && let Some(last) = record.snapshots.last_mut()
         {
             let share = record.provenance.time_step / last.time;
-            // Positions too: a velocity may pass through zero at the end.
+            // Positions are changed too, because a velocity can be zero at the end.
             last.grains.iter_mut().for_each(|grain| {
                 grain.position *= 1.0 + share;
                 grain.velocity *= 1.0 + share;
@@ -195,7 +200,7 @@ mod tests {
     use super::*;
     use grainbench_scene::solver::Resolution;
 
-    /// Refuses every scene.
+    /// A solver that refuses every scene.
     struct Refuses;
 
     impl Solver for Refuses {

@@ -1,4 +1,4 @@
-//! What touches nothing flies straight, or along its parabola.
+//! Free flight: grains without contacts move along straight lines or parabolas.
 
 use super::end::End;
 use super::moved::APART;

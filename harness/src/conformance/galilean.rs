@@ -1,4 +1,4 @@
-//! Seen from a moving frame, collisions are the same.
+//! Galilean invariance: a collision is the same in a moving frame.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;
@@ -17,7 +17,7 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// Some times the fastest grain's, in no special direction (m/s).
+/// Velocity of the frame (m/s): several times the speed of the fastest grain, in a general direction.
 const SPEED: Vector3<f64> = Vector3::new(4.0, -3.0, 2.0);
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {

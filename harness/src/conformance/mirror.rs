@@ -1,4 +1,4 @@
-//! In a mirror, collisions are the same.
+//! Mirror invariance: the mirror image of a collision ends as the mirror image of its end.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;

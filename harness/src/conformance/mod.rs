@@ -1,7 +1,8 @@
-//! What every solver owes, whatever its method: conservation, symmetries, exact flight, order, determinism.
+//! Conformance properties, which every solver must satisfy: conservation, symmetries, free flight, order, determinism.
 //!
-//! A property runs scenes of its own, in two and three dimensions, with friction and without, and gives rows as gates
-//! do: measured value, tolerance and why. Every property has a [`Flaw`] that it must see in the same solver.
+//! A property runs its own scenes, in two and three dimensions, with and without friction. Its results have the form of
+//! claim results: measured value, tolerance and reason. Every property has a [`Flaw`] that it must detect in the
+//! solver.
 
 mod end;
 mod flaw;
@@ -34,44 +35,45 @@ use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;
 use std::time::Instant;
 
-/// A property that every solver owes.
+/// A property that every solver must satisfy.
 #[derive(Clone, Copy, Debug)]
 pub struct Property {
-    /// Name, such as `galilean-invariance`; in rows it is the variant's first part.
+    /// Name, such as `galilean-invariance`. It is the first part of the variant in results.
     pub name: &'static str,
-    /// What is claimed.
+    /// Claim of the property.
     pub claim: &'static str,
-    /// The flaw that it must see.
+    /// Flaw that the property must detect.
     pub flaw: Flaw,
-    /// What kind of evidence its rows are.
+    /// Kind of evidence of its results.
     pub evidence: Evidence,
-    /// Where it comes from.
+    /// Source of the expectation.
     pub source: &'static str,
-    /// Why its tolerance is what it is.
+    /// Reason for the tolerance.
     pub because: &'static str,
     check: fn(&Rows<'_>) -> Vec<Verdict>,
 }
 
 impl Property {
-    /// A row for every scene.
+    /// Returns one result for each scene.
     #[must_use]
     pub fn check(&self, solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         self.check_again(solver, solver, terms)
     }
 
-    /// The same, where runs of the solver may be finished ones: what is done `again`, or watched, is done by the solver itself.
+    /// Returns one result for each scene. `solver` may return finished runs; `again` does the runs that must be done
+    /// now.
     fn check_again(&self, solver: &dyn Solver, again: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         (self.check)(&Rows { solver, again, terms, property: self })
     }
 
-    /// The flaw that it must see: where free fall may be off by gΔt/2, one that is larger than that.
+    /// Returns the flaw that the property must detect: a larger one if free fall may have an error of gΔt/2.
     fn flaw(&self, terms: &Terms) -> Flaw {
         let is_rough = self.name == free_flight::PROPERTY.name && terms.order.is_none();
         if is_rough { Flaw::StrongDrag } else { self.flaw }
     }
 }
 
-/// Every property.
+/// All conformance properties.
 pub const ALL: [Property; 11] = [
     momentum::PROPERTY,
     galilean::PROPERTY,
@@ -86,15 +88,18 @@ pub const ALL: [Property; 11] = [
     restart::PROPERTY,
 ];
 
-/// The rows of every property, and for each that passes whether the flaw that its property must see turned it red. What
-/// a method owes less is no pass, and has no control.
+/// Returns the results of all properties, and a control for each result that passes.
+///
+/// A control checks that the property detects its flaw. A result that fails within a stated exception is no pass, and
+/// has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     judge_kept(solver, solver, terms)
 }
 
-/// The same, with runs of the solver taken from `kept`, which may hold finished ones; what is to be done again, or watched, is
-/// done by the solver `itself`.
+/// Returns the results and the controls of all properties. `kept` may return finished runs.
+///
+/// The solver `itself` repeats runs and does the runs that are observed.
 #[must_use]
 pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
@@ -108,9 +113,9 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
         if found.iter().any(|row| row.outcome == Outcome::Pass) {
             let start = Instant::now();
             let flaw = property.flaw(terms);
-            // Runs that are wrong may be finished ones too: they are there to be told apart.
+            // Flawed runs may use finished runs too, because only the flaw has to be detected.
             let [flawed, again] = [Flawed::new(&once, flaw), Flawed::again(kept, flaw)];
-            // What a method owes less excuses no flaw.
+            // An exception of the method does not excuse a flaw.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
@@ -121,8 +126,10 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
     (rows, controls)
 }
 
-/// Every row that failed or broke, every control that did not turn red as it must, and that nothing passed if nothing
-/// did: a line each, for tests of solvers.
+/// Returns one line for each failure, for tests of solvers.
+///
+/// Failures are results that failed or crashed, undetected flaws, stated exceptions that were not needed, and a solver
+/// without any passed result.
 #[must_use]
 pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
     let (rows, controls) = judge(solver, terms);

@@ -1,7 +1,7 @@
-//! Grains that only meet one another keep their momentum; without friction their angular momentum too.
+//! Conservation of momentum in collisions, and of angular momentum without friction.
 //!
-//! With friction, angular momentum is a matter of convention: arms R on centres that are less than R₁ + R₂ apart do not
-//! keep it. The case `collision` tells the conventions apart.
+//! With friction, the angular momentum depends on the contact convention. Lever arms R about centres that are less than
+//! R₁ + R₂ apart do not conserve it. The case `collision` distinguishes these conventions.
 
 use super::end::End;
 use super::row::{Found, Rows};
@@ -47,7 +47,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     [linear, angular].concat()
 }
 
-/// The change of a sum, in units of the sum of what its parts were or are.
+/// Returns the change of a sum. Its scale is the sum of the norms of its parts, before or after, whichever is larger.
 fn kept(before: &[Vector3<f64>], after: &[Vector3<f64>], steps: f64) -> Found {
     let change = after.iter().sum::<Vector3<f64>>() - before.iter().sum::<Vector3<f64>>();
     let size = |parts: &[Vector3<f64>]| parts.iter().map(Vector3::norm).sum::<f64>();

@@ -1,5 +1,5 @@
-//! A scene seen from elsewhere: turned, mirrored or from a moving frame. What a solver makes of it must be what it
-//! makes of the scene itself, seen from there.
+//! A scene in another frame: rotated, mirrored or moving. The result, transformed back, must equal the result of the
+//! original scene.
 
 use super::end::NoEnd;
 use super::end::{End, rounding};
@@ -9,7 +9,7 @@ use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;
 use nalgebra::{Matrix3, Vector3};
 
-/// Where a scene is seen from: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, since a spin is a pseudovector.
+/// Transformation of a scene: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, because a spin is a pseudovector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) turn: Matrix3<f64>,
@@ -50,7 +50,7 @@ impl View {
         undone
     }
 
-    /// How far the run of the scene as seen, seen back, is from the run of the scene itself.
+    /// Returns the difference between the run of the transformed scene, transformed back, and the run of the scene.
     pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<Found, NoEnd> {
         let straight = End::of(solver, scene, &terms.resolution)?;
         let seen = End::of(solver, &self.seen(scene), &terms.resolution)?;
@@ -59,9 +59,9 @@ impl View {
     }
 }
 
-/// What the rows of every comparison of two runs say of their tolerance.
+/// Reason for the tolerance of a comparison of two runs.
 pub(super) const ROUNDING: &str = "rounding of positions in every step, εL, worth ω²εLΔt of velocity, and of \
   velocities, added up over the run; \
      of the fastest grain";
-/// What they compare.
+/// Quantity and unit of a comparison of two runs.
 pub(super) const APART: (&str, &str) = ("worst velocity, spin × radius or position / time apart, in the end", "m/s");
