@@ -1,4 +1,4 @@
-//! Negative controls: wrong physics that a claim must refuse, and how it must turn red.
+//! Negative controls: wrong physics that must make a claim fail, and the way in which the claim must fail.
 
 use crate::reading::Table;
 use crate::run::{Change, Set};
@@ -8,37 +8,37 @@ use grainbench_scene::solver::{Defect, Resolution};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Wrong physics for a negative control.
+/// Wrong physics of a negative control.
 #[derive(Clone)]
 pub enum Wrong {
-    /// The solver is given a wrong scene.
+    /// The solver gets a wrong scene.
     Scene(Change),
-    /// In a comparison with another program, our own solver is given a wrong scene.
+    /// In a comparison with another program, only our solver gets a wrong scene.
     Ours(Change),
     /// The solver has a defect.
     Solver(Defect),
-    /// Another solver takes its place.
+    /// Another solver replaces the solver of the run.
     OtherSolver(&'static str),
-    /// Another solver takes its place, at a resolution of its own.
+    /// Another solver replaces the solver of the run, at its own resolution.
     OtherRun(&'static str, Resolution),
-    /// Another variant of the scene takes its place, whose run other claims read.
+    /// Another variant replaces the scene. Other claims read the run of this variant.
     OtherVariant(&'static str),
-    /// What was read of snapshots is made wrong.
+    /// The tables read from snapshots are changed.
     Misread(fn(&mut [Table])),
 }
 
-/// How a row turns red under wrong physics.
+/// Way in which a claim fails under wrong physics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Red {
-    /// By its value, which is finite and outside what is allowed.
+    /// By value: the value is finite and outside the tolerance.
     Value,
-    /// By breaking: wrong physics ends the run, or leaves nothing to read.
+    /// By error: wrong physics ends the run with an error, or the quantity cannot be measured.
     Breaking,
 }
 
 impl Red {
-    /// In a word.
+    /// Returns the way as one word.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -48,16 +48,16 @@ impl Red {
     }
 }
 
-/// A negative control: what is made wrong, in words and in deed.
+/// A negative control: a name and the wrong physics.
 #[derive(Clone)]
 pub struct Control {
-    /// What is wrong, such as `a sphere's inertia in a disc`.
+    /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
-    /// How.
+    /// Wrong physics.
     pub wrong: Wrong,
-    /// How the row must turn red.
+    /// Way in which the claim must fail.
     pub red: Red,
-    /// The smallest set in which a run that is kept is done under it.
+    /// Smallest set of runs in which a stored run is repeated under this control.
     pub set: Set,
 }
 
@@ -66,61 +66,62 @@ impl Control {
         Self { name, wrong, red: Red::Value, set: Set::Main }
     }
 
-    /// The control as one of which a run that is kept is done in the long set only.
+    /// Limits the control to the long set for runs that have a stored result.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
-    /// What was read of the snapshots of a run is made wrong: elements given the stress of others, angles turned.
+    /// Returns a control that changes the tables read from snapshots, such as swapped stresses or rotated angles.
     #[must_use]
     pub const fn misread(name: &'static str, change: fn(&mut [Table])) -> Self {
         Self::new(name, Wrong::Misread(change))
     }
 
-    /// A wrong scene.
+    /// Returns a control with a wrong scene.
     #[must_use]
     pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, Wrong::Scene(Arc::new(change)))
     }
 
-    /// A scene without an effect that it calls for.
+    /// Returns a control that switches off an effect of the scene.
     #[must_use]
     pub fn without(effect: Effect) -> Self {
         Self::scene(effect.absence(), move |scene| effect.switch_off(scene))
     }
 
-    /// A wrong scene for our own side of a comparison with another program.
+    /// Returns a control with a wrong scene for our own side of a comparison with another program.
     #[must_use]
     pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, Wrong::Ours(Arc::new(change)))
     }
 
-    /// A solver whose contacts forget.
+    /// Returns a control with a solver whose contacts lose their history.
     #[must_use]
     pub const fn forgets_history() -> Self {
         Self::new("contacts forget their history", Wrong::Solver(Defect::ForgetsHistory))
     }
 
-    /// Another solver.
+    /// Returns a control with another solver.
     #[must_use]
     pub const fn solver(name: &'static str, solver: &'static str) -> Self {
         Self::new(name, Wrong::OtherSolver(solver))
     }
 
-    /// Of a known error: a solver that does not have it, at a resolution of its own. The row must then pass.
+    /// Returns the control of a known error: a solver without this error, at its own resolution. The claim must then
+    /// pass.
     #[must_use]
     pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::run(name, solver, resolution)
     }
 
-    /// Another variant of the scene.
+    /// Returns a control with another variant of the scene.
     #[must_use]
     pub const fn variant(name: &'static str, variant: &'static str) -> Self {
         Self::new(name, Wrong::OtherVariant(variant))
     }
 
-    /// Another solver, at a resolution of its own.
+    /// Returns a control with another solver at its own resolution.
     #[must_use]
     pub const fn run(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::new(name, Wrong::OtherRun(solver, resolution))

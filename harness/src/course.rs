@@ -1,5 +1,6 @@
-//! Claims of a whole course: a time series that follows what is exact, an error that falls with the resolution. What is
-//! compared is what is drawn, so that the figure comes from the claim.
+//! Claims about curves: a time series that follows an exact solution, or an error that falls with the resolution.
+//!
+//! The figure of such a claim plots the data that the claim compares.
 
 use crate::case::Case;
 use crate::claim::{Claim, Expectation, Expecting, Quantity};
@@ -15,39 +16,39 @@ use std::sync::Arc;
 /// Points (x, y).
 pub type Points = Vec<(f64, f64)>;
 
-/// The largest number of points that a curve is drawn with.
+/// Largest number of points of a plotted curve.
 const DRAWN: usize = 300;
 
-/// Both curves of a claim: what was measured, and what was expected where it is a curve too.
+/// The curves of a claim: measured points, and expected points if the expectation is a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traced {
     /// Measured points.
     pub measured: Points,
     /// Expected points.
     pub expected: Points,
-    /// The power that the expected ones show, where they are a guide beside levels of resolution.
+    /// Power of the expected points, if they are a guide line for resolution levels.
     pub slope: Option<f64>,
 }
 
 /// Reads both curves from the runs of a claim.
 pub type Trace = Arc<dyn Fn(&[Done]) -> Result<Traced, Missing> + Send + Sync>;
 
-/// The graph that a claim is drawn in; claims of one plate share it.
+/// Figure in which a claim is plotted. Claims with the same figure share its graph.
 #[derive(Debug)]
 pub struct Plate {
     /// Name of the figure.
     pub name: &'static str,
     /// Title.
     pub title: &'static str,
-    /// What one should see in it.
+    /// Caption, which describes the expected result.
     pub caption: &'static str,
     /// Labels of both axes.
     pub axes: [&'static str; 2],
-    /// Whether the axes are logarithmic.
+    /// True for logarithmic axes.
     pub logarithmic: bool,
 }
 
-/// Time (s) and value of every sample of a column.
+/// Returns time (s) and value of every sample of a column.
 ///
 /// # Errors
 /// When the record lacks the column.
@@ -55,7 +56,7 @@ pub fn samples(done: &Done, column: &str) -> Result<Points, Missing> {
     Ok(done.series().time.iter().copied().zip(done.column(column)?.iter().copied()).collect())
 }
 
-/// The same less the first value.
+/// Returns time (s) and value minus the first value of every sample of a column.
 ///
 /// # Errors
 /// When the record lacks the column.
@@ -66,17 +67,17 @@ pub fn from_start(done: &Done, column: &str) -> Result<Points, Missing> {
     Ok(points)
 }
 
-/// Reads something of a run.
+/// Reads a value from a run.
 type Read<T> = Arc<dyn Fn(&Done) -> Result<T, Missing> + Send + Sync>;
 
-/// A claim of a time series of which nothing is expected yet.
+/// A claim about a time series, without an expectation.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Series {
     quantity: Quantity,
     read: Read<Points>,
 }
 
-/// A claim of an error over levels of resolution, of which nothing is expected yet.
+/// A claim about an error over resolution levels, without an expectation.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Sweep {
     quantity: Quantity,
@@ -84,19 +85,19 @@ pub struct Sweep {
 }
 
 impl Quantity {
-    /// Read at every sample of the first run.
+    /// Reads a value at every sample of the first run.
     pub fn series(self, read: impl Fn(&Done) -> Result<Points, Missing> + Send + Sync + 'static) -> Series {
         Series { quantity: self, read: Arc::new(read) }
     }
 
-    /// Read of every run: a step, a cell or what else the runs differ in, and the error.
+    /// Reads from every run the swept parameter, such as a time step or a cell size, and the error.
     pub fn sweep(self, read: impl Fn(&Done) -> Result<(f64, f64), Missing> + Send + Sync + 'static) -> Sweep {
         Sweep { quantity: self, read: Arc::new(read) }
     }
 }
 
 impl Series {
-    /// Follows, at every sample, what the source says of the scene; errors are in units of `scale`.
+    /// Expects at every sample the value that the source gives for the scene. Errors are in units of `scale`.
     pub fn follows(
         self,
         source: Source,
@@ -139,8 +140,7 @@ impl Sweep {
         self.quantity.expects(Expectation::Converges(bound), source, measure).traced(trace)
     }
 
-    /// Grows or falls with this power, which the source says and is no order of convergence; errors are in units of
-    /// `scale`.
+    /// Expects a power law from the source that is no order of convergence. Errors are in units of `scale`.
     pub fn scales(self, power: f64, scale: f64, source: Source) -> Expecting {
         let expecting = self.falls(Bound::Order(power), source, Some(power));
         let fitted = Arc::clone(&expecting.measure);
@@ -148,26 +148,26 @@ impl Sweep {
         Expecting { expectation: Expectation::Equals, measure, ..expecting }
     }
 
-    /// Falls with this power, fitted over all runs.
+    /// Expects this order of convergence, fitted over all runs.
     pub fn converges(self, order: f64, source: Source) -> Expecting {
         self.falls(Bound::Order(order), source, Some(order))
     }
 
-    /// Falls with this power or a higher one.
+    /// Expects at least this order of convergence.
     pub fn converges_at_least(self, order: f64, source: Source) -> Expecting {
         self.falls(Bound::AtLeast(order), source, Some(order))
     }
 
-    /// Falls with this power at most, or does not fall.
+    /// Expects at most this order of convergence, or none.
     pub fn converges_at_most(self, order: f64, source: Source) -> Expecting {
         self.falls(Bound::AtMost(order), source, None)
     }
 }
 
-/// The figures of some claims: a graph for each plate, in the order in which claims name them.
+/// Returns the figures of some claims, one graph per figure, in the order in which the claims name them.
 ///
 /// # Errors
-/// When a run fails. A claim whose records lack what it reads is left out.
+/// When a run fails. Claims whose records lack the quantity are left out.
 pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunError> {
     let mut graphs: Vec<(&'static Plate, Vec<Curve>, Vec<Curve>)> = Vec::new();
     for claim in claims {
@@ -185,7 +185,7 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
         if !curve.is_empty() && !expected.iter().any(|drawn| looks_alike(&drawn.points, &curve)) {
             let rounded = |power: f64| format!("slope {}", (power * 1e3).round() / 1e3);
             let label = traced.slope.map_or_else(|| format!("{label}, {}", expected_word(claim.source)), rounded);
-            // One guide for a slope is enough for all curves that have it.
+            // Curves with the same slope share one guide line.
             if !expected.iter().any(|guide| guide.label == label) {
                 expected.push(Curve::new(label, Stroke::Dashed, curve));
             }
@@ -201,7 +201,7 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
     Ok(graphs.into_iter().map(figure).collect())
 }
 
-/// What an expected curve is called: exact where it is derived.
+/// Returns the legend of an expected curve: "exact" if it is derived.
 const fn expected_word(source: Source) -> &'static str {
     match source {
         Source::Derived(_) => "exact",
@@ -209,7 +209,7 @@ const fn expected_word(source: Source) -> &'static str {
     }
 }
 
-/// Whether two curves would be drawn on top of each other: they differ by less than a line is wide.
+/// Returns true if two plotted curves coincide: they differ by less than the width of a line.
 fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     const LINE: f64 = 2e-3;
     let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
@@ -225,13 +225,13 @@ fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     })
 }
 
-/// At most [`DRAWN`] points, evenly over the course.
+/// Returns at most [`DRAWN`] evenly spaced points.
 fn thinned(points: Points) -> Points {
     let every = points.len().div_ceil(DRAWN).max(1);
     points.into_iter().step_by(every).collect()
 }
 
-/// For a case whose figures are all those of its claims.
+/// Returns no figures, for a case whose figures all come from its claims.
 ///
 /// # Errors
 /// Never.
@@ -239,7 +239,7 @@ pub const fn no_more(_: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(Vec::new())
 }
 
-/// All figures of a case: those of some of its claims, and its own.
+/// Returns all figures of a case: the figures of some of its claims, and its own figures.
 ///
 /// # Errors
 /// When a run fails.

@@ -1,4 +1,4 @@
-//! What turns as one rigid body stays one: grains at rest relative to walls that turn with them, and deformable bodies.
+//! Objectivity: rigid rotation of grains at rest relative to walls that turn with them, and of free deformable bodies.
 
 use super::end::{End, NoEnd};
 use super::row::{Found, Rows};
@@ -31,7 +31,7 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// Names of what is judged. What turns about its normal too is apart from the rest, for a method may owe less of it.
+/// Quantities of the results. Twisted contacts have their own, because a method may have a stated exception for them.
 const PLACE: (&str, &str) = ("place off in the end", "m");
 const TWISTED: (&str, &str) = ("place off in the end, under twist", "m");
 const SPIN: (&str, &str) = ("spin × radius off in the end", "m/s");
@@ -42,10 +42,10 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     if rows.solver.deforms() { of_bodies(rows) } else { of_grains(rows) }
 }
 
-/// Rows of grains on springs and of rigid ones.
+/// Returns the results of rigid grains and of grains with contact springs.
 fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
-    // Nothing turns a grain whose contacts turn about their normals alone.
+    // A grain whose contacts turn only about their normals gets no torque.
     let spinning = turning::all().map(|all| only(all, |turning| turning.across > 0.0 || turning.carried));
     let place = |turning: &Turning| {
         worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
@@ -62,8 +62,10 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     .concat()
 }
 
-/// The deviation that uses most of what passes, at the solver's resolution, and at four times the step where it claims an order:
-/// what passes falls with that order.
+/// Returns the deviation that uses the largest part of its tolerance.
+///
+/// The solver runs at its resolution and, if it claims an order, also at four times the step. The tolerance depends on
+/// the step with that order.
 fn worst(rows: &Rows<'_>, turning: &Turning, read: impl Fn(&End) -> (f64, f64), scale: f64) -> Result<Found, NoEnd> {
     let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
     let mut worst: Option<(f64, f64)> = None;
@@ -84,7 +86,7 @@ fn only(all: Vec<Turning>, wanted: impl Fn(&Turning) -> bool) -> Vec<Turning> {
     all.into_iter().filter(wanted).collect()
 }
 
-/// A row for every scene that turns.
+/// Returns one result for each rotating scene.
 fn each(
     rows: &Rows<'_>,
     scenes: Result<Vec<Turning>, SceneError>,
@@ -94,27 +96,27 @@ fn each(
     rows.each_of(scenes, &rows.terms.resolution, quantity, |turning: &Turning| &turning.named, find)
 }
 
-/// Distance of the farthest grain from its exact place (m).
+/// Returns the largest distance of a grain from its exact position (m).
 fn place_off(turning: &Turning, end: &End) -> f64 {
     let grains = end.grains.iter().zip(turning.named.scene.grains.iter());
     let off = grains.map(|(grain, start)| (grain.position - turning.place(start.position, end.time)).norm());
     off.fold(0.0, larger)
 }
 
-/// Largest spin off, times the radius (m/s).
+/// Returns the largest error of a spin times the radius (m/s).
 fn spin_off(turning: &Turning, end: &End) -> f64 {
     let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
     off.fold(0.0, larger)
 }
 
-/// Part by which a scheme of an order may be off when all turns by an angle.
+/// Returns the relative error that a scheme of the claimed order may have after a rotation by the angle.
 fn scheme(turning: &Turning, end: &End, terms: &Terms) -> f64 {
     let step = turning.spin.norm() * end.time_step;
     let angle = 1.0 + Turning::angle();
     if terms.order.is_some_and(|order| order.expected >= 2.0) { (step * angle).powi(2) } else { step * angle }
 }
 
-/// Largest distance that passes (m).
+/// Returns the largest distance from the exact position that passes (m).
 fn place_allowed(rows: &Rows<'_>, turning: &Turning, end: &End) -> f64 {
     let terms = rows.terms;
     let rate = turning.spin.norm();
@@ -129,17 +131,17 @@ fn place_allowed(rows: &Rows<'_>, turning: &Turning, end: &End) -> f64 {
     turning.reach() * (scheme(turning, end, terms) + swing) + lever + rigid
 }
 
-/// Largest spin times radius that passes (m/s).
+/// Returns the largest error of spin times radius that passes (m/s).
 fn spin_allowed(turning: &Turning, end: &End, terms: &Terms) -> f64 {
     turning.spin.norm() * (scheme(turning, end, terms) + 2.0 * turning.overlap)
 }
 
-/// Whether a resolution is one of rigid bodies, whose contacts have no springs.
+/// Returns true if a resolution is for rigid bodies, whose contacts have no springs.
 pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
     matches!(resolution, Resolution::Rigid { .. })
 }
 
-/// Rows of deformable bodies.
+/// Returns the results of deformable bodies.
 fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
     let judge = |named: &Named, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
@@ -160,7 +162,7 @@ fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     [size, spin].concat()
 }
 
-/// The resolution with half the time step, where the grid stays as it is.
+/// Returns the resolution with half the time step. The grid does not change.
 fn shorter(resolution: &Resolution) -> Option<Resolution> {
     match *resolution {
         Resolution::Grid { cells, points, courant } => Some(Resolution::Grid { cells, points, courant: 0.5 * courant }),
@@ -168,8 +170,10 @@ fn shorter(resolution: &Resolution) -> Option<Resolution> {
     }
 }
 
-/// Largest change of size and spin that passes: the strain that centrifugal forces give, reached at once and overshot, is
-/// below ρΩ²R²/E (at the centre of a disc it is .375 of that at most).
+/// Returns the largest change of size that passes; the spin may change by twice as much.
+///
+/// Centrifugal forces, applied suddenly, strain the body by less than ρΩ²R²/E with overshoot. At the centre of a disc,
+/// the strain is at most 0.375 ρΩ²R²/E.
 fn strained(scene: &Scene, record: &Record) -> f64 {
     let grain = &scene.grains[0];
     let density = grain.mass / scene.grain_shape.mass(grain.radius, 1.0);
@@ -182,7 +186,7 @@ fn strained(scene: &Scene, record: &Record) -> f64 {
     density * (rate * grain.radius).powi(2) / modulus + (rate * record.provenance.time_step).powi(2) * (1.0 + angle)
 }
 
-/// Part by which the radius of gyration of a body's material points has changed in the end.
+/// Returns the relative change of the radius of gyration of the material points at the end.
 fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let points = record.snapshots.last().map_or(&[][..], |last| &last.points);
     if points.is_empty() {
@@ -198,7 +202,7 @@ fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEn
     Ok(((end / start).sqrt() - 1.0).abs())
 }
 
-/// Part of the spin that was gained or lost.
+/// Returns the relative change of the spin.
 fn spinning_off(_: &dyn Solver, scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let end = End::read(scene, record)?;
     let start = scene.grains[0].spin;

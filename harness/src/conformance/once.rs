@@ -1,4 +1,4 @@
-//! A solver whose runs are done once: several properties look at the same run.
+//! A solver wrapper that does each run once, because several properties read the same run.
 
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -7,8 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 type Known = (Scene, Resolution, Result<Record, RunError>);
 
-/// Remembers what came of every scene at every resolution. What is asked to be done again, or to be watched, is for the
-/// solver itself.
+/// Remembers the result of each scene at each resolution. Repeated and observed runs must use the solver itself.
 pub(super) struct Once<'a> {
     solver: &'a dyn Solver,
     known: Mutex<Vec<Known>>,

@@ -1,4 +1,4 @@
-//! Smooth motion converges with the order that the solver claims.
+//! Order of convergence in smooth motion, compared with the order that the solver claims.
 
 use super::end::{End, NoEnd};
 use super::row::{Found, Rows};
@@ -20,14 +20,14 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// No rows where no order is claimed.
+/// Returns no results if the solver claims no order.
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let terms = rows.terms;
     let Some(order) = terms.order else { return Vec::new() };
     let held = rows.each(scenes::held(), &order.levels[0], QUANTITY, |named| {
         observed(rows, named, order.levels, Bound::Order(order.expected))
     });
-    // Walls that turn take longer, and show the order at longer steps. Errors of second order may cancel there.
+    // Walls that turn need longer runs, and the order shows at longer steps. There, errors of second order may cancel.
     let levels = [4.0, 2.0, 1.0].map(|factor| terms.resolution.coarser(factor).unwrap_or(terms.resolution));
     let turning = rows.each(turning::smooth(), &levels[0], QUANTITY, |named| {
         observed(rows, named, levels, Bound::AtLeast(order.expected))
@@ -37,8 +37,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 
 const QUANTITY: (&str, &str) = ("order in the time step of the end", "1");
 
-/// The order of three levels. The solver's own finer runs stand for the exact answer, so that no convention of a law is
-/// judged.
+/// Returns the order from three levels. The reference is the solver's own finest run, so the contact convention has no
+/// effect.
 fn observed(rows: &Rows<'_>, named: &Named, levels: [Resolution; 3], bound: Bound) -> Result<Found, NoEnd> {
     let run = |at: usize| End::of(rows.solver, &named.scene, &levels[at]);
     let ends = [run(0)?, run(1)?, run(2)?];

@@ -1,4 +1,4 @@
-//! Nothing gains energy by itself: not what bounces undamped, and not what drives a contact through a closed cycle.
+//! Passivity: no energy gain in undamped collisions, or in a closed cycle of a driven contact.
 
 use super::end::{End, NoEnd};
 use super::objectivity::is_rigid;
@@ -27,17 +27,17 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// Gain of energy, and what is read of a cycle.
+/// Quantities: gain of energy, and work gained in a cycle.
 const GAIN: (&str, &str) = ("energy gained, largest of the run", "1");
 const LEVELS: (&str, &str) = ("energy gained × (Δt₀/Δt)ⁿ, largest of three time steps", "1");
 const WORK: (&str, &str) = ("work gained in a closed cycle over the energy of its spring", "1");
 
-/// Contacts of a collision of five grains: one for each pair.
+/// Number of pairs in a collision of five grains. It bounds the number of contacts.
 const PAIRS: f64 = 10.0;
-/// Room between two planes beyond the diameter of the grain that bounces there (m), and how long it does (s).
+/// Gap between two planes minus the diameter of the bouncing grain (m), and duration of the run (s).
 const ROOM: f64 = 0.02;
 const BOUNCING: f64 = 0.3;
-/// Velocity of that grain at the start (m/s): across the planes, and along them.
+/// Initial speed of the bouncing grain across the planes (m/s).
 const ACROSS: f64 = 1.0;
 /// Young's modulus of Hertz contacts (Pa).
 const YOUNG: f64 = 1.1375e5;
@@ -59,7 +59,7 @@ fn gained(gain: f64, allowed: f64) -> Found {
     Found { measured: Measured::new(gain, Expected::Bound(Bound::AtMost(0.0)), 1.0), allowed, made: Made::Computed }
 }
 
-/// A scene for each law of contacts: a grain between two planes, which slips nowhere or now and then.
+/// Returns one scene per contact law and friction coefficient: a grain between two planes, without or with some slip.
 fn bouncing(rows: &Rows<'_>) -> Result<Vec<Named>, SceneError> {
     let linear =
         |friction: f64| format!("normal_stiffness = 1e4\ntangential_stiffness = 5e3\nfriction = {friction:?}\n");
@@ -79,7 +79,7 @@ fn bouncing(rows: &Rows<'_>) -> Result<Vec<Named>, SceneError> {
     Ok(all)
 }
 
-/// A grain of 1 kg and 1 m between two planes.
+/// Returns the scene of a grain of mass 1 kg and radius 1 m between two planes.
 fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Named, SceneError> {
     let flat = dimension == 2;
     let density = if flat { 1.0 } else { 0.75 } / std::f64::consts::PI;
@@ -110,10 +110,11 @@ fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Nam
     scene_of(name, &text, true)
 }
 
-/// A step that is usual beside that of the other runs: a tenth of the critical one, of solvers that take a fiftieth here.
+/// Factor of the coarse time step. A solver that takes 0.02 of the critical time step here then takes the usual 0.1.
 const COARSE: f64 = 5.0;
 
-/// The gain at the solver's resolution, and where it claims an order at a quarter of that step and at a coarse one.
+/// Returns the gain of energy at the solver's resolution. If it claims an order, also at a quarter of that step and at
+/// a coarse one.
 fn levels(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
     let order = rows.terms.order.map_or(0.0, |order| order.expected);
     let factors: &[f64] = if order > 0.0 { &[1.0, 0.25, COARSE] } else { &[1.0] };
@@ -129,7 +130,8 @@ fn levels(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
     Ok(gained(worst, most))
 }
 
-/// Contacts of a grain between two planes: it crosses the room, and turns back within half a period of the spring.
+/// Returns the number of contacts of a grain between two planes. It crosses the gap, and turns back within half a
+/// period of the spring.
 fn contacts(scene: &Scene) -> f64 {
     let time = scene.duration.seconds().unwrap_or(f64::NAN);
     let grain = &scene.grains[0];
@@ -137,15 +139,16 @@ fn contacts(scene: &Scene) -> f64 {
     1.0 + time / (ROOM / ACROSS + std::f64::consts::PI * (grain.mass / stiffness).sqrt())
 }
 
-/// Kinetic energy of a grain's rigid motion (J).
+/// Returns the kinetic energy of a grain's rigid motion (J).
 fn kinetic(scene: &Scene, grain: &GrainState) -> f64 {
     let inertia = scene.grains[grain.id as usize - 1].inertia;
-    // Of solvers that tell no spin, that of the centre.
+    // If a solver reports no spin, only the translational energy counts.
     let turning = if grain.spin.iter().all(|spin| spin.is_nan()) { 0.0 } else { inertia * grain.spin.norm_squared() };
     0.5 * (grain.mass * grain.velocity.norm_squared() + turning)
 }
 
-/// Largest gain of energy over that of the start. There is no other energy at the start, and later only in springs.
+/// Returns the largest relative gain of kinetic energy. At the start all energy is kinetic; later some is stored in
+/// springs.
 fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let of_start = |grain: &grainbench_scene::scene::Grain| {
         0.5 * (grain.mass * grain.velocity.norm_squared() + grain.inertia * grain.spin.norm_squared())
@@ -158,7 +161,7 @@ fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     Ok(energies.fold(0.0, larger) / start - 1.0)
 }
 
-/// Stiffness along the normal and along the tangent (N/m), at the deepest overlap that the energy of the start allows.
+/// Returns the normal and tangential stiffness (N/m) at the largest overlap that the initial energy allows.
 fn stiffest(scene: &Scene) -> (f64, f64) {
     let fastest = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
     let heaviest = scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
@@ -171,8 +174,10 @@ fn stiffest(scene: &Scene) -> (f64, f64) {
     law.springs.stiffness(overlap, radius)
 }
 
-/// Largest gain that passes: (ωΔt)²/4 for each contact. Deformable bodies swing with a wave that crosses a diameter in
-/// half a period. Rigid bodies have no springs, and round each step.
+/// Returns the largest gain that passes: (ωΔt)²/4 for each contact.
+///
+/// In a deformable body, ω belongs to a wave that crosses a diameter in half a period. Rigid bodies have no springs, so
+/// only the rounding of each step counts.
 fn allowed(scene: &Scene, record: &Record, contacts: f64, rows: &Rows<'_>) -> Result<f64, NoEnd> {
     let step = record.provenance.time_step;
     if !(step.is_finite() && step > 0.0) {
@@ -191,14 +196,17 @@ fn allowed(scene: &Scene, record: &Record, contacts: f64, rows: &Rows<'_>) -> Re
     Ok(contacts * (rate * step).powi(2) / 4.0)
 }
 
-/// Overlaps (m) and shear (m) of a driven Hertz contact, and the time of each leg (s).
+/// Overlaps (m) and shear displacement (m) of a driven Hertz contact, and duration of each leg (s).
 const SHALLOW: f64 = 0.005;
 const DEEP: f64 = 0.01;
 const SHEAR: f64 = 5.0e-4;
 const LEG: f64 = 0.02;
 
-/// Closed cycles: sheared while shallow and back while deep, which a spring of its present stiffness pays for; and sheared
-/// while deep and back while shallow, which one that keeps its force does.
+/// Returns two closed cycles of a driven contact.
+///
+/// The first is sheared while shallow and sheared back while deep. A spring that uses its present stiffness gains
+/// energy there. The second is sheared while deep and sheared back while shallow. A spring that keeps its force while
+/// unloading gains energy there.
 fn cycles() -> Result<Vec<Named>, SceneError> {
     let legs = |name, [first, second]: [f64; 2]| {
         cycle(name, &[[0.0, first], [SHEAR, first], [SHEAR, second], [0.0, second], [0.0, 0.0]])
@@ -206,7 +214,7 @@ fn cycles() -> Result<Vec<Named>, SceneError> {
     Ok(vec![legs("cycle-pressed-under-shear", [SHALLOW, DEEP])?, legs("cycle-relieved-under-shear", [DEEP, SHALLOW])?])
 }
 
-/// A ball that is driven against a plane, through shears and overlaps (m).
+/// Returns the scene of a ball that is pressed on a plane, with prescribed shear displacements and overlaps (m).
 fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<Named, SceneError> {
     let place = |(leg, [shear, overlap]): (usize, &[f64; 2])| {
         format!(", [{:?}, {shear:?}, 0.0, {:?}]", LEG * (leg + 1) as f64, -overlap)
@@ -225,7 +233,8 @@ fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<Named, SceneError> {
     scene_of(name, &text, true)
 }
 
-/// Work that the driver gets out of a closed cycle, over what the tangential spring stores at its deepest.
+/// Returns the work gained in a closed cycle, divided by the energy that the tangential spring stores at the largest
+/// overlap.
 fn work(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
     let record = rows.solver.run(&named.scene, &rows.terms.resolution, &mut ())?;
     let column =
@@ -251,7 +260,7 @@ mod tests {
     use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
     use grainbench_scene::terms::Terms;
 
-    /// Runs nothing.
+    /// A solver that runs nothing.
     struct Nothing;
 
     impl Solver for Nothing {

@@ -1,4 +1,4 @@
-//! Grains have no order.
+//! Permutation: the result does not depend on the order of the grains.
 
 use super::end::{End, rounding};
 use super::moved::{APART, ROUNDING};
@@ -22,7 +22,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
         let straight = End::of(solver, &named.scene, &terms.resolution)?;
         let mut permuted = named.scene.clone();
-        // Neither reversed nor in order: the new place of every grain but the last is the old one's third next.
+        // A permutation that is neither the identity nor a reversal: new place p gets the grain from old place 3p + 2
+        // (mod n).
         let count = permuted.grains.len();
         let old_place = |place: usize| (3 * place + 2) % count;
         permuted.grains = (0..count).map(|place| named.scene.grains[old_place(place)]).collect();

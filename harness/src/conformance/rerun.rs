@@ -1,4 +1,4 @@
-//! A rerun gives the same bits.
+//! Determinism: a repeated run gives the same bits.
 
 use super::end::NoEnd;
 use super::row::{Found, Rows};
@@ -29,7 +29,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     })
 }
 
-/// How many bytes of two records differ, as they are kept and but for their times.
+/// Returns the number of bytes in which two stored records differ. The measured run times are ignored.
 pub(super) fn differing(mut first: Record, mut second: Record) -> Result<usize, NoEnd> {
     for record in [&mut first, &mut second] {
         record.cost = Cost { wall_seconds: 0.0, ..record.cost };

@@ -1,4 +1,4 @@
-//! A run that is continued from a checkpoint ends as the run that was never interrupted.
+//! Restart: a run continued from a checkpoint ends like the uninterrupted run.
 
 use super::end::NoEnd;
 use super::rerun::differing;
@@ -39,7 +39,7 @@ fn no_checkpoint(solver: &dyn Solver) -> RunError {
     RunError::Unsupported { solver: solver.name(), reason: "it leaves no checkpoints to continue from".to_owned() }
 }
 
-/// Keeps the checkpoint of half the steps.
+/// Stores the checkpoint after half of the steps.
 #[derive(Default)]
 struct Halfway {
     steps: u64,
@@ -47,7 +47,7 @@ struct Halfway {
 }
 
 impl Halfway {
-    /// The checkpoint as a reader of its file has it.
+    /// Returns the checkpoint after it has been written to bytes and read back.
     fn through_a_file(self) -> Result<Option<Checkpoint>, RunError> {
         let reread = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes()?);
         Ok(self.checkpoint.map(reread).transpose()?)

@@ -1,4 +1,4 @@
-//! Turned, collisions are the same.
+//! Rotation invariance: a rotated collision ends as its end rotated.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;
@@ -17,7 +17,7 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// A turn that maps no axis on another (rad).
+/// Angle of rotation (rad). It maps no axis on another axis.
 const ANGLE: f64 = 0.65;
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {

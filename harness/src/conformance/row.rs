@@ -1,4 +1,4 @@
-//! Rows of the suite: the same kind as those of gates.
+//! Results of the conformance suite, in the same form as results of claims.
 
 use super::Property;
 use super::end::NoEnd;
@@ -10,16 +10,16 @@ use grainbench_scene::error::SceneError;
 use grainbench_scene::solver::{Resolution, Solver};
 use grainbench_scene::terms::Terms;
 
-/// What the rows of one property share.
+/// Inputs that all results of a property share.
 pub(super) struct Rows<'a> {
     pub(super) solver: &'a dyn Solver,
-    /// The same solver, for what is to be done again and never taken from runs that are finished.
+    /// The same solver for runs that must be done now, and never taken from finished runs.
     pub(super) again: &'a dyn Solver,
     pub(super) terms: &'a Terms,
     pub(super) property: &'a Property,
 }
 
-/// What a property measured on one scene, and how far it may be off.
+/// Measured value of a property on one scene, and its tolerance.
 pub(super) struct Found {
     pub(super) measured: Measured,
     pub(super) allowed: f64,
@@ -27,14 +27,14 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// A deviation that should be zero; `allowed` in the same unit.
+    /// Returns a deviation from zero. `allowed` has the unit of `value`.
     pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
         Self { measured: Measured::new(value, 0.0, scale), allowed: allowed / scale, made: Made::Computed }
     }
 }
 
 impl Rows<'_> {
-    /// A row for every scene: a quantity with its unit, and how it is found.
+    /// Returns one result for each scene. `find` measures the quantity.
     pub(super) fn each(
         &self,
         scenes: Result<Vec<Named>, SceneError>,
@@ -45,7 +45,7 @@ impl Rows<'_> {
         self.each_of(scenes, resolution, (quantity, unit), |named| named, find)
     }
 
-    /// A row for every scene of a list whose entries hold more than the scene.
+    /// Returns one result for each entry of a list that holds more than a scene.
     pub(super) fn each_of<T>(
         &self,
         scenes: Result<Vec<T>, SceneError>,
@@ -65,7 +65,7 @@ impl Rows<'_> {
         }
     }
 
-    /// The row of one scene.
+    /// Returns the result of one scene.
     fn row(
         &self,
         scene: &str,

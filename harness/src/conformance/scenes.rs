@@ -1,21 +1,22 @@
-//! The scenes of the suite, made from text as any scene is.
+//! Scenes of the conformance suite, written as scene files.
 
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
-/// A scene with a name for its rows.
+/// A scene with a name for its results.
 pub(super) struct Named {
     pub(super) name: &'static str,
     pub(super) scene: Scene,
-    /// Whether grains can turn one another.
+    /// True if friction lets grains apply torques to one another.
     pub(super) frictional: bool,
 }
 
-/// One grain runs into four that lie close together: some six contacts open and close within the run, none head-on.
-/// Unit masses in size, k = 1e4 N/m: a contact lasts about 20 ms, overlaps are about a hundredth of the radius. Where
-/// grains deform, their moduli are about as large (Pa).
+/// One grain collides with four close grains. About six contacts open and close during the run, none head-on.
+///
+/// Masses are about 1 kg, k = 1e4 N/m: a contact lasts about 20 ms, and overlaps are about 0.01 of the radius. The
+/// moduli of deformable grains are about as large (Pa).
 const COLLISION_2D: &str = r#"
 title = "A disc runs into four"
 dimension = 2
@@ -54,7 +55,7 @@ position = [2.90, 0.05]
 velocity = [-0.3, 0.02]
 "#;
 
-/// The same in space.
+/// The same collision in three dimensions.
 const COLLISION_3D: &str = r#"
 title = "A sphere runs into four"
 dimension = 3
@@ -99,7 +100,7 @@ const SPRINGS: &str = "\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 
 const FRICTION: &str =
     "tangential_stiffness = 5.0e3\nfriction = 0.4\nnormal_damping = 10.0\ntangential_damping = 5.0\n";
 
-/// Two grains that never meet, so that a step can be a fraction of the critical one.
+/// Two grains that never come into contact. Their stiffness gives a critical time step.
 const FLIGHT_2D: &str = "title = 'Two discs fly apart'\ndimension = 2\nduration = 1.0\n\
   materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3]\nvelocity = [-1.7, 0.9]\nspin = 3.1\n\
@@ -111,7 +112,7 @@ const FLIGHT_3D: &str = "title = 'Two spheres fly apart'\ndimension = 3\nduratio
     [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4, 0.2]\nvelocity = [1.1, 0.3, -0.6]\n\
       spin = [0.0, 0.5, -1.3]\n";
 
-/// A grain held between two planes that press on it: it oscillates, turns to and fro, and never lets go.
+/// A grain held between two planes that press on it. It oscillates, rotates to and fro, and never loses contact.
 const HELD_2D: &str = "title = 'A disc held by two walls'\ndimension = 2\nduration = 0.2\n\
   materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.99]\nvelocity = [0.3, 0.4]\nspin = 0.5\n\
@@ -123,20 +124,20 @@ const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\ndura
       spin = [0.1, 0.5, 0.0]\n\
     [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
     [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 1.98], normal = [0.0, 0.0, -1.0] }\n";
-/// So rough that nothing slips, and without dashpots, whose lag of half a step is of first order in every code we know.
+/// Friction so high that nothing slips. No dashpots: their lag of half a step has first order in every code we know.
 const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
 
 fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<Named, SceneError> {
     scene_of(name, &parts.concat(), frictional)
 }
 
-/// Resolves the text of a scene file.
+/// Builds a scene from the text of a scene file.
 pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<Named, SceneError> {
     let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
     Ok(Named { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
 }
 
-/// Collisions in free space: in the plane and in space, frictionless and with friction and dashpots.
+/// Returns collisions in free space: in two and three dimensions, without friction, and with friction and dashpots.
 pub(super) fn collisions() -> Result<Vec<Named>, SceneError> {
     Ok(vec![
         scene("2d", &[COLLISION_2D, SPRINGS], false)?,
@@ -146,7 +147,7 @@ pub(super) fn collisions() -> Result<Vec<Named>, SceneError> {
     ])
 }
 
-/// Flight with and without gravity; friction in the law, so that solvers carry the spin.
+/// Returns scenes of free flight with and without gravity. Some have friction, so that solvers integrate the spin.
 pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
     let mut all = vec![
         scene("2d", &[FLIGHT_2D, SPRINGS], false)?,
@@ -160,9 +161,11 @@ pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
     Ok(all)
 }
 
-/// Smooth motion for ten critical steps: along the normal, or with friction along the tangent. Not along both: where a
-/// torque arm is R − overlap/2 and the overlap changes, velocities at mid-step meet arms at its end, which is of first
-/// order, with a coefficient as small as the overlap.
+/// Returns scenes of smooth motion for ten critical time steps: along the normal, or along the tangent with friction.
+///
+/// Motion along both would lower the order. If the lever arm is R − overlap/2 and the overlap changes, velocities at
+/// mid-step are combined with lever arms at the end of the step. This error has first order, with a coefficient as
+/// small as the overlap.
 pub(super) fn held() -> Result<Vec<Named>, SceneError> {
     let mut all = vec![
         scene("held-2d", &[HELD_2D, SPRINGS], false)?,
@@ -180,14 +183,14 @@ pub(super) fn held() -> Result<Vec<Named>, SceneError> {
     Ok(all)
 }
 
-/// Whether a scene is flat.
+/// Returns true for a scene in two dimensions.
 pub(super) fn flat(scene: &Scene) -> bool {
     scene.dimension == Dimension::Two
 }
 
 #[cfg(test)]
 mod tests {
-    /// Scenes are text that no user has seen: they must be right.
+    /// No user checks the text of these scenes, so a test must.
     #[test]
     fn every_scene_is_right() {
         for scenes in [super::collisions(), super::flights(), super::held()] {

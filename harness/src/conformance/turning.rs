@@ -1,7 +1,7 @@
-//! Scenes in which walls and grains turn together as one rigid body, with the exact place of every grain.
+//! Scenes in which walls and grains rotate together as one rigid body, with the exact position of every grain.
 //!
-//! All turn at Ω about an axis through the origin, without gravity. In the frame that turns with them a grain feels the
-//! centrifugal and the Coriolis force and the contact forces of a frame at rest.
+//! All scenes rotate at Ω about an axis through the origin, without gravity. In the rotating frame, a grain is subject
+//! to the centrifugal force, the Coriolis force and the contact forces of a frame at rest.
 
 use super::scenes::{Named, scene_of};
 use grainbench_scene::error::SceneError;
@@ -10,50 +10,53 @@ use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;
 
-/// Angular velocity Ω (rad/s), about an eighth of a turn in the time T (s): 168 steps of .08 of the critical one.
+/// Angular velocity Ω (rad/s) and duration T (s): about an eighth of a turn in 168 steps of 0.08 of the critical time
+/// step.
 const RATE: f64 = 3.0;
 const TIME: f64 = 0.2688;
-/// Stiffness k of linear contacts (N/m) and effective modulus E* of Hertz contacts (Pa), between grains of 1 kg and 1 m.
+/// Stiffness k of linear contacts (N/m), and effective modulus E* of Hertz contacts (Pa), for grains of mass 1 kg and
+/// radius 1 m.
 const STIFFNESS: f64 = 1.0e4;
 const MODULUS: f64 = 6.25e4;
 /// Poisson's ratio of Hertz contacts.
 const POISSON: f64 = 0.3;
-/// Overlap of a grain with the walls that hold it (m).
+/// Overlap of a grain with the walls that clamp it (m).
 const HELD: f64 = 2.0e-3;
 /// Radius of the drum (m).
 const DRUM: f64 = 3.0;
 
-/// How grains move when everything turns.
+/// Motion of the grains when everything rotates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Course {
-    /// Each stays at its place in the turning frame.
+    /// Each grain stays at its position in the rotating frame.
     Rigid,
-    /// One hangs on equal springs along all directions, of this frequency ω (rad/s), which begin without load.
+    /// A grain is held by springs that are equal in all directions and initially unloaded. Their frequency is ω
+    /// (rad/s).
     Sprung(f64),
 }
 
-/// A scene that turns.
+/// A rotating scene.
 pub(super) struct Turning {
     pub(super) named: Named,
-    /// Angular velocity Ω of all (rad/s).
+    /// Angular velocity Ω of all bodies (rad/s).
     pub(super) spin: V,
     course: Course,
     /// Largest overlap (m).
     pub(super) overlap: f64,
-    /// Whether centres move where surfaces slip by the overlap's part of the lever arms.
+    /// True if slip due to lever arms that the overlap shortens moves the centres.
     pub(super) carried: bool,
-    /// Whether contacts turn about their normals.
+    /// True if contacts rotate about their normals.
     pub(super) twisted: bool,
-    /// Part of Ω that is across the normals, where the lever arms of a sprung grain matter.
+    /// Fraction of Ω that is perpendicular to the normals. It makes the lever arms of a sprung grain matter.
     pub(super) across: f64,
 }
 
 impl Turning {
-    /// Exact place of a grain (m) at a time (s).
+    /// Returns the exact position of a grain (m) at a time (s).
     ///
-    /// A sprung grain whose springs begin without load at r₀ obeys r̈ = −ω²(r − r₀(t)), where r₀(t) turns at Ω and the part
-    /// along the axis stays. With w = x + iy across the axis, w = r₀[a e^{iΩt} + b e^{iωt} + c e^{−iωt}], a = ω²/(ω² − Ω²),
-    /// b + c = 1 − a and ω(b − c) = Ω(1 − a).
+    /// A sprung grain whose springs begin without load at r₀ obeys r̈ = −ω²(r − r₀(t)). Here r₀(t) rotates at Ω, and
+    /// its component along the axis is constant. With w = x + iy perpendicular to the axis, w = r₀[a e^{iΩt} + b
+    /// e^{iωt} + c e^{−iωt}], a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a).
     pub(super) fn place(&self, start: V, time: f64) -> V {
         let angle = RATE * time;
         let turned = |by: f64| Rotation3::from_scaled_axis(self.spin * (by / RATE)) * start;
@@ -68,17 +71,17 @@ impl Turning {
         along + across(angle) * forced + across(phase) * forth + across(-phase) * back
     }
 
-    /// Frequency of the springs (rad/s), where a grain hangs on them.
+    /// Returns the frequency of the springs (rad/s), if springs hold a grain.
     pub(super) fn frequency(&self) -> Option<f64> {
         if let Course::Sprung(frequency) = self.course { Some(frequency) } else { None }
     }
 
-    /// Angle of the turn (rad).
+    /// Returns the angle of rotation at the end (rad).
     pub(super) const fn angle() -> f64 {
         RATE * TIME
     }
 
-    /// Largest distance of a grain's centre from the axis (m).
+    /// Returns the largest distance of a grain's centre from the axis (m).
     pub(super) fn reach(&self) -> f64 {
         let axis = self.spin / RATE;
         let distance = |place: &V| (place - axis * axis.dot(place)).norm();
@@ -86,7 +89,7 @@ impl Turning {
     }
 }
 
-/// The law between all materials of a scene.
+/// Contact law of all materials of a scene.
 #[derive(Clone, Copy, PartialEq)]
 enum Law {
     /// k_n = k_t, with a coefficient of rolling resistance.
@@ -95,7 +98,7 @@ enum Law {
 }
 
 impl Law {
-    /// Overlap (m) at a force (N).
+    /// Returns the overlap (m) at a force (N).
     fn overlap(self, force: f64) -> f64 {
         match self {
             Self::Linear(_) => force / STIFFNESS,
@@ -103,7 +106,7 @@ impl Law {
         }
     }
 
-    /// Force (N) at an overlap (m), of a grain of 1 m on a wall.
+    /// Returns the force (N) at an overlap (m) between a grain of radius 1 m and a wall.
     fn force(self, overlap: f64) -> f64 {
         match self {
             Self::Linear(_) => STIFFNESS * overlap,
@@ -111,7 +114,7 @@ impl Law {
         }
     }
 
-    /// The materials and contacts of a scene file, for a number of dimensions.
+    /// Returns the materials and contacts of a scene file in this number of dimensions.
     fn text(self, dimension: usize) -> String {
         let density = if dimension == 2 { 1.0 } else { 0.75 } / std::f64::consts::PI;
         let (moduli, springs, rolling) = match self {
@@ -138,7 +141,7 @@ impl Law {
     }
 }
 
-/// Adds a wall of a name, with a point and a normal.
+/// Adds a wall with a name, a point and a normal.
 type Walls = fn(Builder, &str, V, V) -> Builder;
 
 /// Builds the text of one scene.
@@ -161,7 +164,7 @@ impl Builder {
         if self.dimension == 2 { format!("{:?}", self.spin.z) } else { self.vector(self.spin) }
     }
 
-    /// A grain of 1 m that turns with all.
+    /// Adds a grain of radius 1 m that rotates with the scene.
     fn grain(mut self, name: &str, position: V) -> Self {
         let velocity = self.vector(self.spin.cross(&position));
         let (place, spin) = (self.vector(position), self.spin());
@@ -178,13 +181,13 @@ impl Builder {
         self
     }
 
-    /// A plane.
+    /// Adds a plane.
     fn plane(self, name: &str, point: V, normal: V) -> Self {
         let shape = format!("plane = {{ point = {}, normal = {} }}", self.vector(point), self.vector(normal));
         self.wall(name, &shape)
     }
 
-    /// A segment, or a rectangle in space, with its middle at a point.
+    /// Adds a segment, or a rectangle in three dimensions, centred at a point.
     fn plate(self, name: &str, point: V, normal: V) -> Self {
         let across = if self.dimension == 2 { V::z() } else { V::new(normal.y, normal.z, normal.x) };
         let along = normal.cross(&across).normalize() * 3.0;
@@ -203,7 +206,7 @@ impl Builder {
     }
 }
 
-/// A grain between two walls, whose springs are alike in all directions.
+/// Returns a scene with a grain between two walls. Its springs are equal in all directions.
 fn clamped(
     name: &'static str,
     (builder, walls): (Builder, Walls),
@@ -223,13 +226,14 @@ fn clamped(
     Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
 }
 
-/// Two grains in a row between two walls, along a line across the axis and through it: contact forces differ by m Ω² r.
+/// Returns a scene with two grains in a row between two walls. The row intersects the axis at a right angle, so the
+/// forces on the two sides of a grain differ by m Ω² r.
 fn row(name: &'static str, law: Law, (builder, walls): (Builder, Walls), normal: V) -> Result<Turning, SceneError> {
     let normal = normal.normalize();
     let first = 0.6;
     let builder = walls(builder, "low", normal * (first - 1.0 + HELD), normal).grain("a", normal * first);
     let force = law.force(HELD) + RATE * RATE * first;
-    // Between two equal grains the effective radius is half of that at a wall.
+    // The effective radius between two equal grains is half the effective radius at a wall.
     let between = law.overlap(if let Law::Hertz(_) = law { force * 2.0_f64.sqrt() } else { force });
     let second = first + 2.0 - between;
     let overlap = law.overlap(force + RATE * RATE * second);
@@ -239,7 +243,7 @@ fn row(name: &'static str, law: Law, (builder, walls): (Builder, Walls), normal:
     Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
-/// A sphere on the inside of a drum: k δ = m Ω² (R_drum − R + δ).
+/// Returns a scene with a sphere on the inside of a drum: k δ = m Ω² (R_drum − R + δ).
 fn drum(name: &'static str, law: Law, axis: V) -> Result<Turning, SceneError> {
     let axis = axis.normalize();
     let mut overlap = 0.0;
@@ -254,7 +258,7 @@ fn drum(name: &'static str, law: Law, axis: V) -> Result<Turning, SceneError> {
     Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
-/// Scenes of grains on springs and of rigid grains.
+/// Returns the scenes of rigid grains and of grains with contact springs.
 pub(super) fn all() -> Result<Vec<Turning>, SceneError> {
     let [rolls, free, hertz] = [Law::Linear(0.1), Law::Linear(0.0), Law::Hertz(0.1)];
     let (flat, along) = (V::new(-0.3, 0.95, 0.0), V::new(2.0, -1.0, 2.0));
@@ -271,19 +275,20 @@ pub(super) fn all() -> Result<Vec<Turning>, SceneError> {
     ])
 }
 
-/// Scenes in which the order of a scheme shows: errors of lever arms do not change with the time step.
+/// Returns the scenes that show the order of a scheme. Errors of lever arms do not depend on the time step.
 pub(super) fn smooth() -> Result<Vec<Named>, SceneError> {
     let shown = ["planes-2d", "rectangles-3d-oblique", "drum-3d"];
     Ok(all()?.into_iter().map(|turning| turning.named).filter(|named| shown.contains(&named.name)).collect())
 }
 
-/// Angular velocity of a free body (rad/s): its rim moves at a hundredth of the speed of longitudinal waves.
+/// Returns the angular velocity of a free body (rad/s). Its rim moves at 0.01 of the speed of longitudinal waves.
 fn slow_spin(scene: &Scene) -> f64 {
-    // A wave crosses a radius of 1 m in this time.
+    // Time in which a wave crosses a radius of 1 m.
     0.01 / scene.crossing_time(1.0)
 }
 
-/// A deformable body that turns freely, of each law of materials: about the normal of the plane, and about an oblique axis.
+/// Returns freely rotating deformable bodies of each constitutive law: about the normal of the plane, and about an
+/// oblique axis.
 pub(super) fn free() -> Result<Vec<Named>, SceneError> {
     let laws = [
         ("free-2d-neo-hookean", 2, "neo-hookean", ""),
@@ -324,7 +329,7 @@ mod tests {
         assert_eq!(free().unwrap().len(), 5);
     }
 
-    /// The closed form begins at the start, at Ω × r, and obeys r̈ = −ω²(r − r₀(t)).
+    /// The closed form starts at r₀ with velocity Ω × r₀, and obeys r̈ = −ω²(r − r₀(t)).
     #[test]
     fn a_sprung_grain_obeys_its_equation() {
         for turning in all().unwrap().iter().filter(|turning| turning.frequency().is_some()) {
@@ -341,7 +346,7 @@ mod tests {
         }
     }
 
-    /// Contact forces of every grain in a steady scene add up to m Ω² r towards the axis.
+    /// In a steady scene, the contact forces on every grain add up to m Ω² r towards the axis.
     #[test]
     fn steady_scenes_are_in_balance() {
         use grainbench_scene::overlap::distance;
@@ -355,7 +360,7 @@ mod tests {
             for grain in scene.grains.iter() {
                 let mut sum = V::zeros();
                 for wall in &scene.walls {
-                    // Every line from the axis through a grain is normal to the walls.
+                    // Each radial line through a grain is normal to the walls.
                     let inwards = wall.name != "low";
                     let out = grain.position.normalize() * if inwards { -1.0 } else { 1.0 };
                     sum += out * force(1.0 - distance(grain.position, &wall.shape).abs(), 1.0);
