@@ -1,30 +1,30 @@
-//! Data of others that a scene is made from: the user has it, the project does not.
+//! Third-party data from which a scene is made. The user supplies the data; the project does not contain them.
 
 use grainbench_scene::scene::Scene;
 use std::path::Path;
 
-/// A scene that begins with data of others.
+/// A scene that is made from third-party data.
 #[derive(Debug)]
 pub struct Data {
-    /// Name of the scene, which tells runs apart.
+    /// Name of the scene, which identifies its runs.
     pub name: &'static str,
-    /// What it needs, where that is to be had, and how it is given, in words.
+    /// Required files, their origin, and the way to supply them, in words.
     pub needs: &'static str,
-    /// The scene, with what a folder holds.
+    /// Makes the scene from the files in a directory.
     pub scene: fn(&Path) -> Result<Scene, NotMade>,
 }
 
-/// Why a scene cannot be made of what a folder holds: what was expected there and what was found.
+/// Reason why a scene cannot be made: the expected files and the files found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotMade {
-    /// The folder does not hold it.
+    /// The directory lacks the files.
     Absent(String),
-    /// What the folder holds in its place cannot be used.
+    /// The files in the directory cannot be used.
     Wrong(String),
 }
 
 impl NotMade {
-    /// In words.
+    /// Returns the reason in words.
     #[must_use]
     pub fn into_words(self) -> String {
         match self {

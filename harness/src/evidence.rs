@@ -1,8 +1,8 @@
-//! What kind of evidence a row is. It follows from its source and its expectation, and is never typed beside them.
+//! Kind of evidence of a result. It follows from the source and the expectation, and is never stated separately.
 
 use serde::{Deserialize, Serialize};
 
-/// What kind of source the expected value has, strongest first.
+/// Kind of evidence, ordered from strongest to weakest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Evidence {
@@ -12,20 +12,20 @@ pub enum Evidence {
     Experiment,
     /// Another program ran the same scene: a run of it is stored, or it was run now.
     OtherCode,
-    /// A figure or statement printed in a paper.
+    /// Another program ran the same scene. Its run is stored, or was done now.
     Paper,
     /// An independent prototype, whose numbers are stored.
     Prototype,
     /// Our own results at several resolutions, or by several methods.
     Convergence,
-    /// A law that holds whatever the answer is: conservation, symmetry, determinism.
+    /// Our own results at several resolutions or with several methods.
     Invariant,
-    /// Today's value, kept so that a change is seen. It shows nothing about being right.
+    /// Today's value, stored to detect changes. It is no evidence that the value is right.
     Regression,
 }
 
 impl Evidence {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Self; 8] = [
         Self::Analytic,
         Self::Experiment,
@@ -37,7 +37,7 @@ impl Evidence {
         Self::Regression,
     ];
 
-    /// The word used in result files and tables.
+    /// Returns the name used in result files and tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {

@@ -1,35 +1,35 @@
-//! What is expected of a quantity: a value, a bound, a band or an order, each printed as what it is.
+//! Expectations of a quantity: a value, a bound, a band or an order of convergence.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a row expects. It never holds a value of the solver that is judged.
+/// Expectation of a result. It is never our own result for the same quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Expected {
-    /// This value.
+    /// A single value.
     Value(f64),
     /// A bound, a band or an order.
     Bound(Bound),
 }
 
-/// An expectation that is no single value.
+/// An expectation other than a single value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// This or more.
+    /// A lower bound.
     AtLeast(f64),
-    /// This or less.
+    /// An upper bound.
     AtMost(f64),
-    /// From the first to the second.
+    /// A band, from the first value to the second.
     Between([f64; 2]),
     /// An order of convergence.
     Order(f64),
 }
 
 impl Expected {
-    /// How far a value is from what is expected, with its sign: of a bound or a band, how far it is beyond, and 0 where
-    /// it holds. What is not a number stays one.
+    /// Returns the signed distance from the expectation. For a bound or a band it is the distance beyond it, and 0 if
+    /// it holds. NaN gives NaN.
     #[must_use]
     pub fn off(self, value: f64) -> f64 {
         let beyond = |low: f64, high: f64| {
@@ -38,7 +38,7 @@ impl Expected {
             } else if value > high {
                 value - high
             } else {
-                // 0 for what lies within; NaN for what is not a number.
+                // 0 for a finite value within the bound; NaN for a value that is not finite.
                 value * 0.0
             }
         };
@@ -50,7 +50,7 @@ impl Expected {
         }
     }
 
-    /// The value, the order, or the bound nearest to `value`.
+    /// Returns the value, the order, or the bound nearest to `value`.
     #[must_use]
     pub fn nearest(self, value: f64) -> f64 {
         match self {
@@ -65,7 +65,7 @@ impl Expected {
         }
     }
 
-    /// The value where a single one is expected.
+    /// Returns the value if a single value is expected.
     #[must_use]
     pub const fn value(self) -> Option<f64> {
         match self {
@@ -74,7 +74,7 @@ impl Expected {
         }
     }
 
-    /// Whether every number in it is finite.
+    /// Returns true if all its numbers are finite.
     #[must_use]
     pub fn is_finite(self) -> bool {
         match self {
@@ -83,7 +83,7 @@ impl Expected {
         }
     }
 
-    /// In words, with numbers as `number` writes them: `1.43`, `≥ 5`, `1.43 to 1.48`, `order 2`.
+    /// Returns the expectation in words, with numbers formatted by `number`: `1.43`, `≥ 5`, `1.43 to 1.48`, `order 2`.
     #[must_use]
     pub fn words(self, number: impl Fn(f64) -> String) -> String {
         match self {
@@ -108,34 +108,34 @@ impl fmt::Display for Expected {
     }
 }
 
-/// What a claim measured.
+/// A measured value with its expectation and scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The value.
+    /// Measured value.
     pub value: f64,
-    /// What it should be.
+    /// Expectation.
     pub expected: Expected,
-    /// What the difference is divided by.
+    /// Scale by which the error is divided.
     pub scale: f64,
-    /// For a comparison over time: time (s) and signed error of every sample, so that a failure can say when it began.
+    /// Time (s) and signed error of every sample, for a comparison over time. A failure can then report when it began.
     pub course: Vec<(f64, f64)>,
 }
 
 impl Measured {
-    /// A single value.
+    /// Returns a single measured value.
     #[must_use]
     pub fn new(value: f64, expected: impl Into<Expected>, scale: f64) -> Self {
         Self { value, expected: expected.into(), scale, course: Vec::new() }
     }
 
-    /// The worst sample of a time series against an exact course.
+    /// Returns the worst sample of a time series, compared with an exact solution.
     #[must_use]
     pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {
         let expected: Vec<f64> = time.iter().map(|&t| exact(t)).collect();
         Self::worst_of(time, values, &expected, scale)
     }
 
-    /// The worst sample of a time series against another one. A value that is not a number is worse than any other.
+    /// Returns the worst sample of a time series, compared with another series. NaN is worse than any number.
     #[must_use]
     pub fn worst_of(time: &[f64], values: &[f64], expected: &[f64], scale: f64) -> Self {
         let errors = values.iter().zip(expected).map(|(value, expected)| (value - expected) / scale);
@@ -145,7 +145,7 @@ impl Measured {
         Self { value: pick(values), expected: Expected::Value(pick(expected)), scale, course }
     }
 
-    /// The worst change of a series since its first sample, of what does not change.
+    /// Returns the largest change since the first sample, for a series that should be constant.
     #[must_use]
     pub fn drift(time: &[f64], values: &[f64], scale: f64) -> Self {
         let first = values.first().copied().unwrap_or(f64::NAN);
@@ -153,13 +153,13 @@ impl Measured {
         Self::worst(time, &changes, |_| 0.0, scale)
     }
 
-    /// The one with the largest error; none of none.
+    /// Returns the measurement with the largest error; none if there are none.
     #[must_use]
     pub fn worst_among(all: impl IntoIterator<Item = Self>) -> Option<Self> {
         all.into_iter().reduce(|worst, found| if weight(found.error()) > weight(worst.error()) { found } else { worst })
     }
 
-    /// When a comparison over time first left what is allowed, in words: what is not a number is called so.
+    /// Returns the time of the first sample outside the allowed error in words. NaN is reported as such.
     #[must_use]
     pub fn first_outside(&self, allowed: f64) -> Option<String> {
         let first = self.course.iter().find(|(_, error)| error.is_nan() || error.abs() > allowed);
@@ -169,19 +169,20 @@ impl Measured {
         })
     }
 
-    /// Signed error, (value − expected)/scale; of a bound, how far beyond it the value is.
+    /// Returns the signed error, (value − expected)/scale. For a bound it is the distance beyond it, divided by the
+    /// scale.
     #[must_use]
     pub fn error(&self) -> f64 {
         self.expected.off(self.value) / self.scale
     }
 }
 
-/// How bad an error is: what is not a number is worse than anything else.
+/// Returns the magnitude of an error, or infinity for NaN.
 pub(crate) fn weight(error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error.abs() }
 }
 
-/// The larger of two errors: `f64::max` would swallow what is not a number.
+/// Returns the larger of two errors, or NaN if one is NaN; `f64::max` would ignore it.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
@@ -209,7 +210,7 @@ mod tests {
         let worst = Measured::worst_among([of(1.0), of(f64::NAN), of(3.0)]);
         assert!(worst.is_some_and(|worst| worst.value.is_nan()));
         assert!(Measured::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
-        // The sign of what is not a number is that of chance.
+        // The sign of NaN is arbitrary.
         for nothing in [f64::NAN, -f64::NAN] {
             let worst = Measured::worst_of(&[0.0, 1.0, 2.0], &[1.0, nothing, 9.0], &[0.0; 3], 1.0);
             assert!(worst.value.is_nan() && worst.first_outside(10.0).is_some_and(|words| words.contains("NaN")));

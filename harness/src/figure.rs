@@ -1,4 +1,4 @@
-//! What a case wants drawn, as data: reports draw it without knowing any solver.
+//! Figures of cases as data. Reports draw them without knowing any solver.
 
 use crate::raster::Raster;
 use serde::{Deserialize, Serialize};
@@ -8,56 +8,56 @@ use serde::{Deserialize, Serialize};
 pub struct Axis {
     /// Quantity and unit, such as `time t (s)`.
     pub label: String,
-    /// Logarithmic when true; points that are not positive are left out by the drawer, and counted.
+    /// True for a logarithmic axis. The drawing leaves out points that are not positive, and counts them.
     pub logarithmic: bool,
 }
 
 impl Axis {
-    /// An even axis.
+    /// Returns a linear axis.
     #[must_use]
     pub fn linear(label: &str) -> Self {
         Self { label: label.to_owned(), logarithmic: false }
     }
 
-    /// A logarithmic axis.
+    /// Returns a logarithmic axis.
     #[must_use]
     pub fn log(label: &str) -> Self {
         Self { label: label.to_owned(), logarithmic: true }
     }
 }
 
-/// How a curve is drawn. Colour follows the order of the curves.
+/// Line style of a curve. The colour follows from the order of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
     /// A solid line.
     Line,
-    /// A dashed line: exact answers, limits.
+    /// A dashed line, for exact solutions and limits.
     Dashed,
-    /// Separate markers: measured points.
+    /// Separate markers, for measured points.
     Markers,
-    /// Markers joined by a line: levels of resolution.
+    /// Markers joined by a line, for resolution levels.
     MarkedLine,
-    /// Small hollow markers in the look of the curve before it: points that its line passes by.
+    /// Small hollow markers in the style of the previous curve, for points that are not on its line.
     Beside,
-    /// Crosses in the look of the curve before it: runs that failed.
+    /// Crosses in the style of the previous curve, for failed runs.
     Failed,
-    /// Pale bars from each point to the next but one, two points a bar: floors, ranges.
+    /// Pale bars, for floors and ranges. Each pair of points gives the two ends of a bar.
     Bars,
 }
 
 /// One curve of a graph.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Label in the legend.
     pub label: String,
-    /// How it is drawn.
+    /// Line style.
     pub stroke: Stroke,
     /// Points (x, y) in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    /// A curve with a name.
+    /// Returns a curve with a label.
     #[must_use]
     pub fn new(label: impl Into<String>, stroke: Stroke, points: Vec<(f64, f64)>) -> Self {
         Self { label: label.into(), stroke, points }
@@ -71,126 +71,126 @@ pub struct Graph {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// Curves in the order in which they are drawn.
+    /// Curves in drawing order.
     pub curves: Vec<Curve>,
 }
 
 /// One contact of a force plot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForceBar {
-    /// Ends of the bar (m), grain centre to grain centre or to the wall.
+    /// First end of the bar (m).
     pub from: [f64; 2],
     /// Other end (m).
     pub to: [f64; 2],
     /// Magnitude of the contact force (N); the width is proportional to it.
     pub force: f64,
-    /// Whether the contact slips.
+    /// True if the contact slips.
     pub slipping: bool,
 }
 
-/// Cundall and Strack's force plot: rectangles along contacts, width proportional to force.
+/// Force plot of Cundall and Strack: rectangles along contacts, with widths proportional to the forces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForcePlot {
     /// Centre (m) and radius (m) of every disc, and its angle of rotation (rad).
     pub discs: Vec<([f64; 2], f64, f64)>,
-    /// Walls as pairs of end points (m), already cut to the drawing.
+    /// Pairs of end points of the walls (m), clipped to the drawing.
     pub walls: Vec<([f64; 2], [f64; 2])>,
-    /// The contacts.
+    /// Contacts.
     pub bars: Vec<ForceBar>,
 }
 
 /// Lines of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lines {
-    /// What they are, in the legend.
+    /// Label in the legend.
     pub label: String,
-    /// Both ends of each, and its width as a part of the widest that there can be.
+    /// Both ends of each line, and its width as a fraction of the largest possible width.
     pub lines: Vec<([f64; 2], [f64; 2], f64)>,
 }
 
-/// A part of the plane with lines in it.
+/// A rectangle of the plane with lines.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
-    /// What stands above it.
+    /// Title above the rectangle.
     pub title: String,
-    /// Lower and upper corner of what is seen.
+    /// Lower and upper corner of the visible rectangle.
     pub seen: [[f64; 2]; 2],
-    /// Lower and upper corner of a part that is marked.
+    /// Lower and upper corner of a marked rectangle.
     pub marked: Option<[[f64; 2]; 2]>,
-    /// The lines, in the order in which they are drawn; a kind has the same place in all sheets, and may be empty.
+    /// Lines in drawing order. A kind has the same index in all sheets, and may be empty.
     pub kinds: Vec<Lines>,
 }
 
-/// Sheets with lines beside one another.
+/// Several sheets with lines, side by side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinePlot {
     /// Labels of the horizontal and of the vertical axis.
     pub axes: [String; 2],
-    /// Whether both axes have one scale, so that angles are what they are.
+    /// True if both axes have the same scale, so that angles are preserved.
     pub to_scale: bool,
-    /// The sheets.
+    /// Sheets.
     pub sheets: Vec<Sheet>,
 }
 
-/// How the values of a field are coloured.
+/// Colour map of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shades {
-    /// From dark to light on white: amounts.
+    /// From dark to light on white, for amounts.
     Amount,
-    /// From black to light on black: what glows, such as stress between crossed polarisers.
+    /// From black to light on black, for light intensity such as stress between crossed polarisers.
     Glow,
-    /// Two colours that meet in the middle of the range: signed values.
+    /// Two colours that meet in the middle of the range, for signed values.
     Signed,
-    /// Grey: fringes.
+    /// Grey, for fringes.
     Fringes,
-    /// From dark to light, each colour in shades from dark to bright: amounts on lit bodies. Levels are those of
-    /// [`crate::raster::lit`].
+    /// From dark to light, each colour in shades from dark to bright, for amounts on lit bodies. [`crate::raster::lit`]
+    /// gives the levels.
     Lit,
 }
 
-/// One picture of a field, or the frames of a film of it.
+/// A picture of a field, or the frames of its film.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
-    /// What stands above it.
+    /// Title above the panel.
     pub title: String,
-    /// Frames in the order of the times of the field; all of one size.
+    /// Frames in the order of the field's times; all have the same size.
     pub frames: Vec<Raster>,
-    /// Values of its lowest and its highest level and their unit, where it does not share those of the field.
+    /// Values of the lowest and the highest level and their unit, if they differ from those of the field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own: Option<((f64, f64), String)>,
 }
 
-/// A field over the plane, in panels beside one another that share colours, and a scale unless they have their own.
+/// A field over the plane in several panels. They share the colours, and the scale unless a panel has its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Quantity, such as `σ₁ − σ₂`.
     pub label: String,
-    /// Its SI unit; `1` for a pure number.
+    /// SI unit; `1` for a pure number.
     pub unit: String,
     /// Values of the lowest and the highest level.
     pub range: (f64, f64),
-    /// How they are coloured.
+    /// Colour map.
     pub shades: Shades,
-    /// Side of a pixel, in the unit of lengths; zero where they have none.
+    /// Side of a pixel, in the unit of length; 0 if lengths have no unit.
     pub pixel: f64,
-    /// Unit of lengths: `m`, or what a scene without units counts them in, such as a diameter `d`.
+    /// Unit of length: `m`, or the length scale of a scene without units, such as a diameter `d`.
     pub length: String,
-    /// The panels, equally large.
+    /// Panels, all of the same size.
     pub panels: Vec<Panel>,
-    /// What the frames of a film are told apart by, such as `time t (s)`.
+    /// Axis label of the frames of a film, such as `time t (s)`.
     pub clock: String,
-    /// Where each frame stands on that clock; one for a picture.
+    /// Value of each frame on that axis; a picture has one.
     pub times: Vec<f64>,
 }
 
-/// What is drawn.
+/// Drawing of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drawing {
     /// Curves over two axes.
     Graph(Graph),
     /// A force plot.
     Forces(ForcePlot),
-    /// A field, as pictures or as a film.
+    /// A field, as a picture or as a film.
     Field(Field),
     /// Lines in the plane.
     Lines(LinePlot),
@@ -199,18 +199,18 @@ pub enum Drawing {
 /// One figure of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// File name without extension, unique within the case: letters, digits and `-`.
+    /// File name without extension, unique within the case. It contains letters, digits and `-`.
     pub name: String,
     /// Short title.
     pub title: String,
-    /// What the reader sees and what it means, in a sentence or two.
+    /// Description of the picture and its meaning, in one or two sentences.
     pub caption: String,
     /// The drawing.
     pub drawing: Drawing,
 }
 
 impl Figure {
-    /// A graph.
+    /// Returns a figure with a graph.
     #[must_use]
     pub fn graph(name: &str, title: &str, caption: &str, [x, y]: [Axis; 2], curves: Vec<Curve>) -> Self {
         Self {
@@ -220,7 +220,7 @@ impl Figure {
             drawing: Drawing::Graph(Graph { x, y, curves }),
         }
     }
-    /// A field.
+    /// Returns a figure with a field.
     #[must_use]
     pub fn field(name: &str, title: &str, caption: &str, field: Field) -> Self {
         Self {
@@ -231,7 +231,7 @@ impl Figure {
         }
     }
 
-    /// Lines in the plane.
+    /// Returns a figure with lines in the plane.
     #[must_use]
     pub fn lines(name: &str, title: &str, caption: &str, plot: LinePlot) -> Self {
         Self {
@@ -242,7 +242,7 @@ impl Figure {
         }
     }
 
-    /// Cundall and Strack's force plot.
+    /// Returns a figure with a force plot of Cundall and Strack.
     #[must_use]
     pub fn forces(name: &str, title: &str, caption: &str, plot: ForcePlot) -> Self {
         Self {

@@ -1,11 +1,13 @@
-//! A snapshot of a plane scene as Cundall and Strack's force plot.
+//! Force plot of Cundall and Strack for a snapshot in two dimensions.
 
 use crate::figure::{ForceBar, ForcePlot};
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
-/// Draws every contact of a grain that is there as a bar through the contact point with the orientation of the force,
-/// as long as the radii together.
+/// Returns a force plot of a snapshot. Contacts of grains that the snapshot lacks are left out.
+///
+/// The bar of a contact passes through the contact point in the direction of the force. Its length is the sum of the
+/// radii.
 #[must_use]
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];
@@ -20,7 +22,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             };
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let magnitude = force.norm();
-            // Without force there is no orientation but the normal's.
+            // A contact without force has only the orientation of its normal.
             let along = if magnitude > 0.0 { -force / magnitude } else { contact.normal };
             Some(ForceBar {
                 from: flat(contact.point - along * radius(contact.grain)?),
@@ -40,7 +42,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             if !wall.infinite {
                 return Some((flat(a), flat(b)));
             }
-            // An infinite wall is drawn as long as the grains' box is wide there.
+            // An infinite wall is drawn as long as the box of the grains extends along it.
             let along = Vector3::new(-b.y, b.x, 0.0);
             let half = 0.5 * ((high - low).dot(&along.abs())).min(across);
             let middle = a + along * (0.5 * (low + high) - a).dot(&along);

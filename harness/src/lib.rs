@@ -1,9 +1,9 @@
-//! The harness: what a claim is, and how it is judged.
+//! The harness: definition and evaluation of claims.
 //!
-//! A [`claim::Claim`] says of which runs a quantity is read, what is expected of it and from which source, how far it
-//! may be off and why, and which wrong physics it must refuse. A [`runner::Runner`] does the runs, each once, with
-//! solvers that are handed in, and ends in a [`verdict::Verdict`]. Nothing here knows a solver: whatever left a record
-//! is judged alike.
+//! A [`claim::Claim`] states the runs from which a quantity is read, the expectation and its source, the tolerance and
+//! its reason, and the wrong physics that it must refuse. A [`runner::Runner`] does each run once, with solvers that
+//! the caller supplies, and returns a [`verdict::Verdict`]. The harness knows no solver: all records are evaluated in
+//! the same way.
 
 pub mod case;
 pub mod claim;

@@ -1,4 +1,4 @@
-//! The words in which a case is said.
+//! Names that the definition of a case needs.
 
 pub use crate::case::{Case, Home, Level, PLAIN, cells, fraction};
 pub use crate::claim::{Claim, Measure, claim};

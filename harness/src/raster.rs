@@ -1,4 +1,4 @@
-//! A picture as levels, which a report colours: small enough to be kept with the results.
+//! Raster pictures as levels, which reports colour. They are small enough to be stored with the results.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -9,18 +9,18 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::io::{Read, Write};
 
-/// Nothing is here.
+/// Level of empty space.
 pub const VOID: u8 = 0;
-/// The rim of a grain.
+/// Level of the rim of a grain.
 pub const RIM: u8 = 255;
-/// Levels of values run from here to [`HIGH`].
+/// Lowest level of a value. Values have levels from here to [`HIGH`].
 pub const LOW: u8 = 1;
-/// The level of the highest value.
+/// Level of the highest value.
 pub const HIGH: u8 = 254;
-/// More pixels than this are no picture.
+/// Largest number of pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// Levels by rows from the top, in text the base64 of their zlib stream.
+/// Levels of a picture, row by row from the top. In text they are the base64 code of a zlib stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Raster {
     /// Pixels across.
@@ -31,24 +31,24 @@ pub struct Raster {
     pub levels: Vec<u8>,
 }
 
-/// The level of a value within a range; what is beyond stands at its end.
+/// Returns the level of a value within a range. Values outside have the level of the nearest end.
 #[must_use]
 pub fn level(value: f64, (low, high): (f64, f64)) -> u8 {
     let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
-    // Not a number becomes zero, and is drawn as void.
+    // NaN is drawn as empty space.
     if part.is_nan() { VOID } else { LOW + (part * f64::from(HIGH - LOW)).round() as u8 }
 }
 
-/// Colours of a lit value, and shades of each.
+/// Number of colours of lit values.
 pub const COLOURS: u8 = 8;
-/// Shades of each colour.
+/// Number of shades of each colour.
 pub const LIGHTS: u8 = 31;
 
-/// The level of a value from 0 to 1 under a light from 0 to 1.
+/// Returns the level of a value from 0 to 1 under a light intensity from 0 to 1.
 #[must_use]
 pub fn lit(value: f64, light: f64) -> u8 {
     let part = |of: f64, count: u8| (of.clamp(0.0, 1.0) * f64::from(count)).floor().min(f64::from(count - 1)) as u8;
-    // Not a number is drawn as void.
+    // NaN is drawn as empty space.
     if value.is_nan() || light.is_nan() { VOID } else { LOW + LIGHTS * part(value, COLOURS) + part(light, LIGHTS) }
 }
 
@@ -77,7 +77,7 @@ impl<'de> Deserialize<'de> for Raster {
         }
         let packed = STANDARD.decode(&levels).map_err(|error| D::Error::custom(format!("levels: {error}")))?;
         let mut levels = Vec::new();
-        // One more than there should be tells a stream that is too long.
+        // One more byte than expected reveals a stream that is too long.
         let read = ZlibDecoder::new(packed.as_slice()).take(pixels + 1).read_to_end(&mut levels);
         read.map_err(|error| D::Error::custom(format!("levels: {error}")))?;
         if levels.len() as u64 != pixels {

@@ -1,7 +1,7 @@
 //! Known mistakes of solvers, and the search for the one that explains failed results.
 //!
-//! A mistake explains a failed result if our own solvers give the same error with it. The candidates are wrong scenes, such
-//! as another gravity or inertia, the claim's negative control, and mistakes in the method of [`small_dem`].
+//! A mistake explains a failed result if our own solvers give the same error with it. The candidates are wrong scenes,
+//! such as another gravity or inertia, the claim's negative control, and wrong methods in [`small_dem`].
 
 pub mod small_dem;
 
@@ -22,15 +22,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread;
 
-/// Errors that agree within this part of them have one cause.
+/// Largest difference of two errors with the same cause, as a fraction of the error.
 const SAME: f64 = 0.05;
-/// Most candidates that a hint names.
+/// Largest number of candidates that a hint names.
 const MOST_NAMED: usize = 2;
-/// Largest number of steps times grains of a run with a wrong scene.
+/// Largest number of steps times grains for a run with a wrong scene.
 const SCENE_WORK: f64 = 2e7;
-/// Largest number of steps times pairs of a run with a wrong method.
+/// Largest number of steps times pairs for a run with a wrong method.
 const METHOD_WORK: f64 = 5e6;
-/// Time step of a method with springs where a claim has none, as a fraction of the critical one.
+/// Time step, as a fraction of the critical one, of the small method if the claim's method has no contact springs.
 const FRACTION: f64 = 0.05;
 
 /// A mistake whose effect on a result can be computed.
@@ -38,7 +38,7 @@ const FRACTION: f64 = 0.05;
 enum Mistake {
     /// A wrong scene.
     Scene(Control),
-    /// The negative control of each claim, by its name.
+    /// The negative control of each claim, identified by its name.
     Control(&'static str),
     /// A wrong method.
     Method(Slip),
@@ -54,22 +54,22 @@ impl Mistake {
     }
 }
 
-/// A claim of a case with its result.
+/// A claim of a case and its result.
 struct Judged<'a> {
     claim: &'a Claim,
     row: &'a Verdict,
 }
 
-/// The errors of all results with one mistake; none where it cannot be computed or changes nothing.
+/// Errors of all results with one mistake; none if the error cannot be computed.
 struct Candidate {
     words: &'static str,
     errors: Vec<Option<f64>>,
 }
 
-/// Appends "as if: …" to the details of failed results whose errors a known mistake gives too.
+/// Appends "as if: …" to the details of failed results whose errors a known mistake reproduces.
 ///
-/// `rows` are the results of `claims`, in their order. Every other result of the scenes in question counts against a mistake
-/// that contradicts it.
+/// `rows` are the results of `claims`, in the same order. Other results of the same scenes count against a mistake that
+/// contradicts them.
 pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[Claim], rows: &mut [Option<Verdict>]) {
     let hints = hints(case, solvers, claims, rows);
     for (row, hint) in rows.iter_mut().zip(hints) {
@@ -123,14 +123,15 @@ fn distance(error: Option<f64>, row: &Verdict) -> f64 {
     error.zip(row.error).map_or(f64::INFINITY, |(error, found)| (error - found).abs())
 }
 
-/// Whether a mistake gives the error of a failed result: red too, and nearer to it than the part [`SAME`] or what is allowed.
+/// Returns true if a mistake explains a failed result. Its error must fail too. It may differ from the found error by
+/// the fraction [`SAME`], or by the allowed error but at most half of the found error.
 fn explains(error: Option<f64>, row: &Verdict) -> bool {
     let found = row.error.unwrap_or(f64::NAN).abs();
     error.is_some_and(|error| error.abs() > row.allowed)
         && distance(error, row) <= (SAME * found).max(row.allowed.min(0.5 * found))
 }
 
-/// Number of failed results that a mistake explains, less the number of results that it contradicts.
+/// Returns the number of failed results that a mistake explains, minus the number of results that it contradicts.
 fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
     let of = |(error, judged): (&Option<f64>, &Judged<'_>)| match (error, judged.row.outcome) {
         (None, _) => 0,
@@ -141,7 +142,7 @@ fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
     candidate.errors.iter().zip(judged).map(of).sum()
 }
 
-/// The errors with each mistake, computed on all processors.
+/// Computes the errors with each mistake on all processors.
 fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<'_>]) -> Vec<Candidate> {
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
@@ -191,18 +192,18 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<
     found.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// A runner of the small method, with a mistake or without.
+/// Returns a runner of the small method, with or without a mistake.
 fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<Slip>) -> Runner {
     Runner::new(case, Arc::clone(solvers)).with_solver(Arc::new(SmallDem { mistake })).controlled(false)
 }
 
-/// The error of a claim by a runner of the small method.
+/// Returns the error of a claim with a runner of the small method.
 fn method_error(runner: &Runner, judged: &Judged<'_>) -> Option<f64> {
     let runs = judged.claim.runs.iter().map(with_step).collect();
     runner.judge(&Claim { runs, ..judged.claim.clone() }).error
 }
 
-/// The run with a time step.
+/// Returns the run with a resolution that has a time step.
 fn with_step(run: &Run) -> Run {
     match run.resolution {
         Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => run.clone(),
@@ -210,12 +211,12 @@ fn with_step(run: &Run) -> Run {
     }
 }
 
-/// The error of a claim with a wrong scene.
+/// Returns the error of a claim with a wrong scene.
 fn scene_error(runner: &Runner, claim: &Claim, control: Control) -> Option<f64> {
     runner.control(&Claim { control, ..claim.clone() }).error
 }
 
-/// Whether the runs of a claim are those of our own solvers, in the quick tier.
+/// Returns true if all runs of a claim use our own solvers in the quick tier.
 fn is_own(claim: &Claim) -> bool {
     let is_computed = !matches!(claim.evidence(), Evidence::OtherCode | Evidence::Regression);
     let is_short = |run: &Run| {
@@ -224,7 +225,7 @@ fn is_own(claim: &Claim) -> bool {
     is_computed && claim.control.set == Set::Main && claim.runs.iter().all(is_short)
 }
 
-/// Whether the runs of a claim are short enough for a wrong scene and for a wrong method.
+/// Returns whether the runs of a claim are short enough for a wrong scene, and for a wrong method.
 fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
     let of_grains = |run: &Run| matches!(Method::of(run.solver), Some(Method::Dem | Method::Rigid));
     if !is_own(claim) || !claim.runs.iter().all(of_grains) {
@@ -241,7 +242,7 @@ fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
     sum.map_or([false; 2], |[scene, method]| [scene <= SCENE_WORK, method <= METHOD_WORK])
 }
 
-/// The mistakes that can concern these claims.
+/// Returns the mistakes that can affect these claims.
 fn mistakes(runner: &Runner, judged: &[Judged<'_>]) -> Vec<Mistake> {
     let mut known = BTreeSet::new();
     let mut found: Vec<Mistake> = Vec::new();
@@ -261,7 +262,7 @@ fn mistakes(runner: &Runner, judged: &[Judged<'_>]) -> Vec<Mistake> {
     found
 }
 
-/// Wrong scenes that a slip of the hand makes of a scene.
+/// Returns changes of a scene that are common mistakes.
 fn of_scene(scene: &Scene) -> Vec<Control> {
     let off = Effect::switches().filter(|effect| effect.is_on(scene)).map(Control::without);
     let parts =
@@ -316,7 +317,7 @@ fn of_inertia(shape: GrainShape) -> Vec<Control> {
     found
 }
 
-/// A change of every contact law.
+/// Returns a control that changes every contact law.
 fn laws(name: &'static str, change: fn(&mut grainbench_scene::contact_law::ContactLaw)) -> Control {
     Control::scene(name, move |scene: &mut Scene| scene.laws.iter_mut().flatten().for_each(change))
 }

@@ -1,8 +1,8 @@
-//! A small discrete element method with mistakes that can be switched on, written apart from the solvers of the project.
+//! A small discrete element method with optional mistakes. It is independent of the project's solvers.
 //!
-//! Its mistakes explain failed results, and they test claims: the right laws must pass, and each mistake must fail by value.
-//! It tests every pair of grains and takes central differences. It finds the slip at mid-step, with the normals, lever arms
-//! and walls of mid-step.
+//! Its mistakes explain failed results, and they test claims: the correct method must pass, and each mistake must fail
+//! by value. The method checks every pair of grains and integrates by central differences. It computes the slip
+//! velocity at mid-step, with the normals, lever arms and wall positions of mid-step.
 
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
@@ -18,54 +18,54 @@ type V = Vector3<f64>;
 /// A mistake in the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slip {
-    /// The tangential spring keeps its direction in space when its contact turns.
+    /// The tangential spring keeps its direction in space when its contact rotates.
     SpringNotTurned,
-    /// The tangential spring is projected on the tangent plane and does not follow the twist about the normal.
+    /// The tangential spring is projected on the tangent plane and does not follow the rotation about the normal.
     TwistNotFollowed,
     /// Both grains of a pair have the lever arm (R₁ + R₂)/2.
     MeanArm,
     /// Both grains of a pair have the lever arm of the first.
     OneArm,
-    /// The slip takes the spins with the wrong sign.
+    /// The slip velocity includes the spins with the wrong sign.
     WrongSpin,
-    /// The slip leaves the spins out.
+    /// The slip velocity leaves out the spins.
     NoSpin,
-    /// Friction turns the first grain of a pair and not the second.
+    /// Friction exerts a torque on the first grain of a pair and not on the second.
     NoSecondTorque,
     /// Torques have the wrong sign.
     TorqueReversed,
     /// The rolling moment leaves out the spin of walls.
     WallSpinDropped,
-    /// Mindlin's force is its present stiffness times all displacement since the contact began.
+    /// Mindlin's force is the present stiffness times the whole displacement since the contact began.
     SecantSpring,
-    /// Mindlin's force stays as it is while a contact is unloaded.
+    /// Mindlin's force is not reduced while a contact is unloaded.
     NotRescaled,
-    /// The rolling angle grows on when the moment has yielded.
+    /// The rolling angle keeps growing after the moment has reached its limit.
     RollingNotCut,
-    /// Grains start without spin.
+    /// Grains start without spins.
     SpinsDropped,
-    /// The tangential spring is forgotten after each step.
+    /// The tangential spring is reset after each step.
     SpringForgotten,
-    /// Coulomb's limit cuts the force, and the spring grows on.
+    /// Coulomb's limit applies to the force, and the spring keeps growing.
     SpringNotCut,
-    /// Coulomb's limit acts on the spring, and the tangential dashpot is added to it.
+    /// Coulomb's limit applies to the spring alone, and the tangential dashpot is added.
     LimitOnSpring,
     /// Coulomb's limit is proportional to the elastic part of the normal force.
     LimitOfElastic,
-    /// The normal dashpot pulls on grains that part.
+    /// The normal dashpot pulls on grains that separate.
     Pulls,
-    /// Dashpots have the mass of the first grain in place of the reduced mass.
+    /// Dashpots use the mass of the first grain instead of the reduced mass.
     WholeMass,
-    /// Hertz contacts have the radius of the first grain in place of the effective radius.
+    /// Hertz contacts use the radius of the first grain instead of the effective radius.
     WholeRadius,
     /// Reported velocities are half a step old.
     HalfStepOld,
-    /// Positions move with the velocity before the step.
+    /// Positions are integrated with the velocity before the step.
     OldVelocity,
 }
 
 impl Slip {
-    /// Every mistake.
+    /// All mistakes.
     pub const ALL: [Self; 22] = [
         Self::SpringNotTurned,
         Self::TwistNotFollowed,
@@ -91,7 +91,7 @@ impl Slip {
         Self::OldVelocity,
     ];
 
-    /// The mistake in words.
+    /// Returns the mistake in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -121,18 +121,18 @@ impl Slip {
     }
 }
 
-/// The solver, with a mistake or without.
+/// The small discrete element solver, with or without a mistake.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmallDem {
-    /// The mistake; none in the right method.
+    /// Mistake; none for the correct method.
     pub mistake: Option<Slip>,
 }
 
-/// Where one side of a contact is, over one step.
+/// The second side of a contact, a grain or a wall, over one step.
 struct Side {
-    /// Vector from the centre of the first grain to the second or to the wall, before the step and after it (m).
+    /// Vector from the centre of the first grain to the second grain or the wall, before and after the step (m).
     between: [V; 2],
-    /// Velocity of the second side at its own centre, or of the wall at the contact (m/s).
+    /// Velocity of the second grain's centre, or of the wall at the contact (m/s).
     velocity: V,
     spin: V,
     radius: Option<f64>,
@@ -193,7 +193,7 @@ impl State<'_> {
         self.count as f64 * self.step
     }
 
-    /// The wall as a grain sees it that moved from one place to another in the last step.
+    /// Returns a wall as the second side of a contact with a grain over the last step.
     fn facing(&self, place: usize, wall: &Wall, body: &Body) -> Option<Side> {
         let now = self.time();
         let at = |time: f64| {
@@ -217,7 +217,7 @@ impl State<'_> {
         })
     }
 
-    /// The nearest place of a wall at mid-step.
+    /// Returns the nearest point of a wall at mid-step.
     fn middle(&self, wall: &Wall, body: &Body, time: f64) -> Option<V> {
         let displacement = wall.motion.displacement(time.max(0.0), self.step);
         nearest(&wall.shape.moved(&wall.motion, &displacement), (body.before + body.position) * 0.5)
@@ -237,7 +237,7 @@ impl State<'_> {
         later.chain(walls).collect()
     }
 
-    /// Finds all forces; `elapsed` is the step (s), or zero at the start.
+    /// Computes all forces; `elapsed` is the time step (s), or zero at the start.
     fn evaluate(&mut self, elapsed: f64) {
         for body in &mut self.bodies {
             (body.force, body.torque) = (V::zeros(), V::zeros());
@@ -376,7 +376,8 @@ impl State<'_> {
     }
 }
 
-/// Lever arms of both sides (m): their sum is the distance of the centres, or the distance of the wall.
+/// Returns the lever arms of both sides (m). Their sum is the distance of the centres; at a wall, it is the distance of
+/// the wall.
 fn arms(mistake: Option<Slip>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
     if wall {
         return [distance, 0.0];
@@ -389,7 +390,8 @@ fn arms(mistake: Option<Slip>, radii: [f64; 2], wall: bool, distance: f64, overl
     }
 }
 
-/// The turn of a contact over a step: that of its normal, then the mean twist of both sides about it.
+/// Returns the rotation of a contact over a step: the rotation of its normal, then the mean rotation of both sides
+/// about it.
 fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
     if mistake == Some(Slip::SpringNotTurned) {
         return Rotation3::identity();
@@ -408,7 +410,7 @@ fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> R
     Rotation3::from_scaled_axis(to * twist) * tilt
 }
 
-/// Force and torque on the first side, and torque on the second.
+/// Returns the force and the torque on the first side, and the torque on the second side.
 fn respond(
     mistake: Option<Slip>,
     law: &ContactLaw,
@@ -467,7 +469,7 @@ fn damped_share(law: &ContactLaw) -> f64 {
     if law.is_hertz() { 5.0 / 6.0 } else { 1.0 }
 }
 
-/// Brings the tangential spring up to date.
+/// Updates the tangential spring.
 fn shear(
     mistake: Option<Slip>,
     law: &ContactLaw,
@@ -475,7 +477,7 @@ fn shear(
     (slip, normal, spins): (V, V, [V; 2]),
     contact: &mut Contact,
 ) {
-    // Slip is of mid-step: the contact turns by the other half of the step after it.
+    // The slip velocity belongs to mid-step, so the contact rotates by another half step after it.
     let half = turn(mistake, normal, normal, spins, 0.5 * elapsed);
     let along = half * slip * elapsed;
     let along = along - normal * along.dot(&normal);
@@ -494,7 +496,7 @@ fn shear(
     }
 }
 
-/// The moment against rolling on the first side.
+/// Returns the moment on the first side that resists rolling.
 fn roll(
     mistake: Option<Slip>,
     law: &ContactLaw,
