@@ -1,17 +1,17 @@
-//! What is read of the snapshots of a run as they come, where all of them together are too many to keep: a reader sees each
-//! once and leaves tables.
+//! Readers of the snapshots of a run while it runs, for runs with too many snapshots to store. A reader receives each
+//! snapshot once and returns tables.
 
 use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{NotStored, Resolution, RunError, Solver, Watch};
 use std::fmt;
 
-/// A way to read the snapshots of a run.
+/// A named reader of the snapshots of a run.
 #[derive(Clone, Copy)]
 pub struct Reading {
-    /// Its name, which tells runs that are read differently apart.
+    /// Name, which distinguishes runs that are read differently.
     pub name: &'static str,
-    /// A reader that has seen nothing yet, of a scene as the case means it.
+    /// Creates a reader for the scene as the case defines it.
     pub begin: fn(&Scene) -> Box<dyn Reader>,
 }
 
@@ -23,45 +23,45 @@ impl fmt::Debug for Reading {
 
 /// Reads snapshots in order of time.
 pub trait Reader: Send {
-    /// Sees a snapshot.
+    /// Reads a snapshot.
     fn see(&mut self, snapshot: Snapshot);
-    /// What it found.
+    /// Returns the tables.
     fn end(self: Box<Self>) -> Vec<Table>;
 }
 
-/// Numbers under names.
+/// A named table of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Its name.
+    /// Name of the table.
     pub name: String,
     /// Names of the columns.
     pub columns: Vec<String>,
-    /// The columns, each from top to bottom; no number where there is none.
+    /// Columns, each from top to bottom. A missing number is NaN.
     pub values: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// A table without rows.
+    /// Returns a table without rows.
     #[must_use]
     pub fn new(name: &str, columns: &[&str]) -> Self {
         let columns: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
         Self { name: name.to_owned(), values: vec![Vec::new(); columns.len()], columns }
     }
 
-    /// Adds a row; what is missing of it is no number.
+    /// Adds a row. Missing numbers become NaN.
     pub fn push(&mut self, row: &[Option<f64>]) {
         for (at, column) in self.values.iter_mut().enumerate() {
             column.push(row.get(at).copied().flatten().unwrap_or(f64::NAN));
         }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.values.first().map_or(0, Vec::len)
     }
 
-    /// The values of a column.
+    /// Returns the values of a column.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let at = self.columns.iter().position(|column| column == name)?;
@@ -69,10 +69,10 @@ impl Table {
     }
 }
 
-/// Runs a scene with so many threads, and reads its snapshots; without a reading the record keeps them.
+/// Runs a scene with `threads` threads and reads its snapshots. Without a reading, the snapshots stay in the record.
 ///
 /// # Errors
-/// When the solver cannot run the scene or breaks.
+/// When the solver does not support the scene or fails.
 pub fn run(
     solver: &dyn Solver,
     scene: &Scene,
@@ -83,12 +83,12 @@ pub fn run(
     let mut watcher = Watcher { threads, reader: reading.map(|reading| (reading.begin)(scene)) };
     let mut record = solver.run(scene, resolution, &mut watcher)?;
     let Some(mut reader) = watcher.reader else { return Ok((record, Vec::new())) };
-    // What a program leaves comes all at once.
+    // An external program returns all snapshots at once, at the end.
     record.snapshots.drain(..).for_each(|snapshot| reader.see(snapshot));
     Ok((record, reader.end()))
 }
 
-/// Hands snapshots to a reader, and keeps none of those that one takes.
+/// Passes snapshots to a reader and does not keep them. Without a reader it keeps them.
 struct Watcher {
     threads: usize,
     reader: Option<Box<dyn Reader>>,

@@ -1,4 +1,4 @@
-//! The runs that a claim reads: which scene, which solver, how finely.
+//! Runs that a claim reads: scene, solver and resolution.
 
 use crate::data::Data;
 use crate::reading::{Reading, Table};
@@ -8,34 +8,34 @@ use grainbench_scene::solver::Resolution;
 use std::fmt;
 use std::sync::Arc;
 
-/// A change of a scene, by code.
+/// A change of a scene in code.
 pub type Change = Arc<dyn Fn(&mut Scene) + Send + Sync>;
 
-/// One run that a claim reads.
+/// A run that a claim reads.
 #[derive(Clone)]
 pub struct Run {
     /// Variant of the scene.
     pub variant: &'static str,
-    /// Data of others that the scene is made from in place of a variant.
+    /// Third-party data from which the scene is made, instead of a variant.
     pub data: Option<&'static Data>,
-    /// Solver, by name.
+    /// Name of the solver.
     pub solver: &'static str,
     /// Resolution.
     pub resolution: Resolution,
-    /// A change of the scene that belongs to the claim, such as another stiffness in a sweep: its name, which tells
-    /// runs apart, and what it does.
+    /// A change of the scene that belongs to the claim, such as another stiffness in a sweep. Its name distinguishes
+    /// runs.
     pub adjustment: Option<(String, Change)>,
-    /// What is expected of the row.
+    /// Expected outcome of the result.
     pub standing: Standing,
     /// Largest |error| of a known error, in units of the claim's scale; a larger one is red.
     pub known_up_to: f64,
-    /// The smallest set that it belongs to.
+    /// Smallest set to which the run belongs.
     pub set: Set,
-    /// Whether it is there to judge by, and no negative control touches it.
+    /// Reference run: negative controls are not applied to it.
     pub aside: bool,
-    /// What is read of its snapshots, where they are not kept.
+    /// Reading of its snapshots, if they are read and not stored.
     pub reading: Option<Reading>,
-    /// Whether what it leaves is kept with the case: sets that it does not belong to judge that.
+    /// True if its tables are stored with the case. Smaller sets then use the stored result.
     pub kept: bool,
 }
 
@@ -48,35 +48,35 @@ pub struct Made {
     pub is_current: bool,
 }
 
-/// Sets of runs, each with all of those before it.
+/// Set of runs. Each set includes all smaller ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Set {
-    /// What the main job does: at most a few seconds a run.
+    /// Quick runs: at most a few seconds each.
     #[default]
     Main,
-    /// What the tests do beside it.
+    /// Runs that only the tests add.
     Tests,
-    /// What takes minutes.
+    /// Runs that take minutes.
     Long,
-    /// What takes an hour: scenes of the size that a paper has.
+    /// Runs that take an hour, with scenes as large as in a publication.
     Paper,
 }
 
-/// What is expected of a row.
+/// Expected outcome of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Standing {
-    /// It passes.
+    /// The result passes.
     #[default]
     Passes,
-    /// The solver refuses the scene, because it cannot express it.
+    /// The solver rejects the scene because it cannot represent it.
     Refused,
-    /// The error of a method or program that is known to be off here, with the reason: shown amber for as long as it is
-    /// outside what is allowed.
+    /// A documented error of the method or program, with the reason. The result is amber as long as the error exceeds
+    /// the tolerance.
     Known(&'static str),
 }
 
 impl Run {
-    /// A run of a variant as it stands.
+    /// Returns a run of a variant without changes.
     #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self {
@@ -94,20 +94,20 @@ impl Run {
         }
     }
 
-    /// The run of a scene that is made from data of others: only where the user gives it.
+    /// Uses a scene made from third-party data. The run needs data that the user supplies.
     #[must_use]
     pub fn from_data(self, data: &'static Data) -> Self {
         Self { data: Some(data), ..self }
     }
 
-    /// The run with a change of the scene.
+    /// Adds a change of the scene.
     #[must_use]
     pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         self.adjustment = Some((name.to_owned(), Arc::new(change)));
         self
     }
 
-    /// The run of a method that is known to be off here.
+    /// Expects a documented error of the method.
     #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
         Self { standing: Standing::Known(reason), ..self }
@@ -122,55 +122,55 @@ impl Run {
         Self { known_up_to: error, ..self }
     }
 
-    /// The run as one that only the tests do, not the main job.
+    /// Adds the run to the tests only, not to the quick set.
     #[must_use]
     pub fn slow(self) -> Self {
         Self { set: Set::Tests, ..self }
     }
 
-    /// The run as one of the long set.
+    /// Assigns the run to the long set.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
-    /// The run as one of scenes as large as those of a paper.
+    /// Assigns the run to the set of scenes as large as in a publication.
     #[must_use]
     pub fn paper_size(self) -> Self {
         Self { set: Set::Paper, ..self }
     }
 
-    /// The run with a reading of its snapshots, which it does not keep then.
+    /// Reads its snapshots with a reading; they are then not stored.
     #[must_use]
     pub fn read_by(self, reading: Reading) -> Self {
         Self { reading: Some(reading), ..self }
     }
 
-    /// The run as one whose tables are kept with the case, so that it is judged in every set and done in its own.
+    /// Stores its tables with the case. Every set then judges the stored result, and the run's own set repeats the run.
     #[must_use]
     pub fn kept(self) -> Self {
         Self { kept: true, ..self }
     }
 
-    /// The smallest set in which a claim of it can be judged.
+    /// Returns the smallest set in which a claim about this run can be judged.
     #[must_use]
     pub fn judged_in(&self) -> Set {
         if self.kept { Set::Main } else { self.set }
     }
 
-    /// The run as one that judges and is not judged: negative controls leave it alone.
+    /// Makes the run a reference run: negative controls are not applied to it.
     #[must_use]
     pub fn aside(self) -> Self {
         Self { aside: true, ..self }
     }
 
-    /// The same run at another resolution.
+    /// Returns the same run at another resolution.
     #[must_use]
     pub fn at(&self, resolution: Resolution) -> Self {
         Self { resolution, ..self.clone() }
     }
 
-    /// Variant, or data, and adjustment in words.
+    /// Returns the variant or the data, and the adjustment, in words.
     #[must_use]
     pub fn scene_words(&self) -> String {
         let scene = self.data.map_or(self.variant, |data| data.name);
@@ -180,7 +180,7 @@ impl Run {
         }
     }
 
-    /// What tells this run from others of its case.
+    /// Returns a key that distinguishes this run from all runs of its case.
     #[must_use]
     pub fn key(&self) -> String {
         let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
@@ -189,20 +189,20 @@ impl Run {
     }
 }
 
-/// A run that was done: what the scene was meant to be, and what the solver left.
+/// A finished run: its scene and its output.
 #[derive(Clone, Debug)]
 pub struct Done {
-    /// The scene as the case means it. In a negative control the solver was given a wrong one.
+    /// Scene as the case defines it. Under a negative control, the solver got a wrong scene.
     pub scene: Arc<Scene>,
     /// The record.
     pub record: Arc<Record>,
-    /// What was read of its snapshots.
+    /// Tables read from its snapshots.
     pub tables: Arc<Vec<Table>>,
-    /// Of a run that is kept and was not done now: when and by what it was done, in words.
+    /// Provenance of a stored result; none if the run was done now.
     pub kept: Option<Made>,
 }
 
-/// A quantity that the records do not have.
+/// A quantity that the records lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing(pub String);
 
@@ -213,27 +213,27 @@ impl fmt::Display for Missing {
 }
 
 impl Done {
-    /// A run that left a record and nothing else.
+    /// Returns a finished run with a record and no tables.
     #[must_use]
     pub fn new(scene: Arc<Scene>, record: Arc<Record>) -> Self {
         Self { scene, record, tables: Arc::default(), kept: None }
     }
 
-    /// A table that was read of its snapshots.
+    /// Returns a table that was read from its snapshots.
     ///
     /// # Errors
-    /// When there is none of that name.
+    /// When there is no table with this name.
     pub fn table(&self, name: &str) -> Result<&Table, Missing> {
         self.tables.iter().find(|table| table.name == name).ok_or_else(|| Missing(format!("table `{name}`")))
     }
 
-    /// The time series.
+    /// Returns the time series.
     #[must_use]
     pub fn series(&self) -> &Series {
         &self.record.series
     }
 
-    /// A column of the time series.
+    /// Returns a column of the time series.
     ///
     /// # Errors
     /// When there is no such column or it is empty.
@@ -244,7 +244,7 @@ impl Done {
         }
     }
 
-    /// The last value of a column.
+    /// Returns the last value of a column.
     ///
     /// # Errors
     /// When there is no such column or it is empty.
@@ -252,7 +252,7 @@ impl Done {
         Ok(self.column(name)?[self.column(name)?.len() - 1])
     }
 
-    /// The value of a column at a step.
+    /// Returns the value of a column at a step.
     ///
     /// # Errors
     /// When the column is missing or was not sampled at that step.

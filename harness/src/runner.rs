@@ -1,4 +1,4 @@
-//! Does the runs of a case, each once, whoever asks for it, and judges its claims.
+//! Runner: does each run of a case once, and judges the claims of the case.
 
 use crate::case::Case;
 use crate::claim::Claim;
@@ -19,55 +19,54 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// What a run leaves: its record, what was read of its snapshots, and, of a run that is kept and was not done now, when and by
-/// what it was done.
+/// Output of a run: the record, the tables read from its snapshots, and the provenance of a stored result.
 type Left = (Arc<Record>, Arc<Vec<Table>>, Option<Made>);
-/// The place of what a run leaves, which is there once it has been done.
+/// Output of a run; empty until the run is done.
 type Slot = Arc<OnceLock<Result<Left, RunError>>>;
-/// The place of a scene, which is there once somebody has asked for it.
+/// A scene; empty until it is first requested.
 type SceneSlot = Arc<OnceLock<Result<Arc<Scene>, RunError>>>;
-/// Runs by their keys.
+/// Runs by key.
 type Runs = BTreeMap<String, (Run, Result<Done, RunError>)>;
-/// Scenes that were run, with their records, by solver and resolution.
+/// Scenes that were run, with their outputs, by solver and resolution.
 type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 
-/// Does the runs of one case: with the solvers that its claims name, or with one solver in place of them all.
+/// Does the runs of one case with the solvers that its claims name, or with one external solver instead.
 pub struct Runner {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
     stranger: Option<Arc<dyn Solver>>,
-    /// Whether other programs are run even where their runs are stored.
+    /// True if other programs run even if their runs are stored.
     live: bool,
-    /// Whether figures may take as long as the finest levels do.
+    /// True if figures may use the finest levels, which take minutes.
     thorough: bool,
-    /// Whether a stranger must be able to run wrong physics too.
+    /// True if an external solver must also be able to run the wrong physics.
     controlled: bool,
-    /// Threads of a run.
+    /// Number of threads per run.
     threads: usize,
-    /// The largest set of which runs are done now though they are kept.
+    /// Largest set whose runs are repeated even if their results are stored.
     afresh: Option<Set>,
-    /// Where the user has data of others.
+    /// Directory of third-party data.
     data: Option<PathBuf>,
-    /// Runs of scenes as the case means them, by [`Run::key`].
+    /// Runs of the scenes as the case defines them, by [`Run::key`].
     runs: Mutex<Runs>,
-    /// Scenes as the case means them, by [`Run::scene_words`].
+    /// Scenes as the case defines them, by [`Run::scene_words`].
     scenes: Mutex<BTreeMap<String, SceneSlot>>,
-    /// Every run of a scene, right or wrong, by solver and resolution: claims that lead to the same scene share it.
+    /// Every run of a scene, right or wrong, by solver and resolution. Claims with the same scene share it.
     done: Mutex<Slots>,
 }
 
-/// What does a run: a solver by name, as it is or with a defect.
+/// Solver of a run, with or without a defect.
 #[derive(Clone, Copy)]
 struct By<'a> {
     solver: &'a str,
     defect: Option<Defect>,
     resolution: &'a Resolution,
-    /// The negative control that it is for.
+    /// Negative control of the run; none for a run of the claim itself.
     control: Option<&'a control::Control>,
 }
 
 impl Runner {
-    /// A runner that has done nothing yet.
+    /// Returns a runner without finished runs.
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
         let (runs, scenes, done) = (Mutex::default(), Mutex::default(), Mutex::default());
@@ -87,56 +86,56 @@ impl Runner {
         }
     }
 
-    /// A runner that puts one solver in the place of every solver that the claims name. It is given their resolutions,
-    /// to be read as it sees fit.
+    /// Replaces every solver that the claims name by one external solver. This solver interprets their resolutions
+    /// itself.
     #[must_use]
     pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
         Self { stranger: Some(solver), ..self }
     }
 
-    /// The runner that runs other programs even where their runs are stored.
+    /// Sets whether other programs run even if their runs are stored.
     #[must_use]
     pub fn live(self, live: bool) -> Self {
         Self { live, ..self }
     }
 
-    /// The runner whose figures are drawn from the finest runs, which take minutes.
+    /// Sets whether figures may use the finest runs, which take minutes.
     #[must_use]
     pub fn thorough(self, thorough: bool) -> Self {
         Self { thorough, ..self }
     }
 
-    /// The runner whose rows do or do not ask whether a stranger can be fed with their wrong physics.
+    /// Sets whether a result requires that an external solver can run its wrong physics.
     #[must_use]
     pub fn controlled(self, controlled: bool) -> Self {
         Self { controlled, ..self }
     }
 
-    /// The runner whose runs take so many threads each.
+    /// Sets the number of threads per run.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The runner that does runs of sets up to this one even where they are kept.
+    /// Repeats the runs of sets up to this one even if their results are stored.
     #[must_use]
     pub fn afresh(self, set: Set) -> Self {
         Self { afresh: Some(set), ..self }
     }
 
-    /// The runner with the folder in which the user has data of others.
+    /// Sets the directory of third-party data.
     #[must_use]
     pub fn with_data(self, folder: Option<&Path>) -> Self {
         Self { data: folder.map(Path::to_owned), ..self }
     }
 
-    /// Whether figures may take as long as the finest levels do.
+    /// Returns true if figures may use the finest levels, which take minutes.
     #[must_use]
     pub const fn is_thorough(&self) -> bool {
         self.thorough
     }
 
-    /// The claims: all of the case, or those that are fair to a stranger.
+    /// Returns all claims of the case, or only those that apply to the external solver.
     #[must_use]
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
@@ -146,16 +145,16 @@ impl Runner {
         claims
     }
 
-    /// The case.
+    /// Returns the case.
     #[must_use]
     pub const fn case(&self) -> &'static Case {
         self.case
     }
 
-    /// A run, done now or before.
+    /// Returns a run; does it if it is not yet done.
     ///
     /// # Errors
-    /// When the solver cannot run the scene or breaks.
+    /// When the solver does not support the scene or fails.
     pub fn run(&self, run: &Run) -> Result<Done, RunError> {
         let key = run.key();
         if let Some((_, done)) = self.runs.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
@@ -167,14 +166,14 @@ impl Runner {
         runs.entry(key).or_insert_with(|| (run.clone(), done)).1.clone()
     }
 
-    /// Every run done so far, in the order of their keys.
+    /// Returns all successful runs so far, in the order of their keys.
     #[must_use]
     pub fn done(&self) -> Vec<(Run, Done)> {
         let runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         runs.values().filter_map(|(run, done)| Some((run.clone(), done.as_ref().ok()?.clone()))).collect()
     }
 
-    /// Whether all runs of a claim can be had on this machine; a claim that cannot be judged has no control either.
+    /// Returns true if all runs of a claim are available on this machine. Otherwise the claim has no control either.
     #[must_use]
     pub fn is_available(&self, claim: &Claim) -> bool {
         let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
@@ -183,7 +182,7 @@ impl Runner {
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
     }
 
-    /// Judges a claim. What a stranger passes and cannot be fed with the wrong physics of, it has not earned.
+    /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
         let row = self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect());
@@ -199,14 +198,14 @@ impl Runner {
         }
     }
 
-    /// Whether a claim is fed with its wrong physics once it was judged: what a stranger cannot express it cannot express wrongly
-    /// either, and wrong physics that it cannot express tells nothing of a row that is red anyway.
+    /// Returns true if the control of a judged claim is to be run. An external solver skips it in two cases: the claim
+    /// is unsupported, or the solver cannot run the wrong physics.
     #[must_use]
     pub fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
         self.stranger.is_none() || verdict.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
     }
 
-    /// Why a stranger cannot run the wrong physics of a claim.
+    /// Returns the reason why an external solver cannot run the wrong physics of a claim.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
         let asked = self.controlled && self.stranger.is_some();
         let wrong = |run: &Run| match self.run_wrong(claim, run) {
@@ -216,7 +215,7 @@ impl Runner {
         if asked { claim.runs.iter().find_map(wrong) } else { None }
     }
 
-    /// Feeds a claim with its wrong physics; the row of a known error with a solver that does not have it.
+    /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs.
     #[must_use]
     pub fn control(&self, claim: &Claim) -> Control {
         let start = Instant::now();
@@ -231,16 +230,16 @@ impl Runner {
         }
     }
 
-    /// A run of a claim under its wrong physics.
+    /// Returns a run of a claim under its wrong physics.
     ///
     /// # Errors
-    /// When the solver cannot run the scene or breaks.
+    /// When the solver does not support the scene or fails.
     pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<Done, RunError> {
         let control = Some(&claim.control);
         let mut by = By { solver: run.solver, defect: None, resolution: &run.resolution, control };
         match &claim.control.wrong {
             _ if run.aside => self.run(run),
-            // What is made wrong is our own side.
+            // Only our own side gets the wrong physics.
             Wrong::Ours(_) | Wrong::OtherSolver(_) if self.solvers.is_program(run.solver) => self.run(run),
             Wrong::Scene(change) | Wrong::Ours(change) => self.done_by(run, by, Some(&**change)),
             Wrong::Solver(defect) => {
@@ -263,7 +262,7 @@ impl Runner {
         }
     }
 
-    /// A run by a solver, of the scene as the case means it or with a change.
+    /// Returns a run by a solver, with the scene of the case or with a changed scene.
     fn done_by(&self, run: &Run, by: By<'_>, wrong: Option<&dyn Fn(&mut Scene)>) -> Result<Done, RunError> {
         let scene = self.scene(run)?;
         let given = match wrong {
@@ -296,7 +295,7 @@ impl Runner {
         Ok(Done { scene, record, tables, kept })
     }
 
-    /// What is kept of a run.
+    /// Returns the stored result of a run.
     fn read_back(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Left, RunError> {
         let of_control = by.control.map(|control| control.name);
         let none = || self.unusable(run, "nothing is kept of it; `grainbench reference keep` does it".to_owned());
@@ -305,14 +304,15 @@ impl Runner {
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
     }
 
-    /// Whether what is kept of a run is taken: it belongs to a larger set than those that are done now.
+    /// Returns true if the stored result of a run is used. This is so if the run belongs to a larger set than the runs
+    /// done now.
     fn is_read_back(&self, run: &Run, control: Option<&control::Control>) -> bool {
         let set = control.map_or(run.set, |control| run.set.max(control.set));
         let is_wanted_now = self.live && self.solvers.is_program(run.solver);
         run.kept && self.stranger.is_none() && !is_wanted_now && self.afresh.is_none_or(|afresh| set > afresh)
     }
 
-    /// The place of what a run leaves: one for each scene, solver, resolution and reading.
+    /// Returns the slot for the output of a run: one per scene, solver, resolution and reading.
     fn slot(&self, run: &Run, by: By<'_>, scene: &Arc<Scene>) -> Slot {
         let key = format!("{}|{:?}|{:?}|{:?}", by.solver, by.defect, by.resolution, run.reading);
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
@@ -335,7 +335,7 @@ impl Runner {
         Ok((Arc::new(record), Arc::new(tables), None))
     }
 
-    /// The scene of a run as the case means it.
+    /// Returns the scene of a run as the case defines it.
     ///
     /// # Errors
     /// When the scene file is wrong.
@@ -357,14 +357,15 @@ impl Runner {
         .clone()
     }
 
-    /// The scene that is made from data of others.
+    /// Returns a scene made from third-party data.
     fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
         let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
         let made = folder.and_then(|folder| (data.scene)(folder).map_err(NotMade::into_words));
         made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
-    /// The scene that the solver of a run is given: as the case means it, or, where it is `wrong`, as the claim's control has it.
+    /// Returns the scene that the solver of a run gets: as the case defines it or, if `wrong`, as the control changes
+    /// it.
     ///
     /// # Errors
     /// When the scene file is wrong.
@@ -380,12 +381,12 @@ impl Runner {
         }
     }
 
-    /// The solver that does the runs of a name.
+    /// Returns the solver for a name, or the external solver.
     fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
         self.stranger.clone().or_else(|| self.solvers.find(name))
     }
 
-    /// What rows call the solver of a run.
+    /// Returns the name of the solver of a run in results.
     fn solver_name(&self, run: &Run) -> String {
         self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
     }
@@ -394,11 +395,11 @@ impl Runner {
         RunError::Unsupported { solver: self.solver_name(run), reason }
     }
 
-    /// What three levels of resolution tell of a claim of one run: at its own, and at two coarser ones, or at its own
-    /// and two finer ones where there is nothing coarser.
+    /// Estimates the numerical uncertainty of a claim with one run from three resolution levels. They are its own level
+    /// and two coarser ones, or two finer ones if there is no coarser level.
     ///
     /// # Errors
-    /// Says why there is no estimate.
+    /// Returns the reason why there is no estimate.
     pub fn estimate(&self, claim: &Claim) -> Result<Estimate, String> {
         let [run] = &claim.runs[..] else { return Err("it reads more than one run".to_owned()) };
         let formal = if Method::of(run.solver) == Some(Method::Rigid) { 1.0 } else { 2.0 };
@@ -423,7 +424,8 @@ impl Runner {
         let values = [found[0].1, found[1].1, found[2].1];
         let (order, safety, mut uncertainty) = of_finest(values, formal);
         if at_coarsest {
-            // Of the coarsest level: how far it is from the finest, and what that one is uncertain by.
+            // Uncertainty of the coarsest level: its distance from the finest level plus the uncertainty of the finest
+            // level.
             uncertainty += (values[2] - values[0]).abs();
         }
         let [a, b, c] = found.map(|(level, _)| level);
@@ -440,20 +442,20 @@ impl Runner {
         })
     }
 
-    /// How far a claim may be off, of these runs, and how that was made: what it says, or what is stored of it where that is
-    /// less; none where an estimate should be stored and is not.
+    /// Returns the tolerance of a claim for these runs, and its origin. A stored estimate replaces the stated tolerance
+    /// if it is smaller. Returns none if an estimate is required and not stored.
     #[must_use]
     pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, tolerance::Made)> {
         let stated = (claim.tolerance.of(done), claim.tolerance.made_without_estimate());
         if claim.tolerance.made != tolerance::Made::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
-        // A bound below its estimate is a judgement, and says so.
+        // A stated bound below the estimate counts as engineering judgement.
         let found = self.solvers.uncertainty(self.case, claim)?;
         Some(if found < claim.tolerance.up_to { (found, tolerance::Made::Estimated) } else { stated })
     }
 
-    /// The row of a claim, from its runs.
+    /// Returns the result of a claim from its runs.
     fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
         let first = claim.runs.first();
         let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
@@ -476,7 +478,7 @@ impl Runner {
             Ok(done) => {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
-                    // A solver of another's need not tell all that ours do.
+                    // An external solver need not report every quantity that our solvers report.
                     Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
                     Ok(found) => {
@@ -503,7 +505,7 @@ impl Runner {
         row
     }
 
-    /// The row says which programs it was compared with, and what was not run now.
+    /// Adds the programs of a comparison, and the stored results that were used, to the source of a result.
     fn with_programs(&self, mut row: Verdict, done: &[Done]) -> Verdict {
         for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
             row.source.push_str(&format!(": {}", run.options.join(", ")));
@@ -517,7 +519,7 @@ impl Runner {
     }
 }
 
-/// A run of which what was read is made wrong.
+/// Changes the tables of a run.
 fn misread(mut done: Done, change: fn(&mut [Table])) -> Done {
     change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
     done

@@ -1,39 +1,38 @@
-//! Whom a gate is fair to: the solvers that it names, or any solver.
+//! Scope of a claim: only the solvers that it names, or any solver of a kind.
 
 use grainbench_scene::solver::Solver;
 
-/// Whom a gate may judge. A case says it for every gate; there is no default.
+/// Solvers to which a claim applies. Every case states it for each claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// The solvers that its runs name: it judges a program's convention, its order in Δt, the compliance of its
-    /// contact, or its agreement with one other program.
+    /// The solvers that its runs name. The claim depends on the convention of a program, its order in Δt, the
+    /// compliance of its contacts, or its agreement with another program.
     Named,
-    /// Any solver that can express the scene. The expectation is physics that the scene fixes, the tolerance leaves
-    /// room for what the scene leaves open (torque arm, cap on the dashpot), and the negative control is a wrong scene,
-    /// so that it can be tried on a stranger too.
+    /// Any solver that can run the scene. The scene determines the expectation, and the tolerance allows for
+    /// conventions that it leaves open, such as lever arm and limit on the dashpot. The negative control is a wrong
+    /// scene, so that an external solver can run it too.
     AnySolver,
-    /// The same of any solver whose bodies deform. The tolerance leaves room for the discretisation by the row's cells with a
-    /// method of second order.
+    /// Any solver with deformable bodies. The tolerance allows for the discretisation error of a second-order method
+    /// with the cells of the run.
     AnyContinuum,
-    /// The same of any solver whose contacts have the springs and dashpots of the scene: what rigid contacts do not have is not
-    /// asked of them.
+    /// Any solver whose contacts have the springs and dashpots of the scene. It excludes rigid contacts.
     AnySprings,
 }
 
 impl Scope {
-    /// Whether solvers may be judged that the case does not name.
+    /// Returns true if the claim can apply to solvers that the case does not name.
     #[must_use]
     pub const fn is_open(self) -> bool {
         !matches!(self, Self::Named)
     }
 
-    /// Whether what grains do tells it, whatever is inside them.
+    /// Returns true if only the motion of grains is measured, not fields inside them.
     #[must_use]
     pub const fn is_of_grains(self) -> bool {
         matches!(self, Self::AnySolver | Self::AnySprings)
     }
 
-    /// The solvers in a word, for lists of claims.
+    /// Returns the scope as one word, for lists of claims.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -44,7 +43,7 @@ impl Scope {
         }
     }
 
-    /// Whether it is asked of a solver that the case does not name.
+    /// Returns true if the claim applies to a solver that the case does not name.
     #[must_use]
     pub fn is_asked_of(self, solver: &dyn Solver) -> bool {
         match self {

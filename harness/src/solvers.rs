@@ -1,4 +1,4 @@
-//! The solvers that are handed to the harness, which knows none itself.
+//! Interface to the solvers, which the caller supplies; the harness knows none.
 
 use crate::case::Case;
 use crate::claim::Claim;
@@ -10,80 +10,81 @@ use grainbench_scene::solver::{Defect, RunError, Solver};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What is kept of a run with its case.
+/// Stored result of a run.
 pub struct Kept {
-    /// Its record, without snapshots.
+    /// Record without snapshots.
     pub record: Record,
-    /// What was read of them.
+    /// Tables read from the snapshots.
     pub tables: Vec<Table>,
     /// Provenance.
     pub made: Made,
 }
 
-/// A program beside the solvers of the registry.
+/// An external solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stranger {
     /// Its name.
     pub name: String,
-    /// Time steps that it is asked for, parts of the critical one; the usual ones where it names none.
+    /// Time steps to run it with, as fractions of the critical time step; empty for the defaults.
     pub fractions: Vec<f64>,
-    /// Cells per reference length that it is asked for; the usual ones where it names none.
+    /// Cells per reference length to run it with; empty for the defaults.
     pub cells: Vec<f64>,
-    /// Whether its contacts have springs.
+    /// True if its contacts have springs.
     pub has_springs: bool,
-    /// Whether its bodies deform.
+    /// True if its bodies deform.
     pub deforms: bool,
-    /// Whether it stays from run to run.
+    /// True if its process continues from run to run.
     pub stays: bool,
 }
 
-/// Solvers by name, and the runs of other programs that are kept.
+/// Solvers by name, and stored runs of other programs.
 pub trait Solvers: Send + Sync {
-    /// The solver of a name.
+    /// Returns the solver with a name.
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>>;
 
-    /// The same with a limit to the time that a run of another program may take.
+    /// Returns the solver with a name, with a time limit on runs of another program.
     fn find_within(&self, name: &str, _limit: Duration) -> Option<Arc<dyn Solver>> {
         self.find(name)
     }
 
-    /// The same with a defect, where it can have one.
+    /// Returns the solver with a name and a defect; none if it does not support defects.
     fn with_defect(&self, _name: &str, _defect: Defect) -> Option<Arc<dyn Solver>> {
         None
     }
 
-    /// Whether a name is that of another program.
+    /// Returns true if a name refers to another program.
     fn is_program(&self, _name: &str) -> bool {
         false
     }
 
-    /// Programs beside the solvers of the registry.
+    /// Returns the external solvers.
     fn strangers(&self) -> Vec<Stranger> {
         Vec::new()
     }
 
-    /// What tells finished runs of a name apart beside it: of a program that may change, when it was read.
+    /// Returns a string that, together with the name, identifies finished runs. For a program that may change, it is a
+    /// hash of its files or the time when they were read.
     fn edition(&self, _name: &str) -> String {
         String::new()
     }
 
-    /// The stored record of a run of another program; none where nothing is stored.
+    /// Returns the stored record of a run of another program; none if there is none.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
         None
     }
 
-    /// What is kept of a run of any solver whose snapshots are read, with the scene that it was given, which a negative
-    /// control of this name changed; none where nothing is kept.
+    /// Returns the stored result of a run whose snapshots are read; none if there is none. `_scene` is the scene that
+    /// the solver got, and `_control` names the negative control that changed it.
     fn kept(&self, _case: &Case, _run: &Run, _scene: &Scene, _control: Option<&str>) -> Option<Result<Kept, RunError>> {
         None
     }
 
-    /// The stored numerical uncertainty of a claim's value, in units of its scale.
+    /// Returns the stored numerical uncertainty of a claim's value, in units of the claim's scale.
     fn uncertainty(&self, _case: &Case, _claim: &Claim) -> Option<f64> {
         None
     }
 
-    /// Whether a record is stored of a run of another program.
+    /// Returns true if a record of a run of another program is stored.
     fn is_stored(&self, _case: &Case, _run: &Run) -> bool {
         false
     }

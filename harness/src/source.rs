@@ -1,23 +1,23 @@
-//! Where an expected value comes from. Handles of works exist only where files with provenance do: they are made from
-//! those files when the cases are built.
+//! Sources of expected values. A cited work exists only if its file with provenance exists, because the constants are
+//! generated from these files when the cases are built.
 
-/// A source of expected values.
+/// Source of an expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Derived: an equation or a law, in words; the derivation stands beside the case.
+    /// Derived: an equation or a law, in words. The derivation is stored with the case.
     Derived(&'static str),
-    /// Printed in a work, at a place, with what is printed there.
+    /// Printed in a cited work: the place in the work and the printed statement.
     Printed(&'static Work, &'static str),
-    /// A program, whose run is stored or done now.
+    /// Another program, whose run is stored or done now.
     Program,
-    /// Another run of ours, in words: the same solver at a finer resolution, or another method from the same start. It shows
-    /// that our own results agree, and nothing from outside.
+    /// Another of our runs, in words: the same solver at a finer resolution, or another method from the same initial
+    /// state. It shows only that our own results agree.
     Ourselves(&'static str),
-    /// What the solver gave when the row was written, and nothing else.
+    /// The value of the same solver when the claim was written.
     Regression(&'static str),
 }
 
-/// What kind of work it is.
+/// Kind of cited work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A paper or a book.
@@ -28,32 +28,32 @@ pub enum Kind {
     Prototype,
 }
 
-/// A work with a folder of its own, which holds its provenance.
+/// A cited work. Its folder holds its provenance.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Kind.
+    /// Kind of work.
     pub kind: Kind,
-    /// Folder below the references, such as `literature/bardenhagen-2000`.
+    /// Folder in the directory of references, such as `literature/bardenhagen-2000`.
     pub id: &'static str,
-    /// Author, year, title: how it is cited in a row.
+    /// Citation in results: author, year, title.
     pub cited: &'static str,
 }
 
-/// A number that a work gives.
+/// A number from a cited work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cited {
     /// The work.
     pub work: &'static Work,
-    /// What it is the value of, and where it stands.
+    /// Quantity and its place in the work.
     pub what: &'static str,
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// How far the work says that it may be off; 0 where it says nothing.
+    /// Uncertainty that the work states; 0 if it states none.
     pub uncertainty: f64,
 }
 
 impl Cited {
-    /// The source of the number.
+    /// Returns the source of the number.
     #[must_use]
     pub const fn source(&self) -> Source {
         Source::Printed(self.work, self.what)
@@ -61,7 +61,7 @@ impl Cited {
 }
 
 impl Source {
-    /// In words.
+    /// Returns the source in words.
     #[must_use]
     pub fn words(self) -> String {
         match self {
@@ -72,7 +72,7 @@ impl Source {
         }
     }
 
-    /// The folder with its provenance, where it is a work.
+    /// Returns the cited work, if the source is one.
     #[must_use]
     pub const fn work(self) -> Option<&'static Work> {
         match self {

@@ -1,28 +1,30 @@
-//! Means over time with confidence intervals, for what can no longer be compared moment by moment.
+//! Time averages with confidence intervals, for series that can no longer be compared sample by sample.
 
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
-/// How many blocks a course is cut into.
+/// Number of blocks of a series.
 pub const BLOCKS: usize = 8;
-/// The part of all runs whose difference lies within the interval.
+/// Confidence level of the intervals.
 pub const CONFIDENCE: f64 = 0.99;
 
-/// The means of two courses, and how well their difference is known.
+/// Means of two series, and the confidence interval of their difference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// Mean of the first.
+    /// Mean of the first series.
     pub first: f64,
-    /// Mean of the second.
+    /// Mean of the second series.
     pub second: f64,
-    /// Half of the confidence interval of their difference.
+    /// Half-width of the confidence interval of the difference.
     pub half_width: f64,
 }
 
-/// The difference of two courses sampled at the same times, by block averages: both are cut into `blocks` of equal
-/// length (what is left over at the start is not used), and the differences of the blocks' means are taken for
-/// independent, so that their mean is known to t s/√n with Student's t for n − 1 degrees of freedom and their standard
-/// deviation s (Flyvbjerg & Petersen 1989). What both do together, such as gaining speed, is not in the differences.
-/// None where a block would be empty.
+/// Returns the difference of two series with the same sample times, from block averages.
+///
+/// Both series are cut into `blocks` blocks of equal length; samples left over at the start are not used. The
+/// differences of the block means are treated as independent. Their mean then has a half-width t s/√n, with their
+/// standard deviation s and Student's t for n − 1 degrees of freedom (Flyvbjerg & Petersen 1989). A trend that both
+/// series share cancels in the differences. Returns none if a block would be empty, or if the lengths of the series
+/// differ.
 #[must_use]
 pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estimate> {
     let length = first.len().min(second.len()) / blocks.max(2);
@@ -43,7 +45,7 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
 }
 
-/// Smallest, middle and largest of some values; none of none.
+/// Returns the minimum, the median and the maximum; none without values.
 #[must_use]
 pub fn range(values: &[f64]) -> Option<[f64; 3]> {
     let mut sorted = values.to_vec();
@@ -53,14 +55,14 @@ pub fn range(values: &[f64]) -> Option<[f64; 3]> {
     Some([*first, middle, *last])
 }
 
-/// The middle of some values; not a number of none.
+/// Returns the median; NaN without values.
 #[must_use]
 pub fn median(values: &[f64]) -> f64 {
     range(values).map_or(f64::NAN, |[_, middle, _]| middle)
 }
 
-/// Half of the interval that the difference of two more values of a kind lies in, from some independent ones: t s √2
-/// with their standard deviation s. None where there are too few, or all are one.
+/// Returns the half-width t s √2 of the interval that contains the difference of two further values of the same kind.
+/// The standard deviation s is from independent values. Returns none if there are too few values or all are equal.
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
@@ -70,7 +72,8 @@ pub fn spread(values: &[f64]) -> Option<f64> {
     (half_width > 0.0).then_some(half_width)
 }
 
-/// The mean of some independent values, and half of its confidence interval: t s/√n. None where there are too few.
+/// Returns the mean of independent values and the half-width t s/√n of its confidence interval. Returns none if there
+/// are too few values.
 #[must_use]
 pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
@@ -79,8 +82,8 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
 }
 
-/// The mean of some independent values, and half of the interval about it that one more of their kind lies in: t s √(1
-/// + 1/n) with their standard deviation s. None where there are too few, or all are one.
+/// Returns the mean of independent values and the half-width t s √(1 + 1/n) of the interval that contains one further
+/// value of the same kind. Here s is the standard deviation. Returns none if there are too few values or all are equal.
 #[must_use]
 pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
@@ -88,7 +91,7 @@ pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     Some((values.iter().sum::<f64>() / count, half_width))
 }
 
-/// Student's t of the two-sided interval.
+/// Returns Student's t of the two-sided interval.
 fn quantile(degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
@@ -115,7 +118,7 @@ mod tests {
         assert!(median(&[4.0, 1.0, 2.0, 3.0]) == 2.5 && median(&[]).is_nan());
     }
 
-    /// Numbers that look drawn by lot, between −0.5 and 0.5.
+    /// Returns pseudo-random numbers between −0.5 and 0.5.
     fn noise(seed: u64) -> impl Iterator<Item = f64> {
         let mut state = seed;
         std::iter::repeat_with(move || {
@@ -124,7 +127,7 @@ mod tests {
         })
     }
 
-    /// The interval has the difference in it about as often as it says.
+    /// The interval contains the true difference about as often as the confidence level states.
     #[test]
     fn the_interval_holds_what_it_says() {
         let trend = |at: usize| 0.05 * at as f64;

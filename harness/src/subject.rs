@@ -1,9 +1,8 @@
-//! What accuracy is measured by: a quantity with an exact answer, and the scene in which each kind of solver is asked
-//! for it.
+//! Target quantities of accuracy studies: a quantity with an exact solution, and the scene for each method.
 //!
-//! A case's subjects are taken from its own claims, so that a new case has its diagram without another line: rows of
-//! one quantity against an analytic answer, each solver in the scene that its row gives it. A folder with a `cost.rs`
-//! says more, such as a sweep of stiffness.
+//! The target quantities of a case come from its claims, so that a new case has its diagram without further input. They
+//! are quantities with an analytic solution, each method with the scene of its claim. A case folder with a `cost.rs`
+//! adds others, such as a sweep of stiffness.
 
 use crate::case::Case;
 use crate::claim::{Claim, Measure};
@@ -12,42 +11,43 @@ use crate::run::{Change, Standing};
 use crate::scope::Scope;
 use grainbench_scene::solver::{Method, Resolution};
 
-/// The scene in which one kind of solver is asked.
+/// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]
 pub struct Lane {
-    /// The kind.
+    /// Method.
     pub method: Method,
-    /// Knobs beside the resolution, in words; empty where there are none.
+    /// Parameters other than the resolution, in words; empty if there are none.
     pub knobs: String,
-    /// What makes the case's scene that of this lane.
+    /// Change that turns the scene of the case into the scene of this setup.
     pub prepare: Option<Change>,
-    /// Resolution about which the solver's knobs are turned.
+    /// Resolution about which the study varies the resolution.
     pub about: Resolution,
 }
 
-/// A quantity with an exact answer.
+/// A target quantity with an exact solution.
 #[derive(Clone)]
 pub struct Subject {
-    /// The case.
+    /// Case.
     pub case: &'static Case,
     /// Variant of its scene.
     pub variant: &'static str,
-    /// Quantity, in words.
+    /// Quantity in words.
     pub quantity: String,
     /// Its unit.
     pub unit: &'static str,
-    /// Where the answer comes from.
+    /// Source of the exact solution.
     pub source: String,
-    /// How it is measured.
+    /// Reads the measured value from the runs.
     pub measure: Measure,
-    /// Who is asked.
+    /// Solver setups.
     pub lanes: Vec<Lane>,
 }
 
-/// Subjects taken from claims, of one case at most.
+/// Largest number of target quantities from the claims of one case.
 const MOST: usize = 2;
 
-/// Subjects from the claims of a case: of those with the most kinds of solvers, the first of each variant.
+/// Returns the target quantities from the claims of a case: the first of each variant, those with the most methods
+/// first.
 #[must_use]
 pub fn from_claims(case: &'static Case) -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
@@ -70,11 +70,11 @@ pub fn from_claims(case: &'static Case) -> Vec<Subject> {
     chosen
 }
 
-/// Adds what a claim asks for to the subjects so far.
+/// Adds the quantity of a claim to the target quantities.
 fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
     let [run] = claim.runs.as_slice() else { return };
     let Some(method) = Method::of(run.solver) else { return };
-    // What is read of many snapshots takes long runs.
+    // Readings of many snapshots need long runs.
     if claim.evidence() != Evidence::Analytic
         || run.standing == Standing::Refused
         || run.reading.is_some()
@@ -82,7 +82,7 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
     {
         return;
     }
-    // Rows of one quantity, word for word, have one expectation: what follows a comma may be what is expected.
+    // Claims with the same wording have the same expectation, because text after a comma may state it.
     let quantity = claim.quantity.clone();
     let lane = |method, about| Lane {
         method,

@@ -1,28 +1,28 @@
-//! How far a quantity may be off, how that number was made, and why.
+//! Tolerances: their value, origin and reason.
 
 use crate::run::Done;
 use serde::{Deserialize, Serialize};
 
-/// How a tolerance was made.
+/// Origin of a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Made {
-    /// By the formula in its reason.
+    /// From the formula in its reason.
     Computed,
-    /// From three levels of resolution: observed order and factor of safety, stored with provenance.
+    /// From three resolution levels: observed order and factor of safety, stored with provenance.
     Estimated,
-    /// In units of a confidence interval that the runs themselves give.
+    /// In units of a confidence interval from the runs themselves.
     Interval,
-    /// None: the bound or the bits hold or do not.
+    /// Zero: the bound or the equality of bits holds exactly or fails.
     Exact,
-    /// Required: a number that was asked for before the solver existed.
+    /// Required before the solver existed.
     Required,
-    /// By judgement: no formula and no estimate stand behind it.
+    /// Engineering judgement, without formula or estimate.
     Judged,
 }
 
 impl Made {
-    /// In a word.
+    /// Returns the origin as one word.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -39,20 +39,21 @@ impl Made {
 /// A tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Largest |error| that passes; of one that is estimated, that of solvers of others; of rounding, in each step.
+    /// Largest |error| that passes. For an estimate, the limit for external solvers; for rounding, the limit per step.
     allowed: f64,
-    /// The most that an estimate may be: above it stands what passes of solvers of others, as a judgement.
+    /// Largest value of an estimate. Above it, the limit for external solvers applies as engineering judgement.
     pub(crate) up_to: f64,
-    /// Whether it grows with the steps of the first run.
+    /// True if it grows with the number of steps of the first run.
     each_step: bool,
-    /// How that number was made.
+    /// Origin of the tolerance.
     pub made: Made,
-    /// Why it is what it is.
+    /// Reason for the tolerance.
     pub because: String,
 }
 
 impl Tolerance {
-    /// How it was made where no estimate is at hand: the most that an estimate may be is a judgement.
+    /// Returns the origin of the tolerance without a stored estimate. The largest value of an estimate is engineering
+    /// judgement.
     #[must_use]
     pub const fn made_without_estimate(&self) -> Made {
         match self.made {
@@ -61,14 +62,14 @@ impl Tolerance {
         }
     }
 
-    /// Largest |error| that passes of these runs; of none, in one step.
+    /// Returns the largest |error| that passes for these runs. Without runs, it is the value for one step.
     #[must_use]
     pub fn of(&self, done: &[Done]) -> f64 {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 
-    /// One that is estimated as one whose estimate may be larger than what passes of solvers of others: it is uncertain by more
-    /// than it is off.
+    /// Lets the estimate exceed the limit for external solvers, for a value whose numerical uncertainty is larger than
+    /// its error.
     #[must_use]
     pub fn up_to(self, most: f64) -> Self {
         Self { up_to: most, ..self }
@@ -83,56 +84,59 @@ impl Tolerance {
     }
 }
 
-/// By the formula that the reason states.
+/// Returns a tolerance from the formula that the reason states.
 #[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Computed, allowed, because)
 }
 
-/// By rounding: a step rounds positions and velocities, each to half a unit in the last place, in the run and in what it is
-/// compared with, so that N steps put them apart by at most 2 N ε in units of what is rounded; `lever` is that in units of the
-/// row. N is the number of steps of the first run.
+/// Returns a tolerance for rounding errors.
+///
+/// Each step rounds positions and velocities by half a unit in the last place, in the run and in its reference. After N
+/// steps they differ by at most 2 N ε, in units of the rounded quantity; N is the number of steps of the first run.
+/// `lever` converts these units to units of the result.
 #[must_use]
 pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
     let because = format!("{}; {:.3} ε in each step", because.into(), 2.0 * lever);
     Tolerance { each_step: true, ..computed(2.0 * lever * f64::EPSILON, because) }
 }
 
-/// By three levels of resolution, whose estimate is stored; no wider than `most`.
+/// Returns a tolerance from three resolution levels, whose estimate is stored. It is at most `most`.
 #[must_use]
 pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Estimated, most, because)
 }
 
-/// One confidence interval, which the runs themselves give and errors are divided by.
+/// Returns one confidence interval, which comes from the runs themselves and is the unit of the error.
 #[must_use]
 pub fn one_interval(because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Interval, 1.0, because)
 }
 
-/// No tolerance: the bound holds or does not, bits are the same or not.
+/// Returns a tolerance of zero, for a bound or for the equality of bits.
 #[must_use]
 pub fn exactly(because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Exact, 0.0, because)
 }
 
-/// What was asked for before the solver existed.
+/// Returns a tolerance that was required before the solver existed.
 #[must_use]
 pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Required, allowed, because)
 }
 
-/// Why an order may be off.
+/// Reason for the tolerance of an order of convergence.
 pub(crate) const ASYMPTOTIC: &str =
     "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range";
 
-/// Of an order of convergence: a tenth of the method's, as ASME V&V 20-2009 (section 2) asks of levels in the asymptotic range.
+/// Returns the tolerance of an order of convergence: 0.1 of the method's order, as ASME V&V 20-2009 (section 2)
+/// requires of levels in the asymptotic range.
 #[must_use]
 pub fn asymptotic(order: f64) -> Tolerance {
     required(0.1 * order, ASYMPTOTIC)
 }
 
-/// By judgement, with the physics that it leaves room for.
+/// Returns a tolerance from engineering judgement. The reason names the physics that it allows for.
 #[must_use]
 pub fn judged(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(Made::Judged, allowed, because)

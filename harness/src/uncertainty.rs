@@ -1,18 +1,18 @@
-//! How far a value may be off because cells and steps are finite, from three levels of resolution.
+//! Numerical uncertainty from finite cells and time steps, estimated from three resolution levels.
 //!
-//! With values f₁, f₂, f₃ of levels h, rh, r²h the observed order is p = ln((f₃ − f₂)/(f₂ − f₁))/ln r, and the value of
-//! level h is uncertain by U = F_s |f₁ − f₂|/(rᵖ − 1). The factor of safety F_s is 1.25 where p is within a tenth of
-//! the order that the method has, and 3 elsewhere, with p between ½ and that order. Where the differences change sign
-//! or grow, U is three times the largest of them (ASME V&V 20-2009, section 2; Eça & Hoekstra 2014).
+//! With values f₁, f₂, f₃ at levels h, rh, r²h, the observed order is p = ln((f₃ − f₂)/(f₂ − f₁))/ln r. The uncertainty
+//! at level h is U = F_s |f₁ − f₂|/(rᵖ − 1). The factor of safety F_s is 1.25 if p differs from the method's order by
+//! at most 10 %, and 3 otherwise. In U, p is limited to values from ½ to the method's order. If the differences change
+//! sign or grow, U is three times the larger difference (ASME V&V 20-2009, section 2; Eça & Hoekstra 2014).
 
 use serde::{Deserialize, Serialize};
 
-/// Ratio of one level's step or cell to that of the next finer one.
+/// Ratio of a level's step or cell to the step or cell of the next finer level.
 pub const RATIO: f64 = 2.0;
-/// The lowest order that is believed.
+/// Smallest order used in an estimate.
 const LEAST_ORDER: f64 = 0.5;
 
-/// What three levels tell.
+/// Result of three resolution levels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Variant of the claim.
@@ -25,18 +25,18 @@ pub struct Estimate {
     pub quantity: String,
     /// Resolutions of the levels, fine to coarse.
     pub levels: [String; 3],
-    /// What was measured at each, in units of the claim's scale, from what is expected.
+    /// Measured error at each level, in units of the claim's scale.
     pub values: [f64; 3],
-    /// Observed order; none where the differences change sign or grow.
+    /// Observed order; none if the differences change sign or grow.
     pub order: Option<f64>,
     /// Factor of safety.
     pub safety: f64,
-    /// U of the claim's level, in units of the claim's scale.
+    /// Uncertainty U at the claim's level, in units of the claim's scale.
     pub uncertainty: f64,
 }
 
-/// Order, factor of safety and uncertainty of the finest of three values, fine to coarse, of a method of order
-/// `formal`.
+/// Returns order, factor of safety and uncertainty of the finest of three values, which are ordered from fine to
+/// coarse. `formal` is the order of the method.
 #[must_use]
 pub fn of_finest([fine, middle, coarse]: [f64; 3], formal: f64) -> (Option<f64>, f64, f64) {
     let (near, far) = (fine - middle, middle - coarse);
@@ -59,7 +59,7 @@ mod tests {
         let (order, safety, uncertainty) = of_finest([1.3, 2.2, 5.8], 2.0);
         assert!(order.is_some_and(|order| (order - 2.0).abs() < 1e-12) && safety == 1.25);
         assert!((uncertainty - 1.25 * 0.3).abs() < 1e-12);
-        // Of first order where the method claims the second: three times what is left.
+        // First order instead of the second order of the method: three times the remaining error.
         let (order, safety, uncertainty) = of_finest([1.3, 1.6, 2.2], 2.0);
         assert!(order.is_some_and(|order| (order - 1.0).abs() < 1e-12) && safety == 3.0);
         assert!((uncertainty - 0.9).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! How a claim ended: one row of every table the project prints, and the one place where a row is made.
+//! Results of claims, as printed in all tables and written to `results.json`.
 
 use crate::control::Red;
 use crate::evidence::Evidence;
@@ -7,19 +7,19 @@ use crate::tolerance::Made;
 use grainbench_scene::solver::RunError;
 use serde::{Deserialize, Serialize};
 
-/// Colour of a result: the one decision about exit codes, pages and summaries.
+/// Colour of a result. It determines exit codes, pages and summaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// It was judged and passes.
+    /// The result passes.
     Green,
-    /// It shows nothing, or a documented error.
+    /// The result shows nothing, or a documented error.
     Amber,
-    /// It fails, its run broke, or its reference is of another scene.
+    /// The result fails, its run crashed, or its reference belongs to another scene.
     Red,
 }
 
-/// How a row ended. Only `Pass` is green.
+/// Outcome of a result. Only `Pass` is green.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
@@ -27,24 +27,24 @@ pub enum Outcome {
     Pass,
     /// Outside the allowed error.
     Fail,
-    /// A published method's own documented error.
+    /// Documented error of a published method.
     Known,
     /// The reference was made from another scene.
     Stale,
     /// It passes on a stored result of other solver sources.
     Outdated,
-    /// There is nothing to compare with.
+    /// There is no reference to compare with.
     NoReference,
     /// The solver cannot express this scene.
     Unsupported,
-    /// A program that is not installed.
+    /// The program is not installed.
     NotAvailable,
-    /// The run ended in a typed error.
+    /// The run ended with an error.
     Broken,
 }
 
 impl Outcome {
-    /// Its colour.
+    /// Returns the colour of the outcome.
     #[must_use]
     pub const fn severity(self) -> Severity {
         match self {
@@ -56,13 +56,13 @@ impl Outcome {
         }
     }
 
-    /// Whether it is red.
+    /// Returns true if the outcome is red.
     #[must_use]
     pub const fn is_red(self) -> bool {
         matches!(self.severity(), Severity::Red)
     }
 
-    /// The word used in result files and tables.
+    /// Returns the name used in result files and tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -96,7 +96,7 @@ impl From<&RunError> for Outcome {
     }
 }
 
-/// One judged quantity of one case: a row of `results.json`.
+/// Result of a claim: a row of `results.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Case name, such as `nine-discs`.
@@ -107,37 +107,37 @@ pub struct Verdict {
     pub solver: String,
     /// Level or levels of resolution, such as `dt=.1`.
     pub resolution: String,
-    /// What was measured, in words.
+    /// Measured quantity, in words.
     pub quantity: String,
     /// Unit of `value`, `expected` and `scale`; `1` for a pure number.
     pub unit: String,
-    /// The measured value; absent when the run broke.
+    /// Measured value; absent if the run crashed.
     pub value: Option<f64>,
-    /// What it should be.
+    /// Expectation.
     pub expected: Option<Expected>,
-    /// What the difference is divided by.
+    /// Scale by which the error is divided.
     pub scale: Option<f64>,
-    /// Signed `(value − expected)/scale`, of a bound how far beyond it; absent when not finite.
+    /// Signed `(value − expected)/scale`; for a bound, the distance beyond it. Absent if it is not finite.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: f64,
-    /// How that number was made.
+    /// Origin of the tolerance.
     pub tolerance: Made,
-    /// Why the tolerance is what it is.
+    /// Reason for the tolerance.
     pub because: String,
-    /// Kind of source.
+    /// Kind of evidence.
     pub evidence: Evidence,
-    /// Where the expected value comes from.
+    /// Source of the expected value.
     pub source: String,
-    /// How the row ended.
+    /// Outcome of the result.
     #[serde(rename = "verdict")]
     pub outcome: Outcome,
-    /// Reason for an outcome other than pass or fail, or more about a failure (first time outside, …).
+    /// Reason for an outcome other than pass or fail, or details of a failure, such as its first time.
     pub detail: Option<String>,
 }
 
 impl Verdict {
-    /// A row before anything is judged: red until something is found.
+    /// Returns a result before it is judged. Its outcome is `Fail`.
     #[must_use]
     pub fn open(case: impl Into<String>, quantity: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
@@ -161,19 +161,19 @@ impl Verdict {
         }
     }
 
-    /// The row of a run that left no record.
+    /// Returns the result of a run that ended with an error and left no record.
     #[must_use]
     pub fn ended(self, error: &RunError) -> Self {
         Self { outcome: Outcome::from(error), detail: Some(error.to_string()), ..self }
     }
 
-    /// The row that cannot be judged, with the reason.
+    /// Returns the result with another outcome and its reason.
     #[must_use]
     pub fn left(self, outcome: Outcome, reason: impl Into<String>) -> Self {
         Self { outcome, detail: Some(reason.into()), ..self }
     }
 
-    /// The row of what was found: green within what is allowed and nowhere else, and never for what is not finite.
+    /// Returns the judged result. It passes only if the error is finite and at most the allowed error.
     #[must_use]
     pub fn judged(self, found: &Measured) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
@@ -190,7 +190,7 @@ impl Verdict {
         }
     }
 
-    /// The row, unless it passes with an allowed error above a part of its scale: amber, with the reason.
+    /// Makes a passed result amber, with a reason, if its allowed error exceeds `most`, a fraction of the scale.
     #[must_use]
     pub fn unless_wider_than(self, most: f64) -> Self {
         if self.outcome == Outcome::Pass && self.allowed > most {
@@ -203,7 +203,7 @@ impl Verdict {
         self
     }
 
-    /// How it turned red, if it did.
+    /// Returns the way in which the result failed, if it failed.
     #[must_use]
     pub fn red(&self) -> Option<Red> {
         match self.outcome {
@@ -213,43 +213,42 @@ impl Verdict {
         }
     }
 
-    /// How near it came to what is allowed: |error|/allowed, 1 at the edge; none where nothing is allowed or nothing
-    /// was found.
+    /// Returns |error|/allowed, which is 1 at the limit; none if the allowed error is zero or there is no error.
     #[must_use]
     pub fn closeness(&self) -> Option<f64> {
         self.error.filter(|_| self.allowed > 0.0).map(|error| error.abs() / self.allowed)
     }
 }
 
-/// A negative control: a claim fed with wrong physics, which it must refuse.
+/// Result of a negative control: a claim judged under wrong physics, which must make it fail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Control {
-    /// Case of the claim that was tried.
+    /// Case of the claim.
     pub case: String,
-    /// Variant of the claim that was tried.
+    /// Variant of the claim.
     pub variant: String,
     /// Solver that ran the wrong physics.
     pub solver: String,
-    /// Quantity of the claim that was tried.
+    /// Quantity of the claim.
     pub quantity: String,
-    /// What was made wrong, in words.
+    /// Wrong physics, in words.
     pub wrong_physics: String,
-    /// How it was to turn red.
+    /// Way in which the claim must fail.
     pub how: Red,
-    /// Signed error that the claim saw; absent when not finite or the run broke.
+    /// Signed error under wrong physics; absent if it is not finite or the run crashed.
     pub error: Option<f64>,
     /// Largest |error| that would have passed.
     pub allowed: f64,
-    /// Whether the claim turned red, as it must and how it must.
+    /// True if the claim failed in the required way.
     pub turned_red: bool,
-    /// What the row said, where it did not turn red as it must.
+    /// Detail of the result, if the claim did not fail in the required way.
     pub detail: Option<String>,
-    /// Time that it took (s), runs that it shares with others included where it did them.
+    /// Elapsed time (s). It includes runs shared with other controls if this control did them.
     pub seconds: f64,
 }
 
 impl Control {
-    /// What came of a row under wrong physics that must turn it red in one way.
+    /// Returns the control from a result under wrong physics, which must fail in the way `how`.
     #[must_use]
     pub fn of(row: Verdict, wrong_physics: &str, how: Red, seconds: f64) -> Self {
         let turned_red = row.red() == Some(how);
@@ -273,7 +272,7 @@ impl Control {
 mod tests {
     use super::*;
 
-    /// However much is allowed: a run that came to nothing may have been what told how much.
+    /// This holds for any tolerance, because a failed run may have determined the tolerance.
     #[test]
     fn what_is_not_finite_is_never_green() {
         for allowed in [0.0, 1.0, f64::INFINITY, f64::NAN] {

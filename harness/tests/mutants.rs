@@ -1,4 +1,5 @@
-//! Objectivity and passivity pass a small solver with the right laws, and fail it by value with planted defects.
+//! The properties objectivity and passivity pass a small solver with the correct method. Planted defects make them fail
+//! by value.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,13 +9,13 @@ use grainbench_harness::mistake::small_dem::{Slip, SmallDem};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_scene::terms::Terms;
 
-/// Rows of some properties.
+/// Returns the results of some properties.
 fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
     let asked = ALL.iter().filter(|known| properties.contains(&known.name));
     asked.flat_map(|property| property.check(&solver, terms)).collect()
 }
 
-/// Variants of rows that failed by value.
+/// Returns the variants of results that failed by value.
 fn failed(mistake: Slip) -> Vec<String> {
     let found = rows(SmallDem { mistake: Some(mistake) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
     let red = found.into_iter().filter(|row| row.red() == Some(Red::Value));
@@ -28,7 +29,7 @@ fn the_right_laws_pass() {
     }
 }
 
-/// 10⁵ steps of what bounces, with `GRAINBENCH_LONG=1`.
+/// Runs 10⁵ steps of the bouncing grains if `GRAINBENCH_LONG=1`.
 #[test]
 fn the_right_laws_gain_nothing_in_the_long_run() {
     if std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1") {
@@ -56,7 +57,7 @@ fn planted_defects_fail_by_value() {
     }
 }
 
-/// Grains of these scenes are equal: lever arms are tried by claims about unequal ones.
+/// The grains of these scenes are equal. Claims about unequal grains test the lever arms.
 #[test]
 fn wrong_lever_arms_are_right_between_equal_grains() {
     for mistake in [Slip::MeanArm, Slip::OneArm] {
