@@ -1,14 +1,14 @@
-//! A badge for a readme: how many rows passed, green where some did and nothing is red.
+//! README badge: the number of passed results. It is green if some results pass and none is red.
 
 use maud::html;
 
 use crate::headline::Headline;
 use crate::report::Report;
 
-/// Width of a letter (px), on average, of the sans-serif letters of a badge.
+/// Average width of a letter in a badge (px).
 const LETTER: usize = 7;
 
-/// The badge as SVG.
+/// Returns the badge as SVG.
 #[must_use]
 pub fn badge(report: &Report) -> String {
     let counts = Headline::of_report(report);
@@ -23,7 +23,7 @@ pub fn badge(report: &Report) -> String {
     let colour = match (red, counts.pass) {
         (1.., _) => "#b3261e",
         _ if counts.rows() == 0 => "#b3261e",
-        // Nothing is wrong, and nothing was shown.
+        // Nothing failed and nothing passed.
         (0, 0) => "#666",
         (0, _) => "#2e7d32",
     };

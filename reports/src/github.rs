@@ -1,4 +1,4 @@
-//! What a job on GitHub shows of a report: a summary in Markdown, and a line for each red row that its log is annotated with.
+//! Report for GitHub jobs: a Markdown summary, and one annotation for each red result.
 
 use std::fmt::Write;
 
@@ -9,10 +9,10 @@ use crate::line;
 use crate::report::Report;
 use crate::terminal::{failing_lines, is_red};
 
-/// Most rows that a summary names: a job's summary holds one megabyte.
+/// Largest number of results in a summary, because a job summary holds at most 1 MB.
 const MOST: usize = 100;
 
-/// Counts, what is red, and a line a case.
+/// Returns the counts, the red results, and one table row per case.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let mut text = format!("## grainbench: {}\n\n", Headline::of_report(report).sentence());
@@ -36,7 +36,7 @@ pub fn summary(report: &Report) -> String {
     text
 }
 
-/// Text of other people in Markdown: nothing in it is markup, and it ends no cell and no line.
+/// Returns text from scenes and cases with Markdown markup escaped. Line breaks become spaces.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -49,7 +49,7 @@ fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A workflow command for each red row and each control that stayed green.
+/// Returns one workflow command for each red result and each control that did not fail as required.
 #[must_use]
 pub fn annotations(report: &Report) -> Vec<String> {
     let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));
@@ -63,12 +63,12 @@ pub fn annotations(report: &Report) -> Vec<String> {
     lines
 }
 
-/// The message of a workflow command, which has to stand on one line.
+/// Returns the message of a workflow command as one line.
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
-/// A property of a workflow command, which `,` and `:` would end.
+/// Returns a property of a workflow command, with `,` and `:` escaped because they would end it.
 fn property(text: &str) -> String {
     data(text).replace(':', "%3A").replace(',', "%2C")
 }
@@ -84,7 +84,7 @@ mod tests {
         insta::assert_snapshot!(annotations(&sample::report()).join("\n"));
     }
 
-    /// A quantity comes from whoever wrote a case: it begins no command of its own.
+    /// A quantity comes from the author of a case. It must not start a command.
     #[test]
     fn names_are_no_commands_and_no_markup() {
         let mut report = sample::report();

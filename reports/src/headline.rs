@@ -1,4 +1,4 @@
-//! Counting rows by how they ended.
+//! Counts of results by outcome.
 
 use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
@@ -19,39 +19,39 @@ pub const OUTCOMES: [Outcome; 9] = [
     Outcome::NotAvailable,
 ];
 
-/// How many rows ended how.
+/// Counts of results by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Headline {
-    /// Rows within the allowed error.
+    /// Results within the allowed error.
     pub pass: usize,
-    /// Rows outside the allowed error.
+    /// Results outside the allowed error.
     pub fail: usize,
-    /// Published methods' own documented errors.
+    /// Documented errors of published methods.
     pub known: usize,
-    /// References made from another scene.
+    /// Results whose reference belongs to another scene.
     pub stale: usize,
     /// Rows that pass on a stored result of other solver sources.
     pub outdated: usize,
-    /// Rows with nothing to compare with.
+    /// Results without a reference.
     pub no_reference: usize,
-    /// Scenes that the solver cannot express.
+    /// Results whose scene the solver cannot represent.
     pub unsupported: usize,
-    /// Programs that are not installed.
+    /// Results of programs that are not installed.
     pub not_available: usize,
-    /// Runs that ended in an error.
+    /// Results whose run ended with an error.
     pub broken: usize,
     /// Negative controls.
     pub controls: usize,
-    /// Negative controls that turned red, as they must.
+    /// Negative controls that failed as required.
     pub controls_red: usize,
-    /// Of those, the ones that had to break and did.
+    /// Negative controls that failed by error as required; they are included in `controls_red`.
     pub controls_broken: usize,
-    /// Rows within the allowed error that only hold what was found before: they show no one to be right.
+    /// Passed results that compare only with earlier values. They do not show that a solver is right.
     pub regression: usize,
 }
 
 impl Headline {
-    /// Counts rows and controls.
+    /// Counts results and controls.
     #[must_use]
     pub fn of<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
@@ -71,7 +71,7 @@ impl Headline {
         counts
     }
 
-    /// Counts a whole report.
+    /// Counts the results and controls of a report.
     #[must_use]
     pub fn of_report(report: &Report) -> Self {
         Self::of(
@@ -80,43 +80,43 @@ impl Headline {
         )
     }
 
-    /// Counts one case.
+    /// Counts the results and controls of a case.
     #[must_use]
     pub fn of_section(section: &Section) -> Self {
         Self::of(&section.verdicts, &section.controls)
     }
 
-    /// Rows that ended in one way.
+    /// Returns the number of results with an outcome.
     #[must_use]
     pub fn count(mut self, outcome: Outcome) -> usize {
         *self.slot(outcome)
     }
 
-    /// All rows.
+    /// Returns the number of all results.
     #[must_use]
     pub fn rows(self) -> usize {
         OUTCOMES.into_iter().map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Rows of a colour.
+    /// Returns the number of results with a colour.
     #[must_use]
     pub fn of_severity(self, severity: Severity) -> usize {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Rows that show nothing, or a documented error.
+    /// Returns the number of results that show nothing, or a documented error.
     #[must_use]
     pub fn amber(self) -> usize {
         self.of_severity(Severity::Amber)
     }
 
-    /// Rows that fail, broke, or have a reference of another scene.
+    /// Returns the number of results that fail, crashed, or have a reference of another scene.
     #[must_use]
     pub fn red(self) -> usize {
         self.of_severity(Severity::Red)
     }
 
-    /// The counts in one sentence; kinds without a row are left out, except for `pass` and `fail`.
+    /// Returns the counts in one sentence. Outcomes without results are left out, except for `pass` and `fail`.
     #[must_use]
     pub fn sentence(self) -> String {
         let mut parts = Vec::new();
@@ -159,7 +159,8 @@ impl Headline {
     }
 }
 
-/// Error over allowed error; infinite where there is an error and none is allowed, or no finite error at all.
+/// Returns |error| divided by the allowed error. It is infinite if a non-zero error has no tolerance, or if there is no
+/// finite error.
 #[must_use]
 pub fn used_tolerance(verdict: &Verdict) -> f64 {
     match verdict.error.map(f64::abs) {
@@ -169,7 +170,7 @@ pub fn used_tolerance(verdict: &Verdict) -> f64 {
     }
 }
 
-/// The row with an error that uses most of its tolerance, what is known to be wrong included: nothing is hidden by being known.
+/// Returns the result that uses the largest part of its tolerance, including known errors.
 #[must_use]
 pub fn worst(section: &Section) -> Option<&Verdict> {
     section
@@ -179,7 +180,7 @@ pub fn worst(section: &Section) -> Option<&Verdict> {
         .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 
-/// Solvers of a case, each once, in the order in which they appear.
+/// Returns the solvers of a case without duplicates, in the order of their results.
 #[must_use]
 pub fn solvers(section: &Section) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();

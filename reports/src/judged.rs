@@ -1,4 +1,4 @@
-//! What is kept of a program that was judged: every row with its control, by which version and adapter, when and where.
+//! Stored results of an external solver: results and controls, version and adapter, date and machine.
 
 use grainbench_harness::expect::Expected;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
@@ -6,74 +6,74 @@ use serde::{Deserialize, Serialize};
 
 use crate::report::{Provenance, Report};
 
-/// A program's rows.
+/// Results of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judged {
-    /// Name of the program in its manifest.
+    /// Name of the solver in its manifest.
     pub program: String,
-    /// What it says of its version.
+    /// Version that the solver reports.
     pub version: String,
-    /// Hash of its manifest and of the files beside it.
+    /// Hash of its manifest and of the files in the manifest's directory.
     pub adapter: String,
-    /// By what, when and where it was judged.
+    /// Version of grainbench, date and machine.
     pub provenance: Provenance,
-    /// The rows, in the order of the registry.
+    /// Results in the order of the registry.
     pub rows: Vec<Row>,
 }
 
-/// A row of a program.
+/// A result of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
     /// Case.
     pub case: String,
-    /// Variant of its scene.
+    /// Variant of the scene.
     pub variant: String,
     /// Resolution.
     pub resolution: String,
-    /// What was measured, in words.
+    /// Measured quantity, in words.
     pub quantity: String,
     /// Unit of `value` and `expected`.
     pub unit: String,
-    /// What was measured; absent where nothing was.
+    /// Measured value; absent if nothing was measured.
     pub value: Option<f64>,
-    /// What it should be.
+    /// Expectation.
     pub expected: Option<Expected>,
-    /// Signed error, in units of the row's scale.
+    /// Signed error, in units of the result's scale.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: f64,
-    /// How the row ended.
+    /// Outcome of the result.
     pub verdict: Outcome,
     /// Reason for an outcome other than pass or fail.
     pub detail: Option<String>,
-    /// Whether its negative control turned red; absent where none was tried.
+    /// True if the negative control failed as required; absent if it was not run.
     pub control_red: Option<bool>,
 }
 
-/// Relative rounding of errors that are read back.
+/// Relative rounding error of stored errors.
 const ROUNDING: f64 = 1e-6;
 
-/// The rows of a program in a case, counted.
+/// Counts of the results of an external solver in a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
-    /// Rows within the allowed error.
+    /// Results within the allowed error.
     pub pass: usize,
-    /// Rows outside it, and runs that broke.
+    /// Results that fail, crashed, or have a reference of another scene.
     pub red: usize,
-    /// Rows that say nothing of the quantity.
+    /// Results that show nothing, or a documented error.
     pub amber: usize,
     /// Controls.
     pub controls: usize,
-    /// Controls that turned red, as they must.
+    /// Controls that failed as required.
     pub controls_red: usize,
-    /// Largest error over what is allowed, of rows that pass or fail.
+    /// Largest |error|/allowed of the results that pass or fail.
     pub worst: Option<f64>,
 }
 
 impl Judged {
-    /// Of the report of a run of a program alone.
+    /// Collects the results of a report on this solver alone.
     #[must_use]
     pub fn of(program: String, version: String, adapter: String, report: &Report) -> Self {
         let controls = || report.sections.iter().flat_map(|section| &section.controls);
@@ -100,8 +100,8 @@ impl Judged {
         Self { program, version, adapter, provenance: report.provenance.clone(), rows }
     }
 
-    /// Differences of another run of the program, a line each: verdicts, controls, rows that are not kept, and errors that
-    /// moved by more than the tolerance.
+    /// Returns the differences of another run of the solver, one line each. Compared are outcomes, controls, missing
+    /// results, and errors that changed by more than the tolerance.
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
         let now = Self::of(self.program.clone(), String::new(), String::new(), report);
@@ -131,23 +131,23 @@ impl Judged {
         now.rows.iter().filter_map(line).collect()
     }
 
-    /// As it is kept.
+    /// Returns the results as JSON text.
     ///
     /// # Errors
-    /// When something has no JSON form, which no report that was made by this project has.
+    /// When a value has no JSON form; this does not occur in reports of this project.
     pub fn text(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|text| text + "\n")
     }
 
-    /// Reads what was kept.
+    /// Reads stored results.
     ///
     /// # Errors
-    /// When it is not what was written.
+    /// When the text is not in the written format.
     pub fn read(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }
 
-    /// Its rows, all of them or those of a case, counted.
+    /// Counts all results, or the results of one case.
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
         let mut count = Count::default();
@@ -160,7 +160,7 @@ impl Judged {
             count.controls += usize::from(row.control_red.is_some());
             count.controls_red += usize::from(row.control_red == Some(true));
             if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.verdict, row.error) {
-                // What is to be exact and is uses nothing up.
+                // An exact result without error uses no tolerance.
                 let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
                 count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
             }
@@ -168,14 +168,14 @@ impl Judged {
         count
     }
 
-    /// The day on which it was judged.
+    /// Returns the date of the run.
     #[must_use]
     pub fn day(&self) -> &str {
         self.provenance.date.split(' ').next().unwrap_or_default()
     }
 }
 
-/// The cases that any of some programs was asked of, in the order in which they come.
+/// Returns the cases with results of any solver, in order of appearance.
 #[must_use]
 pub fn cases(judged: &[Judged]) -> Vec<&str> {
     let mut cases = Vec::new();
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn what_ends_otherwise_is_told() {
         let mut report = sample::report();
-        // A program has one row of a quantity.
+        // A solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
         let kept = Judged::of("other".to_owned(), String::new(), String::new(), &report);

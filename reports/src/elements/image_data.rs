@@ -1,10 +1,10 @@
-//! Elements as VTK image data (XML, ASCII), which ParaView and VisIt open: a value a cell.
+//! Granular elements as VTK image data (XML, ASCII) for ParaView and VisIt, with one value per cell.
 
 use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::{Course, Frame};
 use std::io::{self, Write};
 
-/// Writes the elements of a frame. What is not known is NaN; `masked` is 1 where a cell is left out of means.
+/// Writes the elements of a frame. Unknown values are NaN; `masked` is 1 if a cell is left out of means.
 pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::Result<()> {
     let grid = &course.grid;
     let [across, deep, up] = grid.count;

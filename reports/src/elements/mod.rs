@@ -1,4 +1,4 @@
-//! Granular elements as files: tables, image data for ParaView, a summary and pictures.
+//! Granular elements as files: tables, image data for ParaView, a summary and figures.
 
 mod image_data;
 mod sheet;
@@ -16,15 +16,21 @@ use grainbench_fields::element_picture::film;
 use grainbench_harness::figure::Figure;
 use std::path::Path;
 
-/// What is drawn, by the names of columns.
+/// Plotted quantities, by column name.
 const DRAWN: [&str; 4] = ["speed", "sine_of_friction", "packing_fraction", "shear_rate"];
 
-/// Writes `elements.csv` (a row an element and frame), `means.csv` (a row a cell), `tracers.csv` where tracers
-/// were asked for, the same tables as Parquet where that is, `summary.json`, `elements/` with image data
-/// a frame and a collection of them, and, of a sheet of cells, `index.html` with pictures or films, all of them or none.
+/// Writes all files of the elements, or none if an error occurs.
+///
+/// - `elements.csv`: one row per element and frame.
+/// - `means.csv`: one row per cell.
+/// - `tracers.csv`: only if there are tracers.
+/// - The same tables as Parquet, if `parquet` is true.
+/// - `summary.json`.
+/// - `elements/`: image data for each frame, and a collection of them.
+/// - `index.html` with pictures or films: only for a single layer of cells.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: bool) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir)?;
     let tables = || {
@@ -65,7 +71,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
     Ok(())
 }
 
-/// The size of the cells in words.
+/// Returns the size of the cells in words.
 fn cells(summary: &Summary) -> String {
     let [x, y, z] = summary.cell.map(|size| number::significant(size, 3));
     format!("cells of {x} × {y} × {z} m")

@@ -1,30 +1,30 @@
-//! A table that is made row by row, as comma-separated values or as Parquet: never in memory as a whole.
+//! Tables built row by row, written as comma-separated values or as Parquet. A table is never in memory as a whole.
 
 use crate::parts::{Grouped, Values};
 use std::io::{self, Write};
 
-/// What a cell of a table holds.
+/// Content of a table cell.
 pub(super) enum Cell {
     /// A whole number.
     Whole(u64),
-    /// A number, if there is one: its absence is not zero.
+    /// A number; none means unknown, not zero.
     Number(Option<f64>),
     /// A word.
     Word(String),
 }
 
-/// A table: its name, what its columns are called, and its rows.
+/// A table: name, column heads and rows.
 pub(super) struct Sheet<'a> {
     pub(super) name: &'static str,
     pub(super) heads: Vec<String>,
     pub(super) rows: Box<dyn Iterator<Item = Vec<Cell>> + 'a>,
 }
 
-/// Rows of Parquet that are in memory together.
+/// Number of Parquet rows that are in memory together.
 const GROUP: usize = 1 << 14;
 
 impl Sheet<'_> {
-    /// Writes a line a row. Numbers read back to the same bits; where there is none, there is nothing.
+    /// Writes one line per row. Numbers read back to the same bits; a missing number is an empty cell.
     pub(super) fn csv(self, out: impl Write) -> io::Result<()> {
         let mut table = csv::Writer::from_writer(out);
         table.write_record(&self.heads)?;
@@ -38,7 +38,7 @@ impl Sheet<'_> {
         table.flush()
     }
 
-    /// Writes the same as Parquet: where there is no number, null.
+    /// Writes the table as Parquet. A missing number is null.
     pub(super) fn parquet(mut self, out: impl Write + Send) -> io::Result<()> {
         let mut group: Vec<Vec<Cell>> = self.rows.by_ref().take(GROUP).collect();
         let mut columns = self.columns(&group);

@@ -1,4 +1,4 @@
-//! Elements in short: what they are of, what was left out, and means over all that were not.
+//! Summary of granular elements: source, masks, and means over all elements that are not left out.
 
 use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
@@ -6,12 +6,12 @@ use grainbench_fields::course::Course;
 use grainbench_harness::statistics::CONFIDENCE;
 use serde::Serialize;
 
-/// Elements in short.
+/// Summary of granular elements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// What they are of.
+    /// Source of the elements.
     pub source: String,
-    /// Number of frames, and the times of the first and the last (s).
+    /// Number of frames.
     pub frames: usize,
     /// Time of the first frame (s).
     pub from: f64,
@@ -23,34 +23,34 @@ pub struct Summary {
     pub cell: [f64; 3],
     /// Lower corner of the grid (m).
     pub low: [f64; 3],
-    /// Which velocities these are.
+    /// Origin of the velocities.
     pub velocity: &'static str,
-    /// Whether there is stress: without contacts there is none.
+    /// True if stress is known, which requires contacts.
     pub stress: bool,
-    /// Which stress it is.
+    /// Definition of the stress.
     pub which_stress: &'static str,
-    /// What is left out of the means.
+    /// Rules by which elements are left out of the means.
     pub masks: String,
-    /// Elements that are left out, of all frames, and how many there are.
+    /// Number of elements that are left out, and number of all elements, over all frames.
     pub left_out: [usize; 2],
-    /// Grains or points whose centre is in no cell, the most of a frame.
+    /// Largest number of grains or points per frame whose centre is in no cell.
     pub outside: usize,
-    /// Mean diameter (m) and density (kg/m³; kg/m² of discs) that inertial numbers are found with.
+    /// Mean diameter (m) and mean density (kg/m³; kg/m² for discs), used in inertial numbers.
     pub grain: Option<(f64, f64)>,
-    /// Blocks of frames that intervals are from, and what part of such intervals holds the mean.
+    /// Number of time blocks that the intervals are computed from.
     pub blocks: usize,
-    /// What part of such intervals holds the mean.
+    /// Confidence level of the intervals.
     pub confidence: f64,
     /// Means over all elements that are not left out.
     pub means: Vec<Over>,
 }
 
-/// The mean of a quantity over elements.
+/// Mean of a quantity over elements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Over {
-    /// The quantity, by its column.
+    /// Column name of the quantity.
     pub quantity: &'static str,
-    /// What it is, in words.
+    /// Quantity in words.
     pub words: &'static str,
     /// Its unit.
     pub unit: &'static str,
@@ -62,7 +62,7 @@ pub struct Over {
 }
 
 impl Summary {
-    /// Of a course that has frames.
+    /// Returns the summary of a series of frames, which must not be empty.
     #[must_use]
     pub fn of(course: &Course, source: String, blocks: usize) -> Self {
         let over = |column: &Column| {
@@ -92,7 +92,7 @@ impl Summary {
         }
     }
 
-    /// In a sentence or two.
+    /// Returns the summary in one or two sentences.
     #[must_use]
     pub fn words(&self) -> String {
         let [x, y, z] = self.cells;

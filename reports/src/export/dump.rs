@@ -1,27 +1,27 @@
-//! Snapshots as one LAMMPS text dump, which LAMMPS tools, OVITO and VMD open.
+//! Snapshots as a LAMMPS text dump, which LAMMPS tools, OVITO and VMD open.
 
 use std::io::{self, Write};
 
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
-/// The columns of every snapshot, in the words of LAMMPS.
+/// Columns of every snapshot, with LAMMPS names.
 const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
-/// Those of forces and torques, which not every program tells.
+/// Columns of forces and torques, which not every program reports.
 const FORCES: &str = " fx fy fz tqx tqy tqz";
 
-/// Writes what a dump begins with. Units are SI.
+/// Writes the head of a dump. Units are SI.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn begin(out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ITEM: UNITS\nsi")
 }
 
-/// Writes one snapshot more. `type` is the place of the material in the scene, from 1.
+/// Writes a snapshot. `type` is the index of the material in the scene, from 1.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ITEM: TIME\n{:?}", snapshot.time)?;
     writeln!(out, "ITEM: TIMESTEP\n{}", snapshot.step)?;
@@ -49,8 +49,8 @@ fn write_vector(out: &mut impl Write, vector: &Vector3<f64>) -> io::Result<()> {
     write!(out, " {:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
-/// The box along an axis. Readers refuse a box without thickness, so where the domain has none (a plane problem) or
-/// no end, the box is as thick as the grains.
+/// Returns the bounds of the box along an axis. Readers reject a box without thickness. If the domain is flat (two
+/// dimensions) or unbounded, the box is therefore as thick as the grains.
 fn bounds_along(snapshot: &Snapshot, axis: usize) -> (f64, f64) {
     let (low, high) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
     if low.is_finite() && high.is_finite() && low < high {

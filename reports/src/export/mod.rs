@@ -1,4 +1,4 @@
-//! Records in formats that other programs read.
+//! Export of records to formats of other programs.
 
 pub mod dump;
 pub mod record_json;
@@ -19,20 +19,21 @@ use crate::parts::{READABLE, SnapshotStore};
 use crate::staged::StagedDir;
 use crate::write::WriteError;
 
-/// A format of snapshots.
+/// Format of snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Format {
     /// One LAMMPS text dump of the grains: `snapshots.dump`.
     Dump,
-    /// Under `vtk/` a file a snapshot of grains, of contacts and of material points, with a collection of each.
+    /// Under `vtk/`, one file per snapshot for grains, contacts and material points, with a collection of each kind.
     Vtk,
-    /// Under `snapshots/` parts with a Parquet file a kind of row, see [`crate::parts`], and the series as `series.parquet` too.
+    /// Under `snapshots/`, parts with one Parquet file per kind of row, see [`crate::parts`]. The series is also
+    /// written as `series.parquet`.
     Parquet,
 }
 
 impl Format {
-    /// What is written where nobody says: text of a run that a person can read, Parquet of any larger one whose snapshots were
-    /// kept.
+    /// Returns the default formats: text for a run small enough to read, Parquet for a larger run whose snapshots were
+    /// stored.
     #[must_use]
     pub fn usual(snapshots: &SnapshotStore) -> BTreeSet<Self> {
         match (snapshots.rows() <= READABLE, snapshots.has_left_out()) {
@@ -43,10 +44,10 @@ impl Format {
     }
 }
 
-/// Adds a run to `out`: `series.csv`, `record.json`, and its snapshots.
+/// Writes a run to `out`: `series.csv`, `record.json` and the snapshots.
 ///
 /// # Errors
-/// When the disk refuses.
+/// When a file cannot be written.
 pub fn write_run(
     record: &Record,
     snapshots: &mut SnapshotStore,
@@ -59,25 +60,25 @@ pub fn write_run(
     write_snapshots(snapshots, formats, out)
 }
 
-/// Name of the file that says how a run broke.
+/// Name of the file that describes a crashed run.
 pub const BROKEN_FILE: &str = "broken.json";
 
-/// How a run ended that did not come to its end.
+/// Error and final state of a crashed run.
 #[derive(Debug, Serialize)]
 struct Broken<'b> {
-    /// What the solver said.
+    /// Error message of the solver.
     error: &'b str,
-    /// Step of the state that broke, the last snapshot.
+    /// Step number of the last snapshot, which holds the state at the crash.
     step: u64,
-    /// Its time (s).
+    /// Time of the last snapshot (s).
     time: f64,
 }
 
-/// Adds what there is of a run that broke: `broken.json` in the place of a record, the series up to there, and the
-/// snapshots, the state that broke last.
+/// Writes the output of a crashed run: `broken.json` instead of a record, the series so far, and the snapshots. The
+/// last snapshot is the state at the crash.
 ///
 /// # Errors
-/// When the disk refuses.
+/// When a file cannot be written.
 pub fn write_remains(
     error: &str,
     series: &Series,
@@ -209,7 +210,7 @@ mod tests {
         for name in ["snapshots.parquet", "grains.parquet", "contacts.parquet", "walls.parquet"] {
             assert!(parts[0].path().join(name).is_file(), "{name}");
         }
-        // For a look with the programs that these files are for.
+        // A copy of the files for inspection with the programs that read them.
         if let Ok(copy) = std::env::var("GRAINBENCH_EXPORT_DIR") {
             written(&sample::record().snapshots, &all, Path::new(&copy));
         }

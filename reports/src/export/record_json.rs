@@ -1,4 +1,4 @@
-//! A whole record as JSON.
+//! A complete record as JSON.
 
 use std::fs;
 use std::io::{self, Write};
@@ -12,21 +12,23 @@ use crate::export::BROKEN_FILE;
 use crate::parts::{READABLE, SnapshotStore};
 use crate::store::{LoadError, parse};
 
-/// Name of the file.
+/// Name of the record file.
 pub const RECORD_FILE: &str = "record.json";
 
-/// Writes the record on one line, for it may hold millions of numbers; they read back to the same bits. Snapshots come
-/// from the store: all of a run that a person can read, else the last, and none where even that is too much.
+/// Writes the record on one line, because it may hold millions of numbers. The numbers read back to the same bits.
+///
+/// The snapshots come from the store. A small run has all of them. A large run has only the last, or none if even the
+/// last is too large.
 ///
 /// # Errors
-/// When `out` refuses, or a snapshot cannot be read back.
+/// When `out` cannot be written, or a snapshot cannot be read back.
 pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) -> io::Result<()> {
     let Record { provenance, series, cost, .. } = record;
     serde_json::to_writer(&mut out, &Streamed { provenance, series, snapshots: Stored(snapshots), cost })?;
     out.write_all(b"\n")
 }
 
-/// A record as [`Record`] is written, with snapshots that are not in memory.
+/// A record in the format of [`Record`], with snapshots that are not in memory.
 #[derive(Serialize)]
 struct Streamed<'r> {
     provenance: &'r Provenance,
@@ -49,10 +51,10 @@ impl Serialize for Stored<'_> {
     }
 }
 
-/// Reads the record that a simulation left in `dir`.
+/// Reads the record of a simulation from `dir`.
 ///
 /// # Errors
-/// When the file is missing or damaged; the message names the place.
+/// When the file is missing or damaged, or the run crashed; the message names the file.
 pub fn load(dir: &Path) -> Result<Record, LoadError> {
     let (path, broken) = (dir.join(RECORD_FILE), dir.join(BROKEN_FILE));
     if broken.is_file() {

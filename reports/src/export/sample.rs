@@ -1,4 +1,4 @@
-//! A record small enough to read: two discs and a wall, one contact across a periodic boundary.
+//! A small record for tests: two discs and a wall, with one contact across a periodic boundary.
 
 use grainbench_scene::record::{
     Column, ContactState, Cost, GrainState, Owner, Partner, PointState, Provenance, Record, Series, Snapshot, WallState,
@@ -63,7 +63,7 @@ pub(crate) fn snapshot() -> Snapshot {
     }
 }
 
-/// The same with a material point of a grain and one of a block.
+/// Returns the same snapshot with one material point of a grain and one of a block.
 pub(crate) fn deformable() -> Snapshot {
     let point = |owner, x: f64| PointState {
         owner,

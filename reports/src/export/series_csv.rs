@@ -4,11 +4,11 @@ use std::io::{self, Write};
 
 use grainbench_scene::record::Series;
 
-/// Writes `step,time (s),NAME (unit),…`, a line a sample. Numbers are the shortest text that reads back to the same
-/// bits.
+/// Writes `step,time (s),NAME (unit),…`, one line per sample. Each number is the shortest text that reads back to the
+/// same bits.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let columns = series.columns.iter().map(|column| harmless(format!("{} ({})", column.name, column.unit)));
@@ -17,14 +17,14 @@ pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
         let values = series
             .values
             .iter()
-            // A column that ends early leaves its cells empty.
+            // Cells after the end of a short column are empty.
             .map(|column| column.get(sample).map_or_else(String::new, |value| format!("{value:?}")));
         table.write_record([step.to_string(), format!("{time:?}")].into_iter().chain(values))?;
     }
     table.flush()
 }
 
-/// A cell that no spreadsheet takes for a formula: probes are named by whoever wrote the scene.
+/// Returns a column head that no spreadsheet interprets as a formula. Probe names come from scene files.
 pub(crate) fn harmless(head: String) -> String {
     if head.starts_with(['=', '+', '-', '@']) { format!("'{head}") } else { head }
 }

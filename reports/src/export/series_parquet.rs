@@ -1,4 +1,4 @@
-//! Time series as Parquet, with the names of `series.csv`.
+//! Time series as Parquet, with the column names of `series.csv`.
 
 use std::io::{self, Write};
 
@@ -6,10 +6,10 @@ use grainbench_scene::record::Series;
 
 use crate::parts::{Values, whole};
 
-/// Writes `step`, `time (s)` and every column; one that ends early is null from there on.
+/// Writes `step`, `time (s)` and every column. Cells after the end of a short column are null.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn write(series: &Series, out: impl Write + Send) -> io::Result<()> {
     let rows = series.step.len();
     let steps = series.step.iter().map(|&step| i64::try_from(step).unwrap_or(i64::MAX)).collect();

@@ -1,4 +1,4 @@
-//! Snapshots as VTK PolyData (XML, ASCII), which ParaView and VisIt open.
+//! Snapshots as VTK PolyData (XML, ASCII) for ParaView and VisIt.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -8,10 +8,10 @@ use grainbench_scene::record::{ContactState, GrainState, Owner, Partner, Snapsho
 use maud::Escaper;
 use nalgebra::Vector3;
 
-/// Writes the grains as points with their state, one vertex a grain so that they show without a filter.
+/// Writes the grains as points with their state. Each grain has a vertex, so that it is visible without a filter.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
     let grains = &snapshot.grains;
     open(&mut out, snapshot.time, grains.len(), grains.len(), 0)?;
@@ -32,7 +32,7 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     close(&mut out)
 }
 
-/// Writes what is told of every grain; a quantity that is not has no array, rather than one of zeros.
+/// Writes a quantity that every grain reports. If a grain lacks it, no array is written, rather than zeros.
 fn told<T>(
     grains: &[GrainState],
     of: impl Fn(&GrainState) -> Option<T>,
@@ -41,11 +41,13 @@ fn told<T>(
     grains.iter().map(of).collect::<Option<Vec<T>>>().map_or(Ok(()), write)
 }
 
-/// Writes the material points of deformable bodies: `body` is a grain's id, or −1 − the place of a body that is no
-/// grain; `stress` is Cauchy's, xx yy zz xy yz xz (Pa), tension positive.
+/// Writes the material points of deformable bodies.
+///
+/// `body` is the id of a grain, or −1 − index for a body that is no grain. `stress` is the Cauchy stress xx yy zz xy yz
+/// xz (Pa), with tension positive.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
     let points = &snapshot.points;
     open(&mut out, snapshot.time, points.len(), points.len(), 0)?;
@@ -73,14 +75,16 @@ pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     close(&mut out)
 }
 
-/// Writes the contacts as lines from the grain's centre to its partner's, or to the contact point on a wall.
-/// `partner` is a grain's id, or −1 − the wall's place in the scene, or −2³¹ − the place of a body that is no grain.
+/// Writes the contacts as lines from the centre of the grain to the centre of its partner, or to the contact point on a
+/// wall.
+///
+/// `partner` is the id of a grain, −1 − index for a wall of the scene, or −2³¹ − index for a body that is no grain.
 ///
 /// # Errors
-/// When `out` refuses.
+/// When `out` cannot be written.
 pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
     let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
-    // A contact of a grain that is not there has nothing to be drawn from.
+    // Contacts of grains that the snapshot lacks are left out.
     let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
         snapshot.told_contacts().iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
     let all = || contacts.iter().map(|(contact, _)| *contact);
@@ -108,7 +112,7 @@ pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()
     close(&mut out)
 }
 
-/// A ParaView collection (`.pvd`) of files with their times (s).
+/// Returns a ParaView collection (`.pvd`) of files with their times (s).
 #[must_use]
 pub fn collection(files: &[(f64, String)]) -> String {
     let mut text = String::from(
@@ -124,8 +128,8 @@ pub fn collection(files: &[(f64, String)]) -> String {
     text
 }
 
-/// Where a contact's line begins and ends. The far end follows from the normal and not from the partner's position,
-/// so that a contact across a periodic boundary is drawn to the partner's image and never across the box.
+/// Returns both ends of a contact's line. The far end is computed from the normal, not from the partner's position. A
+/// contact across a periodic boundary is then drawn to the partner's image and not across the box.
 fn ends(contact: &ContactState, by_id: &HashMap<u32, &GrainState>) -> Option<[Vector3<f64>; 2]> {
     let grain = by_id.get(&contact.grain)?;
     let length = match contact.partner {
@@ -190,7 +194,7 @@ fn vectors(out: &mut impl Write, name: &str, values: impl Iterator<Item = Vector
     })
 }
 
-/// Cells of `size` points each that use the points in order.
+/// Writes cells of `size` points each, which use the points in order.
 fn cells(out: &mut impl Write, name: &str, size: usize, count: usize) -> io::Result<()> {
     let number = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
     writeln!(out, "<{name}>")?;
