@@ -1,4 +1,4 @@
-//! `junit.xml`, which continuous-integration services show.
+//! Report as `junit.xml`, which continuous-integration services display.
 
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -6,11 +6,11 @@ use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, Test
 use crate::line;
 use crate::report::Report;
 
-/// A test suite a case, a test a row and a test a negative control. Rows that are neither right nor wrong are
-/// skipped with their reason, never passed.
+/// Returns one test suite per case, and one test per result and per negative control. Amber results count as skipped,
+/// with their reason, and never as passed.
 ///
 /// # Errors
-/// When something has no XML form, which no report that was made by this project has.
+/// When a value has no XML form; this does not occur in reports of this project.
 pub fn junit_xml(report: &Report) -> Result<String, SerializeError> {
     let mut document = quick_junit::Report::new("grainbench");
     for section in &report.sections {

@@ -1,4 +1,4 @@
-//! Plots, pages and result files, made from records and verdicts only: no solver is needed to redo them.
+//! Figures, pages and result files. They need only records and results, and no solver.
 
 pub mod badge;
 pub mod elements;

@@ -1,4 +1,4 @@
-//! A row in one line: what a person reads first when something fails.
+//! Results in one line each, for messages about failures.
 
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Expected;
@@ -6,13 +6,13 @@ use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::number;
 
-/// `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
+/// Returns `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
 #[must_use]
 pub fn verdict(verdict: &Verdict) -> String {
     format!("{} · {}", place(&verdict.case, &verdict.variant), within_case(verdict))
 }
 
-/// The same without the case, for where the case is known: `variant · solver …`.
+/// Returns the line without the case: `variant · solver …`.
 #[must_use]
 pub fn verdict_in_section(verdict: &Verdict) -> String {
     if verdict.variant.is_empty() {
@@ -22,13 +22,13 @@ pub fn verdict_in_section(verdict: &Verdict) -> String {
     }
 }
 
-/// `case · solver · quantity: wrong physics, off error, allowed tolerance: stayed green`.
+/// Returns `case · solver · quantity: wrong physics, off error, allowed tolerance: stayed green`.
 #[must_use]
 pub fn control(control: &Control) -> String {
     format!("{} · {}", place(&control.case, &control.variant), tried(control))
 }
 
-/// The same without the case, for where the case is known.
+/// Returns the line without the case.
 #[must_use]
 pub fn control_in_section(control: &Control) -> String {
     if control.variant.is_empty() { tried(control) } else { format!("{} · {}", control.variant, tried(control)) }
@@ -52,7 +52,7 @@ fn tried(control: &Control) -> String {
     )
 }
 
-/// What the expected value is called, by its kind of source.
+/// Returns the name of an expected value for each kind of evidence.
 #[must_use]
 pub const fn expected_word(evidence: Evidence) -> &'static str {
     match evidence {
@@ -67,13 +67,13 @@ pub const fn expected_word(evidence: Evidence) -> &'static str {
     }
 }
 
-/// What is expected, with its unit: `1.43 m/s`, `≥ 5`, `order 2`; a dash where nothing is.
+/// Returns the expectation with its unit, such as `1.43 m/s`, `≥ 5` or `order 2`. Returns a dash if there is none.
 #[must_use]
 pub fn expected(expected: Option<Expected>, unit: &str) -> String {
     expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 
-/// `of SCALE` where an error is not relative to the expected value itself.
+/// Returns `of SCALE` if the scale of the error differs from the expected value.
 #[must_use]
 pub fn scale_note(verdict: &Verdict) -> Option<String> {
     let scale = verdict.scale?;

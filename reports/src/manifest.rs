@@ -1,5 +1,5 @@
-//! What stands in an output directory: the files of one run, or of two where a process was ended while it put them in
-//! place.
+//! Manifest of an output directory: its files, and whether all are from one run. A process that ends while it replaces
+//! files leaves files of two runs.
 
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -8,21 +8,21 @@ use std::path::{Path, PathBuf};
 
 use crate::write::write_file;
 
-/// Its name.
+/// Name of the manifest file.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-/// The files of ours in a directory.
+/// Our files in a directory.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    /// Whether all of them are of one run.
+    /// True if all files are from one run.
     pub(crate) whole: bool,
     /// The files, relative to the directory.
     pub(crate) files: Vec<PathBuf>,
 }
 
 impl Manifest {
-    /// That of a directory; none where there is none of ours.
+    /// Reads the manifest of a directory; none if there is none.
     pub(crate) fn read(directory: &Path) -> Option<Self> {
         serde_json::from_str(&fs::read_to_string(directory.join(MANIFEST)).ok()?).ok()
     }
@@ -33,10 +33,10 @@ impl Manifest {
     }
 }
 
-/// Refuses a directory whose files are of two runs.
+/// Rejects a directory that contains files of two runs.
 ///
 /// # Errors
-/// When its manifest says so.
+/// When the manifest states that the files are of two runs.
 pub fn refuse_mixed(directory: &Path) -> Result<(), String> {
     match Manifest::read(directory) {
         Some(Manifest { whole: false, .. }) => Err(format!(

@@ -1,5 +1,4 @@
-//! What accuracy costs and what stays stable, solver by solver, as it was measured before and is kept in the tree: what the first
-//! screen of a page tells of it.
+//! Summaries of stored studies of cost and stability by solver, for the top of a page.
 
 use crate::report::Provenance;
 use crate::study::point::{Diagram, Standing};
@@ -8,99 +7,100 @@ use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Errors that costs are told of.
+/// Errors for which costs are reported.
 pub const TARGETS: [f64; 3] = cost::TARGETS;
 
-/// Which of the targets the first screen is about.
+/// Index of the error in [`TARGETS`] that the top of the page shows.
 pub const AT: usize = 1;
 
-/// What was measured before.
+/// Stored measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurements {
-    /// What accuracy costs.
+    /// Cost of accuracy.
     pub cost: Option<Costs>,
-    /// What stays stable.
+    /// Stability.
     pub stability: Option<Stability>,
 }
 
-/// When and where something was measured, and which solvers are not what they were then.
+/// Provenance of a measurement, and the solvers that changed since.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stamp {
-    /// By what, when and where.
+    /// Version, date and machine.
     pub provenance: Provenance,
-    /// Solvers whose sources have changed since, or are not known to be the same.
+    /// Solvers whose sources changed since, or are not known to be unchanged.
     pub changed: Vec<String>,
 }
 
-/// What accuracy costs over all cases.
+/// Cost of accuracy over all cases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Costs {
-    /// When and where.
+    /// Provenance of the measurement.
     pub stamp: Stamp,
-    /// Quantities with an exact answer that solvers were asked for.
+    /// Number of target quantities with an exact solution.
     pub quantities: usize,
-    /// A line a solver, ours first.
+    /// One entry per solver, ours first.
     pub lines: Vec<Line>,
 }
 
-/// What accuracy costs with one solver.
+/// Cost of accuracy of one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// The solver.
+    /// Solver.
     pub solver: String,
-    /// Quantities that it has an answer to.
+    /// Number of quantities that the solver was run for.
     pub asked: usize,
-    /// Settings that no other of its settings beats: time over that of the cheapest solver at a hundredth, and error.
+    /// Pareto front of its settings: time divided by the time of the cheapest solver at an error of 1 %, and error.
     pub points: Vec<(f64, f64)>,
-    /// What each of [`TARGETS`] costs.
+    /// Cost of each error in [`TARGETS`].
     pub factors: [Option<Factor>; 3],
 }
 
-/// What an error costs with a solver, over the quantities in which it reaches it.
+/// Cost of an error with one solver, over the quantities for which the solver reaches the error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Geometric mean of its time over that of the cheapest solver at the same error.
+    /// Geometric mean of its time divided by the time of the cheapest solver at the same error.
     pub times: f64,
-    /// Geometric mean of its time over that of the cheapest solver at a hundredth.
+    /// Geometric mean of its time divided by the time of the cheapest solver at an error of 1 %.
     pub place: f64,
-    /// Least and largest time (s).
+    /// Shortest and longest time (s).
     pub seconds: [f64; 2],
-    /// In how many quantities it reaches it.
+    /// Number of quantities for which the solver reaches the error.
     pub reached: usize,
-    /// Geometric mean of its time over that of `dem`, and in how many quantities both reach it.
+    /// Geometric mean of its time divided by the time of `dem`, and number of quantities for which both reach the
+    /// error.
     pub over_dem: Option<(f64, usize)>,
 }
 
-/// What stays stable, solver by solver.
+/// Stability by solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stability {
-    /// When and where.
+    /// Provenance of the measurement.
     pub stamp: Stamp,
-    /// A line a solver.
+    /// One entry per solver.
     pub lines: Vec<Hold>,
 }
 
-/// What stays stable with one solver.
+/// Stability of one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hold {
-    /// The solver.
+    /// Solver.
     pub solver: String,
-    /// Largest stable step over the exact limit: least and largest, and of how many assemblies.
+    /// Smallest and largest ratio of the largest stable step to the exact limit, and number of assemblies.
     pub limit: Option<([f64; 2], usize)>,
-    /// Largest stable step where there is no exact limit: least and largest, and what it is measured by.
+    /// Smallest and largest value of the largest stable step where no exact limit is known, and its unit.
     pub found: Option<([f64; 2], String)>,
-    /// Hard cases in which what must hold does at the default step.
+    /// Number of hard cases in which the required property holds at the default step.
     pub holds: usize,
-    /// Those in which it does at a smaller step.
+    /// Number of hard cases in which it holds only at a smaller step.
     pub smaller: usize,
-    /// Those that end in an error that says why.
+    /// Number of hard cases that end with an error message.
     pub typed: usize,
-    /// Those that end as if nothing were wrong.
+    /// Number of hard cases that end with a wrong result and no error.
     pub wrong: usize,
 }
 
 impl Hold {
-    /// Hard cases that it can express.
+    /// Returns the number of hard cases that the solver supports.
     #[must_use]
     pub const fn asked(&self) -> usize {
         self.holds + self.smaller + self.typed + self.wrong
@@ -108,7 +108,7 @@ impl Hold {
 }
 
 impl Stamp {
-    /// Of a study, where `today` gives the hash of a solver's sources as they are now.
+    /// Returns the provenance of a study. `today` returns the hash of the present sources of a solver.
     fn of(study: &Study, solvers: &[&str], today: &dyn Fn(&str) -> Option<String>) -> Self {
         let is_changed = |solver: &&&str| {
             let then = study.sources.get(**solver);
@@ -118,13 +118,13 @@ impl Stamp {
         Self { provenance: study.provenance.clone(), changed }
     }
 
-    /// Whether a solver is no longer what was measured.
+    /// Returns true if a solver changed since the measurement.
     #[must_use]
     pub fn is_old(&self, solver: &str) -> bool {
         self.changed.iter().any(|changed| changed == solver)
     }
 
-    /// The day of the measurement.
+    /// Returns the date of the measurement.
     #[must_use]
     pub fn day(&self) -> &str {
         self.provenance.date.split(' ').next().unwrap_or_default()
@@ -140,7 +140,7 @@ fn ends(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
-/// Time of the cheapest setting of a line, or of the cheapest of all lines, within an error (s).
+/// Returns the time of the cheapest setting of a solver within an error (s).
 fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
     cost::cheapest(diagram, line, target)?.wall_seconds
 }
@@ -150,7 +150,7 @@ fn cheapest(diagram: &Diagram, lines: &[&str], target: f64) -> Option<f64> {
 }
 
 impl Costs {
-    /// From the study that was kept.
+    /// Summarises a stored study.
     #[must_use]
     pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let names = cost::lines(&study.diagrams);
@@ -167,7 +167,8 @@ impl Costs {
 }
 
 impl Costs {
-    /// Adds the lines of other solvers from another session, each in units of the cheapest there.
+    /// Adds the solvers of another session that are not yet included. Each is in units of the cheapest solver of its
+    /// session.
     pub fn add(&mut self, other: Self) {
         let is_new = |line: &Line| self.lines.iter().all(|known| known.solver != line.solver);
         let new: Vec<Line> = other.lines.into_iter().filter(is_new).collect();
@@ -181,7 +182,7 @@ fn is_asked(diagram: &Diagram, line: &str) -> bool {
     cost::of_line(diagram, line).any(|point| matches!(point.standing, Standing::Measured | Standing::Failed))
 }
 
-/// The front of a line in a diagram, in units of the cheapest time at a hundredth.
+/// Returns the Pareto front of a solver in a diagram, in units of the cheapest time at an error of 1 %.
 fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
     let Some(unit) = cheapest(diagram, lines, TARGETS[AT]) else { return Vec::new() };
     let front = cost::front(cost::of_line(diagram, line));
@@ -206,7 +207,7 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
 }
 
 impl Stability {
-    /// From the study that was kept.
+    /// Summarises a stored study.
     #[must_use]
     pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut names: Vec<&str> = Vec::new();
@@ -254,7 +255,7 @@ mod tests {
         let study = sample::costs();
         let costs = Costs::of(&study, &|_| Some("as then".to_owned()));
         let at = |name: &str| costs.lines.iter().find(|line| line.solver == name).unwrap().factors[AT];
-        // dem takes 1 and 4 ms, rigid 2 ms of the first alone, mpm 100 and 400 ms.
+        // dem takes 1 ms and 4 ms, mpm 100 ms and 400 ms; rigid takes 2 ms for the first quantity only.
         let (dem, mpm, rigid) = (at("dem").unwrap(), at("mpm").unwrap(), at("rigid").unwrap());
         assert!((dem.times - 1.0).abs() < 1e-12 && dem.reached == 2 && dem.over_dem.is_none());
         assert!(
@@ -273,7 +274,7 @@ mod tests {
         let then = |solver: &str| (solver != "mpm").then(|| "as then".to_owned());
         let costs = Costs::of(&study, &then);
         assert!(costs.stamp.is_old("mpm") && !costs.stamp.is_old("dem"));
-        // A hash that was never noted is no proof that nothing changed.
+        // Without a stored hash, the sources are not known to be unchanged.
         let without = Study { sources: BTreeMap::new(), ..study };
         assert!(Costs::of(&without, &then).stamp.is_old("dem"));
     }

@@ -1,27 +1,28 @@
-//! Numbers as a reader of physics wants them: few digits, `×10ⁿ` when plain digits would be long, a true minus sign.
+//! Numbers as text: few digits, `×10ⁿ` for very large or small values, and a true minus sign.
 
-/// A space that neither breaks nor stretches, between a number and its unit and within long counts.
+/// A non-breaking space of fixed width between a number and its unit and within long counts.
 const THIN: char = '\u{202f}';
 
-/// `value` with at most `digits` significant digits.
+/// Returns `value` with at most `digits` significant digits.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     trim(&fixed(value, digits))
 }
 
-/// A measured or expected value: six significant digits.
+/// Returns a measured or expected value with six significant digits.
 #[must_use]
 pub fn value(value: f64) -> String {
     significant(value, 6)
 }
 
-/// A value with its unit; the unit `1` of a pure number is not printed.
+/// Returns a value with its unit. The unit `1` of a pure number is left out.
 #[must_use]
 pub fn with_unit(number: f64, unit: &str) -> String {
     append_unit(value(number), unit)
 }
 
-/// A size of error or a tolerance, which are fractions: two significant digits, in percent unless far from one.
+/// Returns the magnitude of an error or a tolerance with two significant digits. It is in percent unless it is very
+/// large or small.
 #[must_use]
 pub fn fraction(size: f64) -> String {
     let magnitude = size.abs();
@@ -34,7 +35,7 @@ pub fn fraction(size: f64) -> String {
     }
 }
 
-/// A signed error as a fraction; a dash when there is none.
+/// Returns a signed error as a fraction, or a dash if there is none.
 #[must_use]
 pub fn error(error: Option<f64>) -> String {
     match error {
@@ -44,7 +45,7 @@ pub fn error(error: Option<f64>) -> String {
     }
 }
 
-/// A number of things, in groups of three digits.
+/// Returns an integer in groups of three digits.
 #[must_use]
 pub fn count(count: u64) -> String {
     let digits = count.to_string();
@@ -58,7 +59,7 @@ pub fn count(count: u64) -> String {
     text
 }
 
-/// A duration with the prefix that suits it: three significant digits.
+/// Returns a duration with a suitable prefix and three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
     let (scale, unit) = match seconds.abs() {
@@ -70,13 +71,13 @@ pub fn seconds(seconds: f64) -> String {
     append_unit(significant(seconds * scale, 3), unit)
 }
 
-/// `10ⁿ`.
+/// Returns `10ⁿ`.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))
 }
 
-/// The exponent `e` for which `value` is between `10ᵉ` and `10ᵉ⁺¹`, after rounding to `digits`.
+/// Returns the exponent `e` with `10ᵉ ≤ value < 10ᵉ⁺¹`, after rounding to `digits` significant digits.
 fn exponent_of(value: f64, digits: usize) -> i32 {
     format!("{:.*e}", digits.saturating_sub(1), value)
         .split_once('e')
@@ -84,7 +85,7 @@ fn exponent_of(value: f64, digits: usize) -> i32 {
         .unwrap_or(0)
 }
 
-/// Exactly `digits` significant digits.
+/// Returns exactly `digits` significant digits.
 fn fixed(value: f64, digits: usize) -> String {
     if value.is_nan() {
         return "not a number".to_owned();
@@ -108,7 +109,7 @@ fn fixed(value: f64, digits: usize) -> String {
     text.replacen('-', "−", 1)
 }
 
-/// Takes away zeros that end a fraction.
+/// Removes trailing zeros after the decimal point.
 fn trim(text: &str) -> String {
     let (mantissa, power) = match text.split_once('×') {
         Some((mantissa, power)) => (mantissa, format!("×{power}")),

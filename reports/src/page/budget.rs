@@ -1,18 +1,18 @@
-//! Keeps the page light: what may lie beside it goes there, the least missed and heaviest first, until the rest fits.
+//! Size limit of a page. Parts move to files next to the page, least important and largest first, until the rest fits.
 
 use maud::{PreEscaped, html};
 
-/// The most that a page weighs (B).
+/// Largest size of a page (B).
 pub(crate) const PAGE: usize = 2_490_000;
 
-/// What goes beside the page first comes first.
+/// Order in which parts are moved out of the page; the first variants move first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rank {
     Costs,
     Controls,
-    /// What is put aside of a figure is still seen, loaded from its file; of a film one frame stays.
+    /// A figure that is moved is still shown, loaded from its file. A film keeps one frame.
     HeavyFigures,
-    /// The reader opens it first.
+    /// A figure in a closed section, which the reader must open.
     ClosedFigures,
     Films,
     Figures,
@@ -22,25 +22,25 @@ pub(crate) enum Rank {
 
 /// A piece of the page.
 pub(crate) enum Piece {
-    /// It is always there.
+    /// A piece that always stays in the page.
     Fixed(String),
-    /// It is there while there is room.
+    /// A piece that can be moved out of the page.
     Part(Part),
 }
 
-/// What may lie beside the page.
+/// A part of the page that can be moved to a file.
 pub(crate) struct Part {
     pub(crate) rank: Rank,
-    /// As it stands in the page.
+    /// HTML of the part in the page.
     pub(crate) whole: String,
-    /// What stands in its place: it links the file.
+    /// HTML that replaces the part: a link to its file.
     pub(crate) link: String,
-    /// The file with it, by its path; none where it is written anyway.
+    /// Path and text of the file; none if the file is written anyway.
     pub(crate) file: Option<(String, String)>,
 }
 
 impl Part {
-    /// A table or a text: its file is a page of its own.
+    /// Returns a part with a table or a text, whose file is a separate page.
     pub(crate) fn text(rank: Rank, title: &str, path: String, whole: String) -> Self {
         let link = html! { p { a href=(path) { (title) } " (a page beside this one)" } }.into_string();
         let body = html! { main.alone { h1 { (title) } (PreEscaped(&whole)) } };
@@ -48,7 +48,7 @@ impl Part {
     }
 }
 
-/// Joins the pieces, and what lies beside the page.
+/// Returns the joined pieces, and the paths and texts of the files next to the page.
 pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String, String)>) {
     let mut weight: usize = pieces
         .iter()
@@ -80,7 +80,7 @@ pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String,
         weight -= gain(&pieces[at]);
         away.push(at);
     }
-    // One heavy piece may have made room for lighter ones that went before it: the most missed come back first.
+    // A large part may make room for smaller parts that moved before it. The most important of them return first.
     for at in std::mem::take(&mut away).into_iter().rev() {
         let with = weight + gain(&pieces[at]);
         if with <= limit {
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(fit(pieces(), 0).1.len(), 3);
     }
 
-    /// A figure of ninety had to go, which leaves room for the film of forty that went before it.
+    /// A figure of 90 B had to move. It makes room for the film of 40 B that moved before it.
     #[test]
     fn what_fits_again_comes_back() {
         let part = |rank, length: usize| {

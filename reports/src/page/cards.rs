@@ -1,4 +1,4 @@
-//! A card a solver: how far it can be trusted, where it fails, and what it costs.
+//! One card per solver: passed results, worst error, stability and cost.
 
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::verdict::{Outcome, Verdict};
@@ -11,7 +11,7 @@ use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
 
-/// Kinds of source in the order of what they are worth.
+/// Kinds of evidence, strongest first.
 const KINDS: [Evidence; 8] = [
     Evidence::Analytic,
     Evidence::Experiment,
@@ -23,7 +23,7 @@ const KINDS: [Evidence; 8] = [
     Evidence::Regression,
 ];
 
-/// Solvers of a report, ours by method first, settings of one case last.
+/// Returns the solvers of a report: ours by method first, and settings of a single case last.
 pub(crate) fn solvers(report: &Report) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for row in report.sections.iter().flat_map(|section| &section.verdicts) {
@@ -37,14 +37,14 @@ pub(crate) fn solvers(report: &Report) -> Vec<&str> {
         let known = METHODS.iter().position(|known| *known == method).unwrap_or(METHODS.len());
         (name.contains('+'), name.contains(':'), known)
     };
-    // In the order in which they come where nothing else tells.
+    // The sort is stable, so the remaining order is that of the report.
     names.sort_by_key(place);
     names
 }
 
 /// Renders the cards.
 pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
-    // A setting that one case asks for stands in the matrix, and has no card of its own.
+    // A setting of a single case is shown in the matrix and has no card.
     let solvers: Vec<&str> = solvers(report).into_iter().filter(|name| !name.contains('+')).collect();
     let (cost, stability) = (report.measured.cost.as_ref(), report.measured.stability.as_ref());
     let lead = |row: &Verdict| {
@@ -66,7 +66,8 @@ fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Ver
     report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
 }
 
-/// How wrong an answer is: what fails before what is known, broken runs before all; then by the error itself.
+/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the error
+/// decides.
 fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),
@@ -77,7 +78,7 @@ fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     }
 }
 
-/// One card; `lead` gives the anchor of a row.
+/// Returns one card; `lead` returns the anchor of a result.
 fn card(
     report: &Report,
     lead: &dyn Fn(&Verdict) -> String,
@@ -134,7 +135,8 @@ fn times(row: &Verdict) -> String {
     if used.is_finite() { format!(", {} times what is allowed", number::significant(used, 2)) } else { String::new() }
 }
 
-/// What comes before the first colon's or sentence's end, for a reason is told in full in its row.
+/// Returns the text up to its first colon, semicolon or full stop after 30 bytes. The full text is in the table of
+/// results.
 fn first_sentence(text: &str) -> &str {
     let ends_there = |&at: &usize| at > 30 && text[at + 1..].chars().next().is_none_or(char::is_whitespace);
     let end = text.match_indices([':', ';', '.']).map(|(at, _)| at).find(ends_there);
@@ -150,7 +152,7 @@ fn kinds(report: &Report, solver: &str) -> String {
     KINDS.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
 }
 
-/// Rows of others that are judged by runs of this program.
+/// Returns the number of results of other solvers that are compared with this program, and how many of them agree.
 fn compared(report: &Report, solver: &str) -> Markup {
     let against = format!("against {solver}");
     let by_it = |row: &&Verdict| {
@@ -193,7 +195,7 @@ fn stable(of: &Stability, hold: &Hold) -> Markup {
     }
 }
 
-/// What is said of measurements that are not known to be of the sources of this program.
+/// Note on measurements whose solver sources changed since, or are not known to be unchanged.
 const OLD: &str = ", of sources that have changed or are not known";
 
 fn price(of: &Costs, line: &Line) -> Markup {
@@ -217,7 +219,7 @@ fn price(of: &Costs, line: &Line) -> Markup {
 mod tests {
     use super::first_sentence;
 
-    /// A sentence does not end in the middle of a number, nor before it has said anything.
+    /// A sentence does not end within a number or at its very beginning.
     #[test]
     fn a_sentence_ends_before_a_space() {
         for (text, first) in [

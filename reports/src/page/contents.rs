@@ -1,4 +1,4 @@
-//! Contents that stay in view: a line a case, with what is not green of it.
+//! Table of contents that stays in view. Each case shows its number of red or amber results.
 
 use maud::{Markup, html};
 

@@ -1,4 +1,4 @@
-//! The figures of a case: the first ones to be seen at once, the rest to be opened; films with a pause.
+//! Figures of a case: the first ones are open, the others are in a closed section. Films have a pause button.
 
 use std::collections::BTreeSet;
 
@@ -11,12 +11,13 @@ use super::{slug, unique};
 use crate::plot::{self, DrawError};
 use crate::report::Section;
 
-/// A figure of more than this (B) makes room for films.
+/// Size above which a figure is moved out of the page before films (B).
 const HEAVY: usize = 30_000;
-/// Number of figures of a case that are open at first.
+/// Number of figures of a case that are initially open.
 const SEEN: usize = 2;
 
-/// Graphs scroll on a phone, for their text would be too small; force plots have hardly any and shrink.
+/// Returns the CSS class of a drawing. On a narrow screen, graphs scroll because their text would be too small; other
+/// drawings shrink.
 const fn class(drawing: &Drawing) -> &'static str {
     match drawing {
         Drawing::Graph(_) => "plot graph",
@@ -24,7 +25,7 @@ const fn class(drawing: &Drawing) -> &'static str {
     }
 }
 
-/// The figures of a section; `names` are those of their files.
+/// Returns the figures of a section; `names` are the names of their files.
 pub(crate) fn pieces(
     section: &Section,
     anchor: &str,
@@ -61,7 +62,7 @@ pub(crate) fn pieces(
     Ok(pieces)
 }
 
-/// A figure, and what stands in its place when there is no room for it.
+/// Returns a figure, and its replacement if the page has no room for it.
 pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawError> {
     let (still, reel) = plot::draw_small(figure)?;
     let still = PreEscaped(still);
@@ -76,7 +77,7 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
         }
     };
     let whole = framed(figure, name, id, &shown).into_string();
-    // Of a film the frame that tells most stays; of anything else a picture that is loaded from its file.
+    // A film is replaced by its last frame, any other figure by an image that is loaded from its file.
     let link = if reel.is_some() {
         framed(figure, name, id, &html! { div class=(class(&figure.drawing)) { (still) } })
     } else {
@@ -95,7 +96,7 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
     Ok(Part { rank, whole, link: link.into_string(), file: None })
 }
 
-/// A figure with its caption and its files.
+/// Returns a figure with its caption and links to its files.
 fn framed(figure: &Figure, name: &str, id: &str, shown: &Markup) -> Markup {
     html! {
         figure id=(id) {

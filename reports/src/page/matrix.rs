@@ -1,4 +1,4 @@
-//! Cases by solvers: of each cell the worst error over what is allowed, as colour and number.
+//! Matrix of cases and solvers. Each cell shows the largest |error|/allowed as colour and number.
 
 use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
@@ -9,22 +9,22 @@ use crate::judged::{Judged, Row};
 use crate::number;
 use crate::report::{Report, Section};
 
-/// All settings that cases ask for by name stand in one column.
+/// Name of the column that collects the settings of single cases.
 const OTHERS: &str = "mpm+…";
 
-/// What stands in a cell.
+/// Content of a cell.
 struct Cell<'a> {
-    /// Worst error over what is allowed; none where no row has an error.
+    /// Largest |error|/allowed; none if no result has an error.
     worst: Option<f64>,
-    /// How its worst row ended.
+    /// Outcome of the worst result.
     outcome: Outcome,
     rows: usize,
     pass: usize,
-    /// The solver that its rows are of.
+    /// Solver of the results.
     solver: &'a str,
 }
 
-/// Red before amber before green; what a solver cannot express tells nothing where it has other rows.
+/// Returns the rank of an outcome: red above known errors above passes. Results that show nothing have the lowest rank.
 const fn order(outcome: Outcome) -> u8 {
     match outcome {
         Outcome::Broken => 5,
@@ -48,7 +48,8 @@ fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
     })
 }
 
-/// The class of a cell: green by how much of the tolerance is used, amber and red by how far beyond it.
+/// Returns the CSS class of a cell. Passes are graded by the fraction of the tolerance used, known errors by their
+/// ratio to the tolerance.
 fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
     let worst = worst.unwrap_or(f64::INFINITY);
     match outcome {
@@ -64,7 +65,7 @@ fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
     }
 }
 
-/// Few letters: the cell is small.
+/// Returns a ratio in few characters, because the cell is small.
 fn short(worst: f64) -> String {
     if worst >= 1e3 {
         format!("1e{}", worst.log10().round())

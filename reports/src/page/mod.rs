@@ -1,5 +1,5 @@
-//! The report as one page that needs nothing else: no network, no font, and no script to be read. What would make it too heavy
-//! lies as files beside it.
+//! The report as one page that needs no network, no font, and no script for reading. Parts that would make it too large
+//! are moved to files next to it.
 
 pub(crate) mod budget;
 mod cards;
@@ -24,17 +24,17 @@ use crate::headline::Headline;
 use crate::plot::{DrawError, markup};
 use crate::report::Report;
 
-/// The look of the page, and what it can do beyond being read.
+/// Style sheet of the page, and optional script for search and filters.
 const CSS: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("page.js");
-/// Room for the tags around all of it (B).
+/// Allowance for the HTML tags around the page content (B).
 const FRAME: usize = 2_000;
 
-/// A page, and the files beside it that hold what it has no room for, by their paths.
+/// A page, and the files next to it that hold the parts moved out of it.
 pub struct Page {
-    /// The page itself.
+    /// HTML of the page.
     pub html: String,
-    /// Files that it links.
+    /// Paths and texts of the files that the page links.
     pub beside: Vec<(String, String)>,
 }
 
@@ -60,7 +60,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
     let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
     let below = main.strip_prefix(&head).unwrap_or_default();
-    // Rows that lie beside the page cannot be led to by their own addresses.
+    // Results that are moved out of the page have no anchor in it.
     let head =
         overview::render(report, counts, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
     let body = html! {
@@ -73,12 +73,12 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })
 }
 
-/// The anchor of the table of all rows of a case.
+/// Returns the anchor of the table with all results of a case.
 pub(crate) fn rows_of(anchor: &str) -> String {
     format!("{anchor}-rows")
 }
 
-/// The names of the files of all figures, section by section.
+/// Returns the file names of all figures, section by section.
 pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     let mut taken = BTreeSet::new();
     let of = |section: &crate::report::Section| {
@@ -88,7 +88,7 @@ pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     report.sections.iter().map(of).collect()
 }
 
-/// A whole page about a body.
+/// Returns a complete HTML page with a body.
 pub(crate) fn shell(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -97,7 +97,7 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                // Without this a browser asks for one.
+                // Without an icon link, a browser requests an icon.
                 link rel="icon" href="data:,";
                 title { (title) }
                 style { (PreEscaped(CSS)) }
@@ -108,7 +108,7 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
     markup(&page.into_string())
 }
 
-/// A name reduced to lower-case letters, digits and `-`, for anchors and file names.
+/// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
 #[must_use]
 pub fn slug(name: &str) -> String {
     let mut slug = String::new();
@@ -123,7 +123,7 @@ pub fn slug(name: &str) -> String {
     if slug.is_empty() { "unnamed" } else { slug }.to_owned()
 }
 
-/// `stem`, or `stem-2` and so on when that is taken.
+/// Returns `stem`, or `stem-2` and so on if it is taken.
 pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
     let mut name = stem.to_owned();
     let mut next = 2;
@@ -134,7 +134,7 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
     name
 }
 
-/// Symbol and class of an outcome: the meaning never hangs on colour alone.
+/// Returns the symbol and the CSS class of an outcome. The symbol conveys the meaning without colour.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     match outcome.severity() {
         Severity::Green => ("✓", "pass"),
@@ -143,7 +143,7 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     }
 }
 
-/// A table that scrolls inside its own box where the screen is narrower than it, also by keyboard.
+/// Returns a table in a box that scrolls if the screen is narrower than the table. It also scrolls by keyboard.
 pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
 }
@@ -194,7 +194,7 @@ mod tests {
         assert!(ids.contains(&"backspin".to_owned()) && ids.contains(&"backspin-2".to_owned()));
     }
 
-    /// Whatever cases are added: what is too much lies beside the page, and nothing is lost.
+    /// If there are too many cases, parts are moved out of the page, and no result is lost.
     #[test]
     fn a_page_stays_light_however_much_there_is() {
         let mut report = sample::report();

@@ -1,4 +1,4 @@
-//! What a reader sees first: the counts, what fails, a card a solver, the matrix of cases and solvers, and what accuracy costs.
+//! Top of the page: counts, failures, one card per solver, the matrix of cases and solvers, and the cost of accuracy.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -7,9 +7,9 @@ use crate::headline::{Headline, OUTCOMES};
 use crate::report::Report;
 use grainbench_harness::verdict::Outcome;
 
-/// Renders the head of the page; `is_there` says whether a row stands in the page by its own address.
+/// Renders the top of the page; `is_there` returns true if the page has an anchor for a result.
 ///
-/// `counts` are those of all results, `report` holds those that are shown.
+/// `counts` are the counts of all results; `report` holds only the results that are shown.
 pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
     let wrong = counts.red();
@@ -77,7 +77,7 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
     }
 }
 
-/// What only a script can do; hidden until it is there.
+/// Renders search and filters, which need the script. They are hidden until it runs.
 fn tools() -> Markup {
     html! {
         div.tools id="tools" hidden {

@@ -1,4 +1,4 @@
-//! Other people's solvers beside ours, as they were judged when somebody ran them.
+//! Results of external solvers next to ours, from the last stored run of each.
 
 use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
@@ -9,7 +9,7 @@ use crate::judged::{self, Count, Judged, Row};
 use crate::number;
 use crate::report::Report;
 
-/// Renders the section; nothing where no program was judged.
+/// Renders the section; it is empty if there are no external solvers.
 pub(crate) fn render(report: &Report) -> Markup {
     let judged = &report.judged;
     html! {
@@ -101,7 +101,8 @@ fn cell(count: &Count) -> Markup {
     }
 }
 
-/// Largest error over what is allowed of the rows of this run that programs were asked too, at the same resolution.
+/// Returns the largest |error|/allowed of our results in a case, for quantities and resolutions that external solvers
+/// also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
     let asked = report.judged.iter().flat_map(|of| &of.rows).filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {

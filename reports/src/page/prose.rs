@@ -1,9 +1,9 @@
-//! Markdown of the cases as HTML. Raw HTML shows as text; images are left to figures.
+//! Markdown texts of the cases as HTML. Raw HTML is shown as text, and images are replaced by their text.
 
 use maud::{Markup, PreEscaped};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 
-/// Renders Markdown with tables. Headings come out below those of the page.
+/// Renders Markdown with tables. Its headings get a lower level than those of the page.
 pub(crate) fn render(markdown: &str) -> Markup {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES).map(tame);
     let mut text = String::new();
@@ -27,7 +27,7 @@ fn tame(event: Event<'_>) -> Event<'_> {
     }
 }
 
-/// Links lead to pages or within this one, and start no program.
+/// Returns a link to a web page or within this page. Any other link leads to the summary.
 fn harmless(address: CowStr<'_>) -> CowStr<'_> {
     let known = ["https://", "http://", "#"];
     if known.iter().any(|start| address.starts_with(start)) { address } else { CowStr::Borrowed("#summary") }

@@ -1,4 +1,4 @@
-//! What ran, where and when.
+//! Provenance of a report: version, machine and date.
 
 use maud::{Markup, html};
 
