@@ -1,4 +1,4 @@
-//! Every row of a case: the verdict first, and what long names there are broken at words.
+//! Table of all results of a case, with the outcome first.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::headline::used_tolerance;
 use crate::line;
 use crate::number;
 
-/// The address of a row, the same from run to run.
+/// Returns the anchor of a result, which is the same in every run.
 pub(crate) fn address(verdict: &Verdict) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in [&verdict.case, &verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity] {
@@ -20,7 +20,7 @@ pub(crate) fn address(verdict: &Verdict) -> String {
     format!("row-{}", &hasher.finalize().to_hex()[..8])
 }
 
-/// In order of the gates, but what fails first, and what is amber after that.
+/// Returns the results in the order of the claims, with red results first and amber results second.
 pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     let mut rows: Vec<&Verdict> = verdicts.iter().collect();
     rows.sort_by_key(|verdict| {
@@ -33,7 +33,7 @@ pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     rows
 }
 
-/// The table. `taken` are the anchors of the page.
+/// Returns the table of results. `taken` holds the anchors of the page.
 pub(crate) fn table(rows: &[&Verdict], taken: &mut BTreeSet<String>) -> Markup {
     html! {
         table.rows.sorts.verdicts {

@@ -1,4 +1,5 @@
-//! One case: claim, what fails and what is known, figures; every row, controls, costs, derivation and weaknesses to be opened.
+//! Section of one case: claim, failures and figures. Closed parts hold all results, controls, costs, derivation and
+//! limitations.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +12,7 @@ use crate::line;
 use crate::plot::DrawError;
 use crate::report::Section;
 
-/// The pieces of a case under `anchor`; `names` are those of the files of its figures, `taken` the anchors of the page.
+/// Returns the pieces of a case. `names` are the file names of its figures, and `taken` holds the anchors of the page.
 pub(crate) fn pieces(
     section: &Section,
     anchor: &str,
@@ -73,7 +74,7 @@ pub(crate) fn pieces(
     Ok(pieces)
 }
 
-/// The derivation, and each part of it that has a heading of its own (`## …`), with its heading.
+/// Returns the derivation and each of its parts with a heading (`## …`), with their headings.
 fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     const HEADING: &str = "\n## ";
     let (first, rest) = derivation.split_once(HEADING).unwrap_or((derivation, ""));
@@ -82,7 +83,7 @@ fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     Some(("Derivation", first)).filter(|(_, text)| !text.trim().is_empty()).into_iter().chain(parts)
 }
 
-/// A part to be opened.
+/// Adds a part that is initially closed.
 fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Markup, part: Part) {
     let open = html! { details id=[id] class=(class) { summary { (summary) } (PreEscaped("\u{0}")) } }.into_string();
     let (before, after) = open.split_once('\u{0}').unwrap_or((&open, ""));
@@ -91,12 +92,12 @@ fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Mark
     pieces.push(Piece::Fixed(after.to_owned()));
 }
 
-/// The head of the section, with its opening tag.
+/// Returns the opening tag and the head of the section.
 fn open(section: &Section, anchor: &str) -> String {
     let failing = section.verdicts.iter().filter(|row| row.outcome.is_red());
     let green_controls = section.controls.iter().filter(|control| !control.turned_red);
     let fails = failing.clone().count() + green_controls.clone().count();
-    // What a search looks through beside the rows themselves.
+    // Text that a search looks through in addition to the results.
     let words = format!("{} {} {}", section.name, section.title, section.claim);
     let tag = html! { section.case id=(anchor) data-case=(section.name) data-words=(words) {} }.into_string();
     let head = html! {

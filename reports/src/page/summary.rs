@@ -1,4 +1,4 @@
-//! What fails, and what accuracy costs over all cases.
+//! Failures, and cost of accuracy over all cases.
 
 use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
 use maud::{Markup, html};
@@ -10,12 +10,12 @@ use crate::plot;
 use crate::plot::graph::{self, Form};
 use crate::report::Report;
 
-/// More failing lines than this are left to the sections.
+/// Largest number of failures shown at the top of the page.
 const LINES: usize = 12;
-/// Errors and times outside of these are not drawn in the picture over all cases.
+/// Smallest error that is plotted in the figure over all cases.
 const LEAST: f64 = 1e-10;
 
-/// What fails, a line each.
+/// Returns the failures, one line each.
 pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     let mut lines = Vec::new();
     for (section, anchor) in report.sections.iter().zip(anchors) {
@@ -43,7 +43,7 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
 }
 
-/// Error against time over all cases, as a drawing whose legend is the table of factors.
+/// Returns the figure of error against time over all cases. The table of factors serves as its legend.
 pub(crate) fn picture(costs: &Costs) -> String {
     let mut curves = Vec::new();
     for line in &costs.lines {
@@ -52,7 +52,7 @@ pub(crate) fn picture(costs: &Costs) -> String {
         curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
     }
     let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
-    // Each behind the line of its own look.
+    // Each set of points follows the line whose style it shares.
     let curves = curves
         .into_iter()
         .zip(&costs.lines)
@@ -63,7 +63,7 @@ pub(crate) fn picture(costs: &Costs) -> String {
     plot::markup(&graph::draw_as("Error against time, over all cases", &graph, form))
 }
 
-/// The factors in a table, and how they were made.
+/// Returns the table of factors, and a note about their definition.
 pub(crate) fn factors(costs: &Costs) -> Markup {
     let stamp = &costs.stamp;
     html! {
@@ -104,7 +104,7 @@ fn cell(factor: Option<&Factor>, asked: usize) -> Markup {
     }
 }
 
-/// What the two methods cost over each other, where both reach an error.
+/// Returns the cost of `mpm` divided by the cost of `dem`, for errors that both reach.
 fn over_dem(costs: &Costs) -> Markup {
     let Some(line) = costs.lines.iter().find(|line| line.solver == "mpm") else { return html! {} };
     let parts: Vec<String> = line

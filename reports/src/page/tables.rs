@@ -7,7 +7,7 @@ use super::scrolling;
 use crate::number;
 use crate::report::RunCost;
 
-/// What each gate was fed with, and whether it refused it.
+/// Returns the table of negative controls and their results.
 pub(crate) fn controls(controls: &[Control]) -> Markup {
     html! {
         p.note { "Each gate is fed with wrong physics, which it must refuse." }
@@ -42,7 +42,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
     }
 }
 
-/// What every run cost.
+/// Returns the table of the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
     let variants = runs.iter().any(|run| !run.variant.is_empty());
     let table = html! {

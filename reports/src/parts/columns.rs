@@ -1,28 +1,28 @@
-//! Rows as columns and back. A row names each of its columns once, in one place, for writing and for reading.
+//! Conversion of rows to columns and back. Each type of row lists its columns once, for writing and for reading.
 
 use nalgebra::Vector3;
 
-/// Goes through the columns of a row, in one order: gathers their values, or puts them into the row.
+/// Visits the columns of a row in a fixed order. Implementations read the values from the row, or write them to it.
 pub(super) trait Columns {
-    /// A whole number.
+    /// Visits an integer.
     fn whole(&mut self, name: &'static str, value: &mut i64);
-    /// A number; not a number is one too.
+    /// Visits a number, which may be NaN.
     fn number(&mut self, name: &'static str, value: &mut f64);
-    /// A number that may be absent.
+    /// Visits a number that may be absent.
     fn told(&mut self, name: &'static str, value: &mut Option<f64>);
-    /// Yes or no.
+    /// Visits a Boolean value.
     fn flag(&mut self, name: &'static str, value: &mut bool);
-    /// A word.
+    /// Visits a text.
     fn word(&mut self, name: &'static str, value: &mut String);
 
-    /// The components of a vector.
+    /// Visits the components of a vector.
     fn vector(&mut self, names: [&'static str; 3], value: &mut Vector3<f64>) {
         for (name, value) in names.into_iter().zip(value.iter_mut()) {
             self.number(name, value);
         }
     }
 
-    /// Numbers that may be absent as a whole.
+    /// Visits numbers that are either all present or all absent.
     fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<[f64; N]>) {
         let mut all = true;
         let mut numbers = value.unwrap_or([0.0; N]);
@@ -35,14 +35,14 @@ pub(super) trait Columns {
         *value = all.then_some(numbers);
     }
 
-    /// The same of numbers that are held apart.
+    /// Visits boxed numbers that are either all present or all absent.
     fn told_apart<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<Box<[f64; N]>>) {
         let mut numbers = value.as_deref().copied();
         self.told_numbers(names, &mut numbers);
         *value = numbers.map(Box::new);
     }
 
-    /// The components of a vector that may be absent as a whole.
+    /// Visits the components of a vector that may be absent.
     fn told_vector(&mut self, names: [&'static str; 3], value: &mut Option<Vector3<f64>>) {
         let mut components = value.map(Into::into);
         self.told_numbers(names, &mut components);
@@ -50,19 +50,19 @@ pub(super) trait Columns {
     }
 }
 
-/// What a table holds a row of.
+/// Type of a table row.
 pub(super) trait Row: Sized {
-    /// Name of the file, without its ending.
+    /// Name of the table's file without extension.
     const TABLE: &'static str;
 
-    /// A row to be filled.
+    /// Returns a row with default values.
     fn blank() -> Self;
 
-    /// Goes through the columns.
+    /// Visits the columns of the row.
     fn visit(&mut self, columns: &mut impl Columns);
 }
 
-/// The values of one column.
+/// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Values {
     Whole(Vec<i64>),
@@ -72,7 +72,7 @@ pub(crate) enum Values {
     Word(Vec<String>),
 }
 
-/// Columns gathered row by row.
+/// Columns filled row by row.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
     pub(super) columns: Vec<(&'static str, Values)>,
@@ -80,7 +80,7 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    /// The columns of these rows; of no rows, empty columns.
+    /// Returns the columns of these rows. Without rows, the columns are empty.
     pub(super) fn of<R: Row>(rows: &mut [R]) -> Self {
         let mut gathered = Self::default();
         R::blank().visit(&mut gathered);
@@ -141,7 +141,7 @@ impl Columns for Gathered {
     }
 }
 
-/// Puts columns into rows. A value that is not there leaves what the row has.
+/// Writes columns to rows. If a value is missing, the row keeps its own.
 pub(super) struct Scattered<'v> {
     columns: &'v [Values],
     row: usize,
@@ -149,7 +149,7 @@ pub(super) struct Scattered<'v> {
 }
 
 impl<'v> Scattered<'v> {
-    /// The rows of these columns, `count` of them.
+    /// Returns `count` rows with the values of these columns.
     pub(super) fn rows<R: Row>(columns: &'v [Values], count: usize) -> Vec<R> {
         let row = |row: usize| {
             let mut filled = R::blank();

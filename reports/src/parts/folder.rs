@@ -1,4 +1,4 @@
-//! The snapshots that `simulate` left in a directory, one after the other.
+//! Reader of the snapshots in an output directory of `simulate`.
 
 use std::fs;
 use std::io;
@@ -9,10 +9,11 @@ use grainbench_scene::record::Snapshot;
 use super::part::PartReader;
 use crate::export::record_json;
 
-/// Shows every snapshot of a run, in order of time: of its parts where there are some, else those of its record.
+/// Passes every snapshot of a run to `look`, in order of time. Reads the parts if there are any, otherwise the record.
 ///
 /// # Errors
-/// When there is no run there, or a file cannot be read, as `unreadable` says it; or who looks refuses.
+/// When there is no run in the directory, when a file cannot be read (`unreadable` makes the error), or when `look`
+/// fails.
 pub fn each_snapshot<E>(
     dir: &Path,
     unreadable: impl Fn(String) -> E,
@@ -30,7 +31,7 @@ pub fn each_snapshot<E>(
     };
     let entries = fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(told(&folder))?;
     let mut parts: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-    // Their names begin with their number.
+    // Names of parts begin with their number.
     parts.sort();
     for part in parts {
         let mut reader = PartReader::open(&part).map_err(told(&part))?;

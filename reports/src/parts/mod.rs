@@ -1,7 +1,9 @@
-//! Snapshots in bulk, in bounded memory: parts, each a folder with a Parquet file a kind of row (`snapshots`, `grains`,
-//! `contacts`, `walls`, `bodies`, `points`), read by pandas, polars, DuckDB and others with one pattern such as
-//! `snapshots/*/grains.parquet`. Every row has the number, the step and the time of its snapshot; numbers keep every bit,
-//! and what was not told is null.
+//! Storage of many snapshots in bounded memory.
+//!
+//! A part is a folder with one Parquet file per kind of row: `snapshots`, `grains`, `contacts`, `walls`, `bodies`,
+//! `points`. Programs such as pandas, polars and DuckDB read all parts with one pattern, such as
+//! `snapshots/*/grains.parquet`. Every row has the number, the step and the time of its snapshot. Numbers keep every
+//! bit, and an unreported value is null.
 
 mod columns;
 mod folder;

@@ -1,5 +1,4 @@
-//! A part: some snapshots in a row, each kind of row in a Parquet file of its own. Once it is closed nobody touches it
-//! again.
+//! A part: consecutive snapshots, with one Parquet file per kind of row. A closed part does not change.
 
 use std::fs;
 use std::io;
@@ -14,23 +13,23 @@ use super::rows::{Frame, Stepped};
 use super::table::{TableReader, TableWriter, file_name};
 use crate::scratch::temporary_in;
 
-/// Every table of a part, in one order.
+/// All tables of a part, in a fixed order.
 const TABLES: [&str; 6] =
     [Frame::TABLE, GrainState::TABLE, ContactState::TABLE, WallState::TABLE, BodyState::TABLE, PointState::TABLE];
 
-/// A closed part: what it is called, and what is in it.
+/// Name, hash and number of rows of a closed part.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Seal {
-    /// Its folder.
+    /// Name of the part's folder.
     pub(super) name: String,
-    /// Of its files.
+    /// Hash of the part's files.
     hash: [u8; 32],
-    /// Rows of grains, contacts and points.
+    /// Number of rows of grains, contacts and points.
     pub(super) rows: u64,
 }
 
 impl Seal {
-    /// Whether the part in a folder is the one that was closed.
+    /// Returns true if the part in a folder has the files that were written when it was closed.
     pub(super) fn fits(&self, folder: &Path) -> bool {
         let hash = |table: &str| -> io::Result<Option<blake3::Hash>> {
             match fs::File::open(folder.join(file_name(table))) {
@@ -59,13 +58,13 @@ fn together(hashes: &[Option<blake3::Hash>]) -> blake3::Hash {
     all.finalize()
 }
 
-/// The files of a part that are there, with the names they have in it.
+/// Returns the existing files of a part: name and path.
 pub(super) fn files(folder: &Path) -> Vec<(String, PathBuf)> {
     let named = TABLES.map(|table| (file_name(table), folder.join(file_name(table))));
     named.into_iter().filter(|(_, path)| path.is_file()).collect()
 }
 
-/// A table that has a file as soon as it has a row.
+/// A table whose file is created with its first row.
 struct Lazy<R> {
     writer: Option<TableWriter<Stepped<R>>>,
 }
@@ -97,7 +96,7 @@ impl<R: Row> Lazy<R> {
     }
 }
 
-/// A part in the making, in a hidden folder.
+/// A part that is being written, in a hidden folder.
 pub(super) struct OpenPart {
     directory: TempDir,
     frames: Lazy<Frame>,
@@ -112,7 +111,7 @@ pub(super) struct OpenPart {
 }
 
 impl OpenPart {
-    /// Begins a part that is to stand in a folder, without some columns of grains.
+    /// Begins a part that will be moved to a folder. Some columns of grains can be left out.
     pub(super) fn begin(folder: &Path, without: &[&'static str]) -> io::Result<Self> {
         let directory = temporary_in(folder)?;
         fs::create_dir(directory.path().join("part"))?;
@@ -129,7 +128,7 @@ impl OpenPart {
         })
     }
 
-    /// Adds snapshots, the first of which is the `first` of the run.
+    /// Adds snapshots; `first` is the index in the run of the first one.
     pub(super) fn add(&mut self, first: u64, snapshots: &[Snapshot]) -> io::Result<()> {
         fn rows<'s, R, I: Iterator<Item = R> + 's>(
             first: u64,
@@ -152,18 +151,18 @@ impl OpenPart {
         Ok(())
     }
 
-    /// Bytes written so far.
+    /// Returns the number of bytes written so far.
     pub(super) fn bytes(&self) -> usize {
         self.frames.bytes() + self.grains.bytes() + self.contacts.bytes() + self.walls.bytes() + self.points.bytes()
     }
 
-    /// Ends the part and puts it into the folder, as the `number`th.
+    /// Closes the part and moves it to the folder as part number `number`.
     pub(super) fn close(self, folder: &Path, number: usize) -> io::Result<Seal> {
         let Self { directory, frames, grains, contacts, walls, bodies, points, rows, .. } = self;
         let hashes =
             [frames.close()?, grains.close()?, contacts.close()?, walls.close()?, bodies.close()?, points.close()?];
         let hash = together(&hashes);
-        // With part of the hash in its name a part never takes the place of another one.
+        // The hash in its name keeps a part from replacing a different part.
         let name = format!("{number:06}-{}", &hash.to_hex()[..8]);
         let place = folder.join(&name);
         if place.exists() {
@@ -174,7 +173,7 @@ impl OpenPart {
     }
 }
 
-/// Rows of grains, contacts and points.
+/// Returns the number of rows of grains, contacts and points of a snapshot.
 pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
     (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64
 }
@@ -201,7 +200,7 @@ impl PartReader {
         })
     }
 
-    /// The next snapshot; none after the last.
+    /// Returns the next snapshot; none after the last.
     pub(super) fn next(&mut self) -> io::Result<Option<Snapshot>> {
         fn all<R: Row>(table: &mut TableReader<Stepped<R>>, number: u64) -> io::Result<Vec<R>> {
             let mut rows = Vec::new();

@@ -1,5 +1,5 @@
-//! What the tables of a part hold: one row a snapshot, a grain, a contact, a wall, a body, a material point. Units are
-//! SI, as those of [`grainbench_scene::record`].
+//! Rows of the tables of a part: one per snapshot, grain, contact, wall, body and material point. Units are SI, as in
+//! [`grainbench_scene::record`].
 
 use super::columns::{Columns as Visit, Row};
 use grainbench_scene::columns::{Chosen, Columns};
@@ -16,7 +16,7 @@ const VIRIAL: [&str; 6] = ["virial_xx", "virial_yy", "virial_zz", "virial_xy", "
 const MEAN_VIRIAL: [&str; 6] =
     ["mean_virial_xx", "mean_virial_yy", "mean_virial_zz", "mean_virial_xy", "mean_virial_yz", "mean_virial_zx"];
 
-/// Columns of grains that snapshots do not hold.
+/// Returns the columns of grains that the snapshots lack.
 pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
     let of: [(Chosen, Vec<&'static str>); 4] = [
         (Chosen::Spin, [&SPIN[..], &["angle"]].concat()),
@@ -27,14 +27,14 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
     of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
 }
 
-/// A snapshot without what the other tables hold.
+/// A snapshot without the data of the other tables.
 pub(super) struct Frame(pub(super) Snapshot);
 
 impl Frame {
     pub(super) fn of(snapshot: &Snapshot) -> Self {
         Self(Snapshot {
             grains: Vec::new(),
-            // Empty or absent: that is what the frame tells.
+            // The table of snapshots stores only whether contacts were reported.
             contacts: snapshot.contacts.as_ref().map(|_| Vec::new()),
             walls: Vec::new(),
             bodies: Vec::new(),
@@ -152,7 +152,7 @@ impl Row for ContactState {
     }
 }
 
-/// Columns of the corners of a wall: two of a segment, four of a rectangle, point and normal of a plane.
+/// Columns of the corners of a wall: two for a segment, four for a rectangle, and point and normal for a plane.
 const CORNERS: [[&str; 3]; 4] = [
     ["corner1_x", "corner1_y", "corner1_z"],
     ["corner2_x", "corner2_y", "corner2_z"],
@@ -244,10 +244,10 @@ impl Row for PointState {
     }
 }
 
-/// A row with the number, the step and the time of its snapshot. Two snapshots may be of one step: the last good one and
-/// the one that broke.
+/// A row with the number, the step and the time of its snapshot. Two snapshots can have the same step: the last good
+/// state and the state at a crash.
 pub(super) struct Stepped<R> {
-    /// Place among the snapshots of the run, from 0.
+    /// Index of the snapshot in the run, from 0.
     pub(super) snapshot: u64,
     pub(super) step: u64,
     pub(super) time: f64,
@@ -269,7 +269,7 @@ impl<R: Row> Row for Stepped<R> {
     }
 }
 
-/// A whole number of any size. The files are our own: what does not fit was never written.
+/// Visits an integer of any type. Values that do not fit the type do not occur, because we write the files ourselves.
 fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Visit, name: &'static str, value: &mut T) {
     let mut number = (*value).try_into().unwrap_or(i64::MAX);
     columns.whole(name, &mut number);

@@ -1,4 +1,4 @@
-//! The snapshots of a run as they come: a few in memory, all that are more in closed parts on disk.
+//! Store of the snapshots of a run: some in memory, all others in closed parts on disk.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -19,70 +19,70 @@ use super::rows::left_out;
 use crate::scratch::{sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
 
-/// Rows of grains, contacts and points up to which a run is small: its snapshots are then written as text that a person
-/// can read.
+/// Largest number of rows (grains, contacts and points) of a small run. Its snapshots are written as readable text.
 pub const READABLE: u64 = 200_000;
 
-/// Memory that waiting snapshots may take (B) before they go to disk.
+/// Memory limit of snapshots that are not yet on disk (B).
 const WAITING: usize = 8 << 20;
 /// Size at which a part is closed (B).
 const PART: usize = 64 << 20;
 
-/// Why snapshots cannot be stored, or those of a checkpoint not be had again.
+/// Error when snapshots cannot be stored, or when the snapshots of a checkpoint cannot be read back.
 #[derive(Debug, Error)]
 pub enum StoreError {
-    /// The disk refused.
+    /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A part that the checkpoint was left with is not there any more.
+    /// A part of the checkpoint is missing or changed.
     #[error("the checkpoint needs its snapshots in {}: {found}", path.display())]
     Lost {
-        /// The part.
+        /// Path of the part.
         path: PathBuf,
-        /// What stands there.
+        /// State of the part.
         found: &'static str,
     },
-    /// The run that left the checkpoint was to keep no snapshots.
+    /// The checkpoint comes from a run that stored no snapshots.
     #[error(
         "expected a checkpoint with the snapshots before it, found that of a run that kept none: continue without --write, or \
          with --write none"
     )]
     LeftOut,
-    /// What the checkpoint says of snapshots cannot be read.
+    /// The list of snapshots in the checkpoint cannot be read.
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
 }
 
-/// Where parts stand.
+/// Location of the parts.
 enum Place {
-    /// In a hidden folder that goes with the store, made as soon as it is needed.
+    /// A hidden folder, which is created when it is needed and deleted with the store.
     Scratch { beside: PathBuf, made: Option<TempDir> },
-    /// In a folder that outlives the process.
+    /// A folder that remains after the process.
     Folder(PathBuf),
 }
 
-/// The snapshots of a run, in order of time.
+/// Store of the snapshots of a run, in order of time.
 pub struct SnapshotStore {
     place: Place,
     waiting: Vec<Snapshot>,
     waiting_bytes: usize,
     open: Option<OpenPart>,
     closed: Vec<Seal>,
-    /// Snapshots, those on disk too.
+    /// Number of snapshots in memory and on disk.
     snapshots: u64,
-    /// Rows of grains, contacts and points, those on disk too.
+    /// Number of rows of grains, contacts and points in memory and on disk.
     rows: u64,
-    /// The last one, and its rows.
+    /// Summary of the last snapshot, and its number of rows.
     end: Option<(Brief, u64)>,
-    /// Whether nobody wants more of a run that is not [`READABLE`] than its last state, and that only if it is.
+    /// True if no snapshot format is requested. If the run exceeds [`READABLE`] rows, only its last state is kept, and
+    /// only if that state is small enough.
     in_short: bool,
-    /// Whether snapshots were left out for that.
+    /// True if snapshots were left out for this reason.
     left_out: bool,
-    /// Columns of grains that parts do without.
+    /// Columns of grains that parts leave out.
     without: Vec<&'static str>,
 }
 
-/// What a checkpoint keeps of the snapshots before it: those that waited, and where the others are.
+/// Snapshot data of a checkpoint: the snapshots in memory, and the list of closed parts.
 #[derive(Serialize, Deserialize)]
 struct Kept<'s> {
     waiting: Cow<'s, [Snapshot]>,
@@ -94,14 +94,15 @@ struct Kept<'s> {
 }
 
 impl SnapshotStore {
-    /// Of a run whose output goes to `out`: parts gather on the same disk and go with the store.
+    /// Returns a store for a run with output in `out`. Its parts are on the same disk and are deleted with the store.
     #[must_use]
     pub fn for_output(out: &Path) -> Self {
         let beside = if out.is_dir() { out } else { parent_of(out) };
         Self::at(Place::Scratch { beside: beside.to_path_buf(), made: None })
     }
 
-    /// Of a run that leaves checkpoints: parts stand in `<checkpoint>.parts`, for whoever continues from it.
+    /// Returns a store for a run with checkpoints. Its parts are in `<checkpoint>.parts`, so that a run can continue
+    /// from the checkpoint.
     #[must_use]
     pub fn for_checkpoint(checkpoint: &Path) -> Self {
         Self::at(Place::Folder(parts_of(checkpoint)))
@@ -123,23 +124,24 @@ impl SnapshotStore {
         }
     }
 
-    /// The same for a run whose snapshots hold these columns: its parts have no others.
+    /// Leaves out the columns of grains that the snapshots of this run lack.
     #[must_use]
     pub fn holding(self, columns: &Columns) -> Self {
         Self { without: left_out(columns), ..self }
     }
 
-    /// The same for a run whose snapshots are not wanted in any format: of one that is not [`READABLE`] the last is kept, if
-    /// that is.
+    /// Sets the store up for a run without a snapshot format. If the run exceeds [`READABLE`] rows, only the last
+    /// snapshot is kept, and only if it is small enough.
     #[must_use]
     pub fn in_short(self) -> Self {
         Self { in_short: true, ..self }
     }
 
-    /// Takes up what a checkpoint kept (see [`SnapshotStore::keep`]): its parts are linked or copied from where they stand.
+    /// Restores the snapshots of a checkpoint (see [`SnapshotStore::keep`]). Its parts are linked or copied.
     ///
     /// # Errors
-    /// When a part is gone or changed, or cannot be brought here.
+    /// When a part is missing or changed, when it cannot be copied, or when the checkpoint has no snapshots but they
+    /// are needed.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
         let kept: Kept<'_> = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
         if kept.left_out && !self.in_short {
@@ -175,7 +177,7 @@ impl SnapshotStore {
     /// Adds a snapshot.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When a file cannot be written.
     pub fn add(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
         let rows = rows_of(&snapshot);
         self.rows += rows;
@@ -195,28 +197,28 @@ impl SnapshotStore {
         self.spill().map_err(|source| WriteError::new(self.shown(), source))
     }
 
-    /// Adds the last state of a run that broke or was ended: it is kept, whatever was wanted of one that comes to its end.
+    /// Adds the last state of a run that crashed or was ended. It is kept even if no snapshot format is requested.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When a file cannot be written.
     pub fn add_last(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
         self.in_short = false;
         self.add(snapshot)
     }
 
-    /// Whether it is told in short and snapshots were left out for that.
+    /// Returns true if no snapshot format is requested and snapshots were left out for this reason.
     #[must_use]
     pub const fn has_left_out(&self) -> bool {
         self.in_short && self.left_out
     }
 
-    /// Rows up to which a snapshot is wanted row by row.
+    /// Returns the largest number of rows of a snapshot that is stored with all rows.
     #[must_use]
     pub const fn most_rows(&self) -> u64 {
         if self.in_short { READABLE } else { u64::MAX }
     }
 
-    /// Takes note of a snapshot that is not wanted row by row, and of the rows it would have.
+    /// Counts a snapshot that is not stored with all rows, and its rows.
     pub fn pass(&mut self, brief: Brief, rows: u64) {
         self.rows += rows;
         self.snapshots += 1;
@@ -224,16 +226,16 @@ impl SnapshotStore {
         self.leave_out();
     }
 
-    /// Leaves out what waits.
+    /// Discards the snapshots in memory.
     fn leave_out(&mut self) {
         self.waiting.clear();
         (self.waiting_bytes, self.left_out) = (0, true);
     }
 
-    /// What a checkpoint keeps of the snapshots so far. Those on disk are closed off, and it names them.
+    /// Closes the open part and returns the snapshot data for a checkpoint, which names the closed parts.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When a file cannot be written.
     pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
         self.settle()?;
         let (waiting, closed, end) = (Cow::from(&self.waiting), Cow::from(&self.closed), Cow::Borrowed(&self.end));
@@ -242,7 +244,7 @@ impl SnapshotStore {
         postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 
-    /// Takes away parts that nothing names any more, once a checkpoint stands that names all that there are.
+    /// Deletes parts that the store does not list. It must follow a checkpoint that lists all parts of the store.
     pub fn forget_others(&self) {
         let Place::Folder(folder) = &self.place else { return };
         let _ = sweep(folder);
@@ -252,15 +254,15 @@ impl SnapshotStore {
             remove_part(&entry.path());
         }
         if known.is_empty() {
-            // Goes only when it is empty.
+            // The folder is removed only if it is empty.
             let _ = fs::remove_dir(folder);
         }
     }
 
-    /// Closes off what is being written, so that all can be read.
+    /// Closes the open part, so that all snapshots can be read.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When a file cannot be written.
     pub fn settle(&mut self) -> Result<(), WriteError> {
         let settle = |store: &mut Self| -> io::Result<()> {
             if store.open.is_some() {
@@ -271,28 +273,28 @@ impl SnapshotStore {
         settle(self).map_err(|source| WriteError::new(self.shown(), source))
     }
 
-    /// Snapshots so far.
+    /// Returns the number of snapshots.
     #[must_use]
     pub fn len(&self) -> u64 {
         self.snapshots
     }
 
-    /// Whether there is none.
+    /// Returns true if there are no snapshots.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.snapshots == 0
     }
 
-    /// Rows of grains, contacts and points so far.
+    /// Returns the number of rows of grains, contacts and points.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// Shows every snapshot that is settled, from the first on, one at a time.
+    /// Passes every snapshot in memory or in a closed part to `look`, one at a time, from the first.
     ///
     /// # Errors
-    /// When a part cannot be read, as `unreadable` tells it, or who looks refuses.
+    /// When a part cannot be read (`unreadable` makes the error), or when `look` fails.
     pub fn each<E>(
         &self,
         unreadable: impl Fn(io::Error) -> E,
@@ -307,13 +309,13 @@ impl SnapshotStore {
         self.waiting.iter().try_for_each(look)
     }
 
-    /// The last snapshot in short.
+    /// Returns the summary of the last snapshot.
     #[must_use]
     pub fn end(&self) -> Option<&Brief> {
         self.end.as_ref().map(|(end, _)| end)
     }
 
-    /// The last snapshot that is settled, if it is [`READABLE`].
+    /// Returns the last snapshot in memory or in a closed part, if it has at most [`READABLE`] rows.
     ///
     /// # Errors
     /// When its part cannot be read.
@@ -331,11 +333,11 @@ impl SnapshotStore {
         Ok(last)
     }
 
-    /// Puts all that waits on disk too, and names the files of every part: where each stands, and what it is called below
-    /// the folder of parts.
+    /// Writes all snapshots in memory to disk and returns the files of all parts: path, and name relative to the folder
+    /// of parts.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When a file cannot be written.
     pub fn files(&mut self) -> Result<Vec<(PathBuf, PathBuf)>, WriteError> {
         let spill = |store: &mut Self| -> io::Result<()> {
             if !store.waiting.is_empty() {
@@ -351,7 +353,7 @@ impl SnapshotStore {
         Ok(self.closed.iter().flat_map(of_part).collect())
     }
 
-    /// Writes what waits to the open part.
+    /// Writes the snapshots in memory to the open part.
     fn spill(&mut self) -> io::Result<()> {
         let folder = self.folder()?;
         let waiting = std::mem::take(&mut self.waiting);
@@ -372,7 +374,7 @@ impl SnapshotStore {
         Ok(())
     }
 
-    /// The folder of the parts, made where it is missing.
+    /// Returns the folder of the parts, and creates it if it is missing.
     fn folder(&mut self) -> io::Result<PathBuf> {
         match &mut self.place {
             Place::Folder(folder) => {
@@ -396,7 +398,7 @@ impl SnapshotStore {
         }
     }
 
-    /// What an error names.
+    /// Returns the path that errors name.
     fn shown(&self) -> PathBuf {
         match &self.place {
             Place::Folder(folder) => folder.clone(),
@@ -405,7 +407,7 @@ impl SnapshotStore {
     }
 }
 
-/// The folder of the parts that belong to a checkpoint.
+/// Returns the folder of the parts of a checkpoint.
 fn parts_of(checkpoint: &Path) -> PathBuf {
     let mut name = checkpoint.as_os_str().to_owned();
     name.push(".parts");
@@ -427,7 +429,7 @@ fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
     fs::hard_link(from, to).or_else(|_| fs::copy(from, to).map(drop))
 }
 
-/// Takes away a folder that holds the files of a part and nothing else; any other stays.
+/// Deletes a folder that contains only the files of a part. Other folders remain.
 fn remove_part(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     if entries.flatten().count() == files(folder).len() {
@@ -435,7 +437,7 @@ fn remove_part(folder: &Path) {
     }
 }
 
-/// What a snapshot takes in memory (B), nearly.
+/// Returns the approximate size of a snapshot in memory (B).
 fn bytes(snapshot: &Snapshot) -> usize {
     size_of_val(snapshot)
         + size_of_val(snapshot.grains.as_slice())
@@ -449,7 +451,7 @@ mod tests {
     use super::*;
     use crate::export::sample;
 
-    /// Snapshots with every table and every absence, and numbers that text would lose.
+    /// Returns snapshots with all tables and all kinds of absent values, and with numbers that short text would round.
     fn snapshots(count: u64) -> Vec<Snapshot> {
         let make = |step: u64| {
             let mut snapshot = if step.is_multiple_of(2) { sample::snapshot() } else { sample::deformable() };
@@ -510,7 +512,7 @@ mod tests {
         }
         store.spill().unwrap();
         let kept = store.keep().unwrap();
-        // It is killed after more were written.
+        // The run is killed after it wrote more snapshots.
         store.add(snapshots[10].clone()).unwrap();
         store.spill().unwrap();
         store.close().unwrap();
@@ -527,7 +529,7 @@ mod tests {
         resumed.forget_others();
         assert_eq!(fs::read_dir(&parts).unwrap().count(), 1, "what nothing names goes");
 
-        // Elsewhere the parts are brought along.
+        // A store in another folder copies or links the parts.
         let elsewhere = SnapshotStore::for_output(&folder.path().join("out")).resume(&checkpoint, &kept).unwrap();
         assert_eq!(all(&elsewhere), snapshots[..10]);
 
