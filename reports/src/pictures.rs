@@ -1,4 +1,4 @@
-//! A page of pictures of records, without verdicts.
+//! Pages with figures of records, without results.
 
 use crate::page::{figures, shell, slug, unique};
 use crate::staged::StagedDir;
@@ -9,10 +9,11 @@ use maud::{PreEscaped, html};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Writes `index.html` and `figures/NAME.svg` into `dir`, films as `figures/NAME.png` too, all of them or none.
+/// Writes `index.html` and `figures/NAME.svg` to `dir`, and films also as `figures/NAME.png`. Writes all files, or none
+/// if an error occurs.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir)?;
     let title = records.first().map_or("pictures", |record| record.provenance.scene.as_str());
@@ -22,10 +23,10 @@ pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Re
     Ok(())
 }
 
-/// Adds `index.html`, with a title, some paragraphs and figures, and the figures by themselves.
+/// Adds `index.html` with a title, paragraphs and figures, and the files of the figures.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub(crate) fn write_page(
     out: &mut StagedDir,
     title: &str,

@@ -1,4 +1,4 @@
-//! One table as a Parquet file, written a group of rows at a time and read in the same groups.
+//! A table as a Parquet file, written and read in groups of rows.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -18,25 +18,25 @@ use parquet::schema::types::{ColumnPath, Type};
 
 use super::columns::{Gathered, Row, Scattered, Values};
 
-/// Rows that are turned into columns together: they are in memory twice while they are written.
+/// Number of rows converted to columns together. These rows are in memory twice while they are written.
 const GROUP: usize = 1 << 13;
 
-/// Columns with few different values, which a dictionary makes small.
+/// Columns with few different values, for which a dictionary saves space.
 const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "mass", "partner", "owner"];
 
-/// The column that counts: of its numbers the differences are small.
+/// Column of consecutive numbers, which have small differences.
 const COUNTED: &str = "id";
 
-/// A table in the making.
+/// A table that is being written.
 pub(super) struct TableWriter<R> {
     file: SerializedFileWriter<Hashed>,
-    /// Columns that are not written.
+    /// Columns that are left out.
     without: Vec<&'static str>,
     row: PhantomData<R>,
 }
 
 impl<R: Row> TableWriter<R> {
-    /// Begins a file without columns of these names.
+    /// Creates a file without the columns in `without`.
     pub(super) fn new(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
         let file = Hashed { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
         let mut properties =
@@ -44,8 +44,8 @@ impl<R: Row> TableWriter<R> {
         for name in REPEATED {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        // Bytes of one place stand together: those of leading digits are much alike, those of digits that were rounded away
-        // zeros.
+        // Bytes of the same significance are stored together. Leading bytes are similar, and bytes of digits that were
+        // rounded away are zero.
         let mut columns = Gathered::of::<R>(&mut []).columns;
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
@@ -78,12 +78,12 @@ impl<R: Row> TableWriter<R> {
         }
     }
 
-    /// Bytes written so far.
+    /// Returns the number of bytes written so far.
     pub(super) fn bytes(&self) -> usize {
         self.file.bytes_written()
     }
 
-    /// Ends the file; the hash is of all its bytes.
+    /// Closes the file and returns the hash of all its bytes.
     pub(super) fn close(self) -> io::Result<blake3::Hash> {
         let mut hashed = self.file.into_inner().map_err(told)?;
         hashed.flush()?;
@@ -92,12 +92,12 @@ impl<R: Row> TableWriter<R> {
     }
 }
 
-/// Reads a table group by group.
+/// Reads a table in groups of rows.
 pub(super) struct TableReader<R> {
-    /// None where there is no such file: no row was written.
+    /// File of the table; none if no row was written.
     file: Option<SerializedFileReader<File>>,
     group: usize,
-    /// Rows of the present group that were not taken yet, last ones first.
+    /// Rows of the current group that were not yet returned, in reverse order.
     waiting: Vec<R>,
 }
 
@@ -111,7 +111,7 @@ impl<R: Row> TableReader<R> {
         Ok(Self { file, group: 0, waiting: Vec::new() })
     }
 
-    /// The next row, if `wanted` says that it is wanted.
+    /// Returns the next row if `wanted` returns true for it.
     pub(super) fn next_if(&mut self, wanted: impl Fn(&R) -> bool) -> io::Result<Option<R>> {
         if self.waiting.is_empty() {
             self.waiting = self.read_group()?;
@@ -152,7 +152,7 @@ impl<R: Row> TableReader<R> {
     }
 }
 
-/// A column that was not written: nobody told its values.
+/// Returns the values of a column that the file lacks, because no program reported them.
 fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetError> {
     match shape {
         Values::Number(_) => Ok(Values::Number(vec![f64::NAN; count])),
@@ -161,38 +161,38 @@ fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetErr
     }
 }
 
-/// Name of the file of a table.
+/// Returns the file name of a table.
 pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
 }
 
-/// A table in a file, written a group of rows at a time.
+/// A table in a file, written in groups of rows.
 pub(crate) struct Grouped<W: Write + Send> {
     file: SerializedFileWriter<W>,
 }
 
 impl<W: Write + Send> Grouped<W> {
-    /// Begins a table of columns like these.
+    /// Creates a table with the columns of `like`.
     pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
         let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(told)?;
         Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(told)? })
     }
 
-    /// Adds rows: columns of one length, in their order.
+    /// Adds rows as columns of equal length, in the order of the table.
     pub(crate) fn add(&mut self, columns: &[(String, Values)]) -> io::Result<()> {
         let mut group = self.file.next_row_group().map_err(told)?;
         columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(told)?;
         group.close().map(drop).map_err(told)
     }
 
-    /// Ends the file.
+    /// Closes the file.
     pub(crate) fn close(self) -> io::Result<()> {
         self.file.close().map(drop).map_err(told)
     }
 }
 
-/// A whole table in a file: columns of one length, by their names.
+/// Writes a whole table to a file: named columns of equal length.
 pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
     let mut grouped = Grouped::new(table, columns, file)?;
     grouped.add(columns)?;
@@ -246,7 +246,7 @@ fn batch<T: DataType>(
     column.write_batch(values, levels, None).map(drop)
 }
 
-/// The values of a column, and of each row whether it has one (1) or not (0).
+/// Returns the values of a column, and for each row 1 if it has a value or 0 if not.
 fn read<T: DataType>(
     reader: parquet::column::reader::ColumnReader,
     count: usize,
@@ -264,7 +264,7 @@ fn read<T: DataType>(
     Ok((values, levels))
 }
 
-/// A full disk stays a full disk.
+/// Returns an I/O error. An I/O error inside the Parquet error, such as a full disk, is kept.
 fn told(error: ParquetError) -> io::Error {
     match error {
         ParquetError::External(inner) => match inner.downcast::<io::Error>() {
@@ -275,7 +275,7 @@ fn told(error: ParquetError) -> io::Error {
     }
 }
 
-/// A file and the hash of what went into it.
+/// A file with the hash of the bytes written to it.
 struct Hashed {
     file: File,
     hash: blake3::Hasher,

@@ -1,4 +1,4 @@
-//! Fields as pixels in a drawing: panels, a bar of colours, a scale bar; of films the last frame, with a bar along their clock.
+//! Fields as pixel images: panels, a colour bar and a scale bar. A film shows its last frame, with a bar for its time.
 
 use std::io;
 
@@ -14,29 +14,29 @@ use crate::number;
 
 const MARGIN: f64 = 10.0;
 const TOP: f64 = 48.0;
-/// Above each row of panels, where they have titles.
+/// Height above each row of panels, if panels have titles.
 const HEAD: f64 = 24.0;
 const GAP: f64 = 14.0;
-/// Right of the panels, for colours.
+/// Width to the right of the panels, for the colour bar.
 const BAR: f64 = 124.0;
-/// The panels together, or each of several rows.
+/// Largest height of all panels, and of each row if there are several rows.
 const TALLEST: f64 = 560.0;
 const TALLEST_ROW: f64 = 300.0;
 const FOOT: f64 = 46.0;
-/// Below panels that have scales of their own.
+/// Height below panels with their own scales.
 const BARS: f64 = 72.0;
-/// Below a film, for its clock.
+/// Height below a film, for its time axis.
 const CLOCK: f64 = 50.0;
-/// Panels of a film stand side by side in one image, this many pixels apart; its clock runs below as high.
+/// Distance between the panels of a film in its image (pixels). The bar for its time has the same height.
 const SEAM: usize = 8;
-/// Tenths of a second that a frame is shown, and the last.
+/// Duration of a frame, and of the last frame (0.1 s).
 const PACE: u16 = 1;
 const REST: u16 = 12;
 
 /// Draws a field as a complete SVG document.
 ///
 /// # Errors
-/// When it has no panel, or frames differ in size or number.
+/// When the field has no panel, or when frames differ in size or number.
 pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let size = check(field)?;
     let is_film = field.times.len() > 1;
@@ -50,7 +50,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let scale =
         (widest / f64::from(size.0)).min(TALLEST.max(TALLEST_ROW * rows as f64) / rows as f64 / f64::from(size.1));
     let panel = (f64::from(size.0) * scale, f64::from(size.1) * scale);
-    // The seam of a film is as wide as the scale makes it.
+    // In a film, the distance between panels is scaled with the image.
     let gap = if is_film { SEAM as f64 * scale } else { GAP };
     let row = head + panel.1 + if rows > 1 { GAP } else { 0.0 };
     let corner = |at: usize| (MARGIN + (panel.0 + gap) * (at % across) as f64, TOP + row * (at / across) as f64 + head);
@@ -85,7 +85,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
                 rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
             }
             @if is_film { (clock(field, full, foot)) }
-            // Where lengths have no unit there is none to draw.
+            // Without a unit of length there is no scale bar.
             @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, &field.length, panel.0, height - FOOT + 24.0)) }
             @if each_its_own {
                 @for (at, panel_of) in field.panels.iter().enumerate() {
@@ -101,17 +101,17 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     .into_string())
 }
 
-/// The frames of a film, panels side by side and below them a bar that runs along the clock.
+/// Frames of a film. The panels are side by side, with a bar for the time below them.
 pub(crate) struct Frames {
-    /// Pixels across.
+    /// Number of pixels across.
     pub(crate) width: u32,
-    /// Pixels down.
+    /// Number of pixels down.
     pub(crate) height: u32,
-    /// Levels of every frame, by rows from the top.
+    /// Levels of each frame, row by row from the top.
     pub(crate) levels: Vec<Vec<u8>>,
 }
 
-/// Puts the frames of a film together.
+/// Assembles the frames of a film.
 pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     let (width, height) = check(field)?;
     let (wide, high) = (width as usize, height as usize);
@@ -125,7 +125,7 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
                     levels[row * full + left..row * full + left + wide].copy_from_slice(line);
                 }
             }
-            // On black the rim is too dim to be read.
+            // The level of the rim is too dark on black.
             let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
             let done = (position(&field.times, frame) * full as f64).round() as usize;
             for row in high + SEAM..high + 2 * SEAM {
@@ -137,39 +137,39 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     Ok(Frames { width: full as u32, height: height + 2 * SEAM as u32, levels })
 }
 
-/// The film of a field by itself, as an animated PNG.
+/// Returns the film of a field as an animated PNG.
 ///
 /// # Errors
-/// When it has no panel, or frames differ in size or number.
+/// When the field has no panel, or when frames differ in size or number.
 pub fn film(field: &Field) -> io::Result<Vec<u8>> {
     let Frames { width, height, levels } = frames(field)?;
     png(field.shades, (width, height), &levels)
 }
 
-/// The last frame of a film, which stands where nothing moves: in print, and before it runs.
+/// Returns the last frame of a film as a PNG. It is shown in print, and before the film runs.
 fn still(field: &Field) -> io::Result<Vec<u8>> {
     let Frames { width, height, levels } = frames(field)?;
     png(field.shades, (width, height), &levels[levels.len() - 1..])
 }
 
-/// Every panel of a picture as a PNG.
+/// Returns each panel of a picture as a PNG.
 pub(crate) fn stills(field: &Field) -> io::Result<Vec<Vec<u8>>> {
     let size = check(field)?;
     field.panels.iter().map(|panel| png(field.shades, size, std::slice::from_ref(&panel.frames[0].levels))).collect()
 }
 
-/// Red, green and blue of every level.
+/// Returns red, green and blue of each level.
 pub(crate) fn palette(shades: Shades) -> Vec<u8> {
     (0..=u8::MAX).flat_map(|level| colour(shades, level)).collect()
 }
 
-/// Where a frame stands on the clock, from 0 to 1.
+/// Returns the position of a frame on the time axis, from 0 to 1.
 fn position(times: &[f64], frame: usize) -> f64 {
     let (first, last) = (times[0], times[times.len() - 1]);
     if last > first { ((times[frame] - first) / (last - first)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Width and height of all frames.
+/// Checks that all frames have the same size, and returns width and height.
 fn check(field: &Field) -> io::Result<(u32, u32)> {
     let wrong = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_owned());
     let first = field.panels.first().and_then(|panel| panel.frames.first()).ok_or_else(|| wrong("no panel"))?;
@@ -186,7 +186,7 @@ fn check(field: &Field) -> io::Result<(u32, u32)> {
     Ok(size)
 }
 
-/// Long panels stand below one another, others up to three in a row.
+/// Returns the number of panels per row: one for wide panels, otherwise up to three.
 const fn per_row(count: usize, (width, height): (u32, u32)) -> usize {
     if width > 2 * height {
         1
@@ -197,14 +197,14 @@ const fn per_row(count: usize, (width, height): (u32, u32)) -> usize {
     }
 }
 
-/// Levels with the colours of their shades; several make an animation.
+/// Encodes levels with the colours of their colour map. Several frames make an animation.
 fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
-    // Neighbouring levels are no neighbours as bytes of a palette.
+    // Similar levels are not similar as palette indices, so filters do not help.
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_palette(palette(shades));
     if frames.len() > 1 {
@@ -222,8 +222,9 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
     Ok(bytes)
 }
 
-/// The colour of a level. The maps can be told apart without colour vision and grow evenly lighter: cividis (Nuñez,
-/// Anderton and Renslow 2018), magma, and ColorBrewer's PuOr, all from the `colorous` crate.
+/// Returns the colour of a level. The colour maps are readable without colour vision, and their brightness changes
+/// evenly. They are cividis (Nuñez, Anderton and Renslow 2018), magma, viridis and ColorBrewer's PuOr, all from the
+/// `colorous` crate.
 fn colour(shades: Shades, level: u8) -> [u8; 3] {
     let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
     let (value, light) = (level.saturating_sub(LOW) / LIGHTS, level.saturating_sub(LOW) % LIGHTS);
@@ -245,12 +246,12 @@ fn colour(shades: Shades, level: u8) -> [u8; 3] {
     }
 }
 
-/// The level that stands for a part of the range in a bar of colours.
+/// Returns the level for a fraction of the range in a colour bar.
 fn level_of(shades: Shades, part: f64) -> u8 {
     if shades == Shades::Lit { lit(part, 1.0) } else { LOW + (f64::from(HIGH - LOW) * part) as u8 }
 }
 
-/// Colours with their values.
+/// Draws a vertical colour bar with values.
 fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
     const STEPS: u8 = 64;
     let (low, high) = field.range;
@@ -278,7 +279,7 @@ fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
     }
 }
 
-/// Colours with their values, lying under a panel.
+/// Draws a horizontal colour bar with values below a panel.
 fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 2], width: f64) -> Markup {
     const STEPS: u8 = 48;
     let (factor, unit) = with_prefix(low.abs().max(high.abs()), unit);
@@ -304,7 +305,7 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
     }
 }
 
-/// A length that one can read, with `unit` lengths of a name to the unit of the drawing.
+/// Draws a scale bar of a round length. `unit` is the length per unit of the drawing, and `name` is the unit of length.
 fn scale_bar(unit: f64, name: &str, room: f64, y: f64) -> Markup {
     let longest = 0.4 * room * unit;
     let decade = 10_f64.powf(longest.log10().floor());
@@ -320,7 +321,7 @@ fn scale_bar(unit: f64, name: &str, room: f64, y: f64) -> Markup {
     }
 }
 
-/// The clock of a film: ticks under the bar that runs in the image.
+/// Draws the time axis of a film below the bar in the image.
 fn clock(field: &Field, width: f64, y: f64) -> Markup {
     let (first, last) = (field.times[0], field.times[field.times.len() - 1]);
     let scale = Scale::fit([first, last].into_iter(), false, 0.0, 8);
@@ -339,7 +340,7 @@ fn clock(field: &Field, width: f64, y: f64) -> Markup {
     }
 }
 
-/// A unit with the prefix that suits a value, and what to divide by; only units that take one.
+/// Returns the factor of a suitable prefix and the unit with this prefix. Units that take no prefix are unchanged.
 fn with_prefix(value: f64, unit: &str) -> (f64, String) {
     let prefixes: &[(f64, &str)] = match unit {
         "Pa" => &[(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")],
@@ -404,7 +405,7 @@ mod tests {
         for frame in 0..3 {
             assert!(reader.next_frame(&mut pixels).is_ok());
             assert_eq!((pixels[0], pixels[44], pixels[87]), (1 + frame, VOID, 101 + frame));
-            // The clock stands at 0, a half and all.
+            // The bar for the time is at 0, one half and 1.
             let run = pixels[40 * 88..41 * 88].iter().filter(|&&level| level == HIGH).count();
             assert_eq!(run, 44 * usize::from(frame));
         }

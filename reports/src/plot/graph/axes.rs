@@ -5,12 +5,12 @@ use maud::{Markup, html};
 use super::{LABEL, Panel, TICK, px};
 use crate::plot::text_width;
 
-/// Draws the grid, the axes, their ticks and labels; the lower axis is labelled where it has a label.
+/// Draws the grid, the axes, their ticks and labels. Without `x_label`, the lower axis has no labels.
 pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&String>) -> Markup {
     let frame = panel.frame;
     let (x_ticks, y_ticks) = (panel.x().ticks(), panel.y().ticks());
     let mut free_from = f64::NEG_INFINITY;
-    // Two labels never run into each other.
+    // Labels that would overlap are left out.
     let mut labels = Vec::new();
     for tick in &x_ticks {
         let at = panel.across(tick.value);

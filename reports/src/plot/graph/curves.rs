@@ -1,4 +1,4 @@
-//! Curves as paths.
+//! Curves of a graph as SVG paths.
 
 use std::fmt::Write as _;
 
@@ -8,12 +8,12 @@ use maud::{Markup, html};
 use super::{Look, Place, px};
 use crate::plot::palette::{self, Marker};
 
-/// More points than this are thinned to what the width can show.
+/// Number of points above which a curve is thinned to the resolution of the drawing.
 const DENSE: usize = 400;
-/// Markers that tell lines from what is exact, and from each other.
+/// Number of markers on a line, which distinguish it from exact curves and other lines.
 const MARKS_ON_A_LINE: usize = 7;
 
-/// A path through places, in tenths: the first absolute, the others from one to the next.
+/// Returns a path through places in tenths of a unit. The first place is absolute, all others are relative.
 fn path(places: &[Place]) -> String {
     let tenths = |(x, y): Place| ((10.0 * x).round() as i64, (10.0 * y).round() as i64);
     let mut text = String::new();
@@ -51,7 +51,8 @@ pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup
             Stroke::Markers | Stroke::MarkedLine => { (marks(all(), look, true, 4.2)) }
             Stroke::Line => {
                 (marks(pieces.iter().filter(|piece| piece.len() == 1).flatten().copied(), look, true, 4.2))
-                // Evenly along x, and for each shape elsewhere, so that curves on top of each other show theirs.
+                // Markers are evenly spaced along x. Each shape has its own offset, so that markers of coinciding
+                // curves do not overlap.
                 @let shift = 0.15 + 0.7 * fraction_of(look.marker);
                 (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, shift)), look, false, 4.2))
             }
@@ -63,19 +64,19 @@ pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup
     }
 }
 
-/// Pale bars, two ends each.
+/// Draws pale bars; each pair of places gives the two ends of a bar.
 fn bars(ends: &[Place], look: &Look) -> Markup {
     let bars: String = ends.chunks_exact(2).map(path).collect();
     html! { path transform="scale(.1)" d=(bars) fill="none" stroke=(look.colour) stroke-opacity=".3" stroke-width="50" {} }
 }
 
-/// Crosses where runs failed.
+/// Draws crosses for failed runs.
 fn crosses(places: impl Iterator<Item = Place>, look: &Look) -> Markup {
     let crosses: String = places.map(|(x, y)| format!("M{} {}l8 8m0 -8l-8 8", px(x - 4.0), px(y - 4.0))).collect();
     html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }
 }
 
-/// Markers: filled where a point was measured, hollow where they only tell lines apart.
+/// Draws markers: filled for measured points, hollow if they only distinguish lines.
 fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
     let corners = look.marker.corners();
     if corners.is_empty() {
@@ -96,7 +97,7 @@ fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius:
     }
 }
 
-/// Round markers as the round ends of lines without a length, which takes up the fewest letters.
+/// Draws round markers as lines of zero length with round ends, which need the fewest characters.
 fn dots(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
     let dots: String = places.map(|(x, y)| format!("M{} {}h0", px(x), px(y))).collect();
     html! {
@@ -109,7 +110,7 @@ fn dots(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: 
     }
 }
 
-/// The sample of a curve in a legend, between two places.
+/// Draws the sample of a curve in a legend, between two places.
 pub(super) fn sample(stroke: Stroke, look: &Look, from: Place, to: Place) -> Markup {
     let middle = (0.5 * (from.0 + to.0), from.1);
     html! {
@@ -125,13 +126,13 @@ pub(super) fn sample(stroke: Stroke, look: &Look, from: Place, to: Place) -> Mar
     }
 }
 
-/// A different fraction of one for every shape.
+/// Returns a fraction of one that differs for each shape.
 fn fraction_of(marker: Marker) -> f64 {
     let place = (0..7).find(|place| palette::marker(*place) == marker).unwrap_or(0);
     (place as f64 * 0.38).fract()
 }
 
-/// Points of a polyline at even steps of x, interpolated.
+/// Returns interpolated points of a polyline at equal distances along x.
 fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
     let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return Vec::new() };
     (0..count)
@@ -148,7 +149,7 @@ fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
         .collect()
 }
 
-/// Keeps the first, lowest, highest and last point of every two units that a dense curve crosses.
+/// Keeps the first, lowest, highest and last point in each interval of two units of a dense curve.
 pub(super) fn thin(points: Vec<Place>) -> Vec<Place> {
     let forward = points.windows(2).all(|pair| pair[0].0 <= pair[1].0);
     if points.len() <= DENSE || !forward {

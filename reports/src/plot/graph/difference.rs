@@ -1,20 +1,20 @@
-//! What remains between what was measured and what is exact, where the two lie on each other.
+//! Difference between a measured curve and the exact curve, if the two coincide in the graph.
 
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 
 use crate::plot::scale::Scale;
 
-/// Curves nearer than this part of the axis cannot be told apart by eye.
+/// Largest distance between curves that look the same, as a fraction of the axis.
 const TOLD_APART: f64 = 0.03;
 
-/// Differences that are worth a panel.
+/// Differences that are drawn in a panel of their own.
 pub(super) struct Difference {
     pub(super) scale: Scale,
-    /// Of a curve, by its place, the differences.
+    /// Index of each curve, and its differences.
     pub(super) curves: Vec<(usize, Vec<(f64, f64)>)>,
 }
 
-/// The differences of measured lines from the exact one, on even axes, where each of them lies on it.
+/// Returns the differences of the lines from the exact curves, on linear axes and if all lines coincide with them.
 pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
     if graph.x.logarithmic || graph.y.logarithmic {
         return None;
@@ -23,7 +23,7 @@ pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
     let (lines, exact): (Vec<_>, Vec<_>) =
         (of(Stroke::Line).collect(), of(Stroke::Dashed).map(|(_, curve)| curve).collect());
     let is_all = lines.len() + exact.len() == graph.curves.len() && !lines.is_empty();
-    // One exact curve for all, or one for each.
+    // There is one exact curve for all lines, or one for each line.
     if !is_all || exact.is_empty() || (exact.len() != 1 && exact.len() != lines.len()) {
         return None;
     }
@@ -46,7 +46,7 @@ pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
     (worst < TOLD_APART && values.iter().any(|value| *value != 0.0)).then_some(Difference { scale, curves })
 }
 
-/// A curve at a place between two of its points.
+/// Returns the value of a curve at x, interpolated between two points.
 fn at_x(curve: &Curve, x: f64) -> Option<f64> {
     let next = curve.points.partition_point(|point| point.0 < x);
     let after = curve.points.get(next)?;

@@ -1,4 +1,4 @@
-//! The legend: names beside the ends of their lines where there is room, else one below the other.
+//! Legend of a graph: labels at the ends of their lines if there is room, otherwise one below the other.
 
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 use maud::{Markup, html};
@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::{LEGEND_LINE, LEGEND_SAMPLE, Look, Panel, TICK, curves, px};
 use crate::plot::wrap;
 
-/// Labels broken into lines; empty when there is nothing to tell.
+/// Returns the labels broken into lines; empty if all labels are empty.
 pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     if curves.iter().all(|curve| curve.label.is_empty()) {
         return Vec::new();
@@ -14,12 +14,13 @@ pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     curves.iter().map(|curve| wrap(&curve.label, TICK, 150.0)).collect()
 }
 
-/// What looks as the curve before it needs no word of its own.
+/// Returns true if a curve has an entry in the legend. A curve without label in the style of the previous curve has
+/// none.
 fn is_told(curve: &Curve) -> bool {
     !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed))
 }
 
-/// Draws it to the right of a panel.
+/// Draws the legend to the right of a panel.
 pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel) -> Markup {
     let told: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
     let left = panel.frame.right + 18.0;
@@ -37,13 +38,13 @@ pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel:
     }
 }
 
-/// Where the first line of each entry stands.
+/// Returns the position of the first line of each entry.
 fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, told: &[usize]) -> Vec<(usize, f64)> {
     let frame = panel.frame;
     let (first, last) = (frame.top + 6.0, frame.bottom + 40.0);
     let height = |at: usize| LEGEND_LINE * legend[at].len() as f64;
     let whole: f64 = told.iter().map(|&at| height(at)).sum();
-    // A long legend moves closer together before it runs off the drawing.
+    // The entries of a long legend move closer together before they leave the drawing.
     let gap = ((last - first - whole) / told.len().max(1) as f64).clamp(0.0, 7.0);
     let end = |at: usize| {
         let joined = matches!(graph.curves[at].stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
@@ -67,7 +68,7 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, told: &[usize]) ->
         return stacked(told.to_vec());
     };
     ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-    // Pushed down where they would overlap, and then up from the lower edge.
+    // Overlapping entries move down, and then up from the lower edge.
     let mut free = first;
     let mut placed: Vec<(usize, f64)> = ends
         .into_iter()

@@ -1,4 +1,4 @@
-//! Curves over two axes. What was measured has markers, what is exact has dashes; where the two cannot be told apart their
+//! Graphs: curves over two axes. Measured curves have markers, exact curves are dashed. If the two coincide, their
 //! difference is drawn below.
 
 mod axes;
@@ -16,7 +16,7 @@ use super::scale::Scale;
 use super::{FONTS, WIDTH, text_width};
 
 const HEIGHT: f64 = 520.0;
-/// Added for a panel of differences.
+/// Additional height for a panel of differences.
 const BELOW: f64 = 150.0;
 const TITLE: f64 = 17.0;
 const LABEL: f64 = 15.0;
@@ -25,10 +25,10 @@ const NOTE: f64 = 12.5;
 const LEGEND_LINE: f64 = 18.0;
 const LEGEND_SAMPLE: f64 = 30.0;
 
-/// A place on the drawing.
+/// A position in the drawing.
 type Place = (f64, f64);
 
-/// How one curve looks.
+/// Style of a curve.
 #[derive(Clone, Copy)]
 struct Look {
     colour: &'static str,
@@ -36,7 +36,7 @@ struct Look {
     dash: Option<(u32, u32)>,
 }
 
-/// Where the axes stand on the drawing.
+/// Position of the axes in the drawing.
 #[derive(Clone, Copy)]
 struct Frame {
     left: f64,
@@ -45,7 +45,7 @@ struct Frame {
     bottom: f64,
 }
 
-/// A frame with its axes: a plane in tenths of the drawing's units, for plotters places everything on whole numbers.
+/// A frame with its axes. Its plane has tenths of drawing units, because plotters uses integer coordinates.
 struct Panel {
     frame: Frame,
     plane: Cartesian2d<Scale, Scale>,
@@ -57,7 +57,7 @@ fn tenths(length: f64) -> i32 {
 
 impl Panel {
     fn new(frame: Frame, x: &Scale, y: &Scale) -> Self {
-        // Lengths on the drawing run downwards.
+        // In the drawing, y points downwards.
         let limits = (tenths(frame.left)..tenths(frame.right), tenths(frame.bottom)..tenths(frame.top));
         Self { frame, plane: Cartesian2d::new(x.clone(), y.clone(), limits) }
     }
@@ -83,7 +83,8 @@ impl Panel {
         self.place(&(self.plane.get_x_range().start, value)).1
     }
 
-    /// The pieces of a curve: a line breaks where points are missing, for joining over the gap would invent data.
+    /// Returns the pieces of a curve. A line breaks at missing points, because joining across the gap would invent
+    /// data.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
         points
             .split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)))
@@ -93,23 +94,24 @@ impl Panel {
     }
 }
 
-/// How large a drawing is, and whether it tells by itself what is what.
+/// Size of a drawing, and whether it has a legend.
 #[derive(Clone, Copy)]
 pub struct Form {
     /// Width.
     pub width: f64,
     /// Height.
     pub height: f64,
-    /// Whether there is a legend.
+    /// True if there is a legend.
     pub legend: bool,
 }
 
 impl Form {
-    /// Of every figure.
+    /// Form of every figure.
     pub const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
 }
 
-/// The marker and colour of the curve at a place among those that are not dashed, for a table that is the legend.
+/// Draws the marker and the colour of a curve, for a table that serves as legend. `place` is its index among the curves
+/// that are not dashed.
 #[must_use]
 pub fn key(place: usize) -> Markup {
     let look = Look { colour: palette::colour(place), marker: palette::marker(place), dash: None };
@@ -126,7 +128,7 @@ pub fn draw(title: &str, graph: &Graph) -> String {
     draw_as(title, graph, Form::FIGURE)
 }
 
-/// The same in another form.
+/// Draws a graph in another form.
 #[must_use]
 pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let looks = looks(&graph.curves);
@@ -193,7 +195,7 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     .into_string()
 }
 
-/// Where runs were done at a few levels of resolution, those levels: ticks stand at them and nowhere else.
+/// Returns the resolution levels if all curves share a few. Ticks are then at these levels only.
 fn levels(curves: &[Curve]) -> Vec<f64> {
     const MOST: usize = 8;
     let is_of_levels = |curve: &&Curve| matches!(curve.stroke, Stroke::MarkedLine | Stroke::Markers);
@@ -204,12 +206,12 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
     let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine)
         && curves.iter().all(|curve| curve.stroke != Stroke::Beside);
-    // What has a level of its own for every point was not run at levels.
+    // If every point has its own level, the runs were not done at shared levels.
     let is_shared = count > levels.len() || levels.len() <= 4;
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
-/// Colours go round among computed curves and shades among dashed ones.
+/// Returns the style of each curve. Computed curves cycle through colours, dashed curves through shades.
 fn looks(curves: &[Curve]) -> Vec<Look> {
     let (mut coloured, mut dashed) = (0, 0);
     let mut before = Look { colour: palette::colour(0), marker: palette::marker(0), dash: None };
@@ -234,7 +236,7 @@ fn looks(curves: &[Curve]) -> Vec<Look> {
         .collect()
 }
 
-/// What the reader must know of points that have no place.
+/// Returns notes about points that cannot be drawn.
 fn notes(graph: &Graph) -> Vec<String> {
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
     let finite = |point: &&(f64, f64)| point.0.is_finite() && point.1.is_finite();
@@ -253,7 +255,7 @@ fn notes(graph: &Graph) -> Vec<String> {
     notes
 }
 
-/// A length with at most one decimal.
+/// Returns a length with at most one decimal.
 fn px(length: f64) -> String {
     let text = format!("{length:.1}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
