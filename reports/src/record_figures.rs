@@ -1,5 +1,6 @@
-//! Pictures of any record: of a plane scene forces, stress, fringes, plastic strain, rotation, speed, profiles, films; of others
-//! lit grains and contact forces; of all what probes told. Several records stand beside one another at equal times.
+//! Figures of any record. A scene in two dimensions has forces, stress, fringes, plastic strain, rotation, speed,
+//! profiles and films. A scene in three dimensions has lit grains and contact forces. All scenes have the time series
+//! of their probes. Several records are shown side by side at equal times.
 
 use crate::number;
 use crate::series_figures;
@@ -14,51 +15,51 @@ use grainbench_scene::record::{Record, Snapshot};
 /// Pixels along the longer side of a picture, and of a film.
 const PIXELS: u32 = 800;
 const FILM_PIXELS: u32 = 400;
-/// A film has at most this many frames, and a page shows at most this many pictures of a quantity.
+/// Largest number of frames of a film, and largest number of pictures of a quantity.
 const FRAMES: usize = 60;
 const PICTURES: usize = 3;
-/// Fewer snapshots than this are no film.
+/// Smallest number of snapshots for a film.
 const FEWEST: usize = 8;
-/// Fringes between no stress and the stress that a fiftieth of the material is above, unless c is given.
+/// Number of fringes from zero stress to the 98th percentile of the stress, if the stress c of a fringe is not given.
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
-/// A record and what it is called.
+/// A record and its name.
 pub struct Named<'a> {
-    /// What stands above its panels.
+    /// Title of its panels.
     pub name: String,
     /// The record.
     pub record: &'a Record,
 }
 
 impl Named<'_> {
-    /// The snapshot nearest to a time (s).
+    /// Returns the snapshot nearest to a time (s).
     fn at(&self, time: f64) -> Option<&Snapshot> {
         let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
         self.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
     }
 }
 
-/// Whether all of a record lies in the plane z = 0 and has something to be seen.
+/// Returns true if a record has grains or points and all of them lie in the plane z = 0.
 #[must_use]
 pub fn is_plane(record: &Record) -> bool {
     let heights = |snapshot: &Snapshot| {
         let grains = snapshot.grains.iter().map(|grain| grain.position.z);
         grains.chain(snapshot.points.iter().map(|point| point.position.z)).collect::<Vec<f64>>()
     };
-    // Where grains are poured there may be none at first.
+    // If grains are inserted during a run, the first snapshots may be empty.
     let all: Vec<f64> = record.snapshots.iter().flat_map(heights).collect();
     !all.is_empty() && all.iter().all(|&height| height == 0.0)
 }
 
-/// What of records is shown, and how.
+/// Options of the figures of records.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown {
-    /// Stress c of photoelastic fringes (Pa); three fringes where none is given.
+    /// Stress c of a photoelastic fringe (Pa); none to show about three fringes.
     pub fringe: Option<f64>,
     /// First and last time (s).
     pub window: (f64, f64),
-    /// The most frames that a film has.
+    /// Largest number of frames of a film.
     pub frames: usize,
 }
 
@@ -68,15 +69,16 @@ impl Default for Shown {
     }
 }
 
-/// Every picture that the records have the data for, at times of the first one, and what their probes told. Records that do not
-/// lie in a plane are seen from the front, the right and above.
+/// Returns all figures for which the records have data, at times of the first record, and the time series of their
+/// probes. Records in three dimensions are drawn from the front, the right and above.
 #[must_use]
 pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
     let (from, to) = shown.window;
     let Some(first) = records.first() else { return Vec::new() };
     let mut all: Vec<&Snapshot> =
         first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
-    // What has emptied or flown apart shows nothing in the end: pictures are of the last time at which something touches.
+    // Final snapshots without points and contacts are left out, because nothing is left to see, for example after an
+    // outflow.
     let shows = |snapshot: &&Snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty();
     if let Some(last) = all.iter().rposition(shows) {
         all.truncate(last + 1);
@@ -90,7 +92,7 @@ pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
     figures
 }
 
-/// Snapshots at some times, those of a record in a panel; what a record has not is left out and not shown as nothing.
+/// Returns the snapshots of each record at some times. Records without snapshots are left out, and not shown as empty.
 fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
     let frames = |named: &'a Named<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
     records
@@ -100,7 +102,7 @@ fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a 
         .collect()
 }
 
-/// Grains and contact forces at the end, and a film.
+/// Returns grains and contact forces at the end, and a film.
 fn solid(records: &[Named<'_>], all: &[&Snapshot], shown: &Shown) -> Vec<Figure> {
     let Some(last) = all.last() else { return Vec::new() };
     let shots = |clock: &[f64]| film_of(records, clock).into_iter().map(|(title, frames)| Lit { title, frames });
@@ -119,7 +121,7 @@ fn solid(records: &[Named<'_>], all: &[&Snapshot], shown: &Shown) -> Vec<Figure>
     figures
 }
 
-/// Fields over the plane.
+/// Returns the fields over the plane.
 fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figure> {
     let shown: Vec<f64> = spread(all, if records.len() > 1 { 1 } else { PICTURES }).map(|shot| shot.time).collect();
     let mut figures: Vec<Figure> =
@@ -155,7 +157,7 @@ fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figur
                     frames: clock.iter().filter_map(|&time| named.at(time)).collect(),
                 })
                 .collect();
-            // Colours of a film must not change on the way.
+            // The colours of a film do not change over time.
             let moving = film(quantity, &shots, ("time t (s)", &clock), FILM_PIXELS, Some(range));
             figures.push(Figure::field(&format!("{name}-film"), &format!("{title}, film"), &caption, moving));
         }
@@ -164,7 +166,7 @@ fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figur
     figures
 }
 
-/// Whether a snapshot tells a quantity: what nobody has told is not zero.
+/// Returns true if a snapshot has data for a quantity. Missing data are not zero.
 fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
     let has_points = !snapshot.points.is_empty();
     match quantity {
@@ -175,20 +177,21 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
     }
 }
 
-/// Which records do not tell what is shown.
+/// Returns a note with the names of the records that lack the quantity.
 fn not_told(mute: &[&Named<'_>]) -> String {
     let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
     if names.is_empty() { String::new() } else { format!(" Not told by {}.", names.join(", ")) }
 }
 
-/// About `count` snapshots spread evenly, the last one among them; the first only in a film.
+/// Returns up to `count` evenly spaced snapshots, including the last. The first is left out if there are several.
 fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item = &'a Snapshot> {
     let last = snapshots.len().saturating_sub(1);
     let count = count.min(last.max(1)).max(1);
     (1..=count).filter_map(move |at| snapshots.get(at * last / count).copied())
 }
 
-/// What there is to see: stress where contacts or points carry it, plastic strain and rotation where there is some.
+/// Returns the quantities to plot: stress if there are contacts or points, plastic strain and rotation if they are not
+/// zero, and speed.
 fn quantities(records: &[Named<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
     let mut quantities = Vec::new();
@@ -224,7 +227,8 @@ fn forces(named: &Named<'_>, several: bool, end: f64) -> Option<Figure> {
     ))
 }
 
-/// Velocity and displacement across a domain that is periodic along one axis, which is the direction of flow.
+/// Returns profiles of velocity and displacement across a domain that is periodic along one axis, the direction of
+/// flow.
 fn profiles(records: &[Named<'_>], end: f64) -> Vec<Figure> {
     let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {
@@ -253,7 +257,7 @@ fn profiles(records: &[Named<'_>], end: f64) -> Vec<Figure> {
         .collect()
 }
 
-/// Name of the file and title.
+/// Returns the file name and the title.
 const fn words(quantity: Quantity) -> (&'static str, &'static str) {
     match quantity {
         Quantity::StressDifference => ("stress", "Difference of principal stresses"),
@@ -307,7 +311,7 @@ mod tests {
             Drawing::Field(field) => Some(field.panels.len()),
             Drawing::Graph(_) | Drawing::Forces(_) | Drawing::Lines(_) => None,
         });
-        // Plastic strain is told by material points alone.
+        // Only material points have plastic strain.
         assert!(panels.clone().count() > 5 && panels.clone().filter(|count| *count == 2).count() > 4);
         assert!(figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
     }
@@ -326,7 +330,7 @@ mod tests {
         );
     }
 
-    /// A dump tells neither contacts nor angles: its panels are left out, and the caption says so.
+    /// A dump has neither contacts nor angles: its panels are left out, and the caption states it.
     #[test]
     fn what_nobody_told_is_not_zero() {
         let grains = sample::record();

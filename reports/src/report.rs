@@ -1,4 +1,4 @@
-//! Everything a report is made from: enough to redo every output without a solver.
+//! Data of a report. They suffice to write every output again without a solver.
 
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
@@ -9,26 +9,26 @@ use crate::judged::Judged;
 use crate::measured::Measurements;
 use crate::stored_figure;
 
-/// A whole run of the harness.
+/// Report of one run of the harness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// What ran, where and when.
+    /// Provenance.
     pub provenance: Provenance,
-    /// One section a case, in the order of the registry.
+    /// One section per case, in the order of the registry.
     pub sections: Vec<Section>,
-    /// Programs that were judged before, by their manifests.
+    /// Stored results of external solvers.
     #[serde(default)]
     pub judged: Vec<Judged>,
-    /// Outcomes that the page and the terminal show; all where none is named. Every file holds all results.
+    /// Outcomes that the page and the terminal show; empty for all. Every file holds all results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shown: Vec<Outcome>,
-    /// What accuracy costs and what stays stable, as it was measured before.
+    /// Stored measurements of cost and stability.
     #[serde(default)]
     pub measured: Measurements,
 }
 
 impl Report {
-    /// The sections with the results that are shown and their controls.
+    /// Returns a report with only the results that are shown, and their controls.
     #[must_use]
     pub fn view(&self) -> Cow<'_, Self> {
         if self.shown.is_empty() {
@@ -47,12 +47,12 @@ impl Report {
     }
 }
 
-/// What ran, where and when.
+/// Provenance of a run: version, machine, date and options.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Version of the harness.
     pub version: String,
-    /// Commit of the harness, with a mark when the tree was changed.
+    /// Commit of the harness, with a mark if the working tree was modified.
     pub commit: String,
     /// Date and time.
     pub date: String,
@@ -67,44 +67,44 @@ pub struct Provenance {
     pub wall_seconds: f64,
 }
 
-/// One case.
+/// Results of one case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Section {
     /// Name of the case, such as `nine-discs`.
     pub name: String,
     /// Title in words.
     pub title: String,
-    /// What the case claims, in one paragraph.
+    /// Claim of the case, in one paragraph.
     pub claim: String,
     /// Derivation of the expected answer: Markdown without raw HTML, formulas as text.
     pub derivation: String,
-    /// Where this test is weak: Markdown.
+    /// Limitations of this test, in Markdown.
     pub weak: String,
-    /// Figures in the order in which they are shown.
+    /// Figures in the order of presentation.
     #[serde(deserialize_with = "stored_figure::figures")]
     pub figures: Vec<Figure>,
-    /// Rows in the order of the gates.
+    /// Results in the order of the claims.
     pub verdicts: Vec<Verdict>,
     /// Negative controls.
     pub controls: Vec<Control>,
-    /// What every run cost.
+    /// Cost of every run.
     pub runs: Vec<RunCost>,
 }
 
-/// What one run cost.
+/// Cost of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
-    /// Variant of the case's scene.
+    /// Variant of the scene.
     pub variant: String,
     /// Solver and convention.
     pub solver: String,
     /// Resolution level.
     pub resolution: String,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps times grains.
+    /// Number of steps times number of grains.
     pub particle_steps: u64,
-    /// Contact laws evaluated; absent of a program, which does not tell.
+    /// Number of evaluated contact laws; absent if a program does not report it.
     pub contact_evaluations: Option<u64>,
     /// Wall-clock time of the stepping loop (s).
     #[serde(deserialize_with = "stored_figure::number")]
@@ -112,6 +112,6 @@ pub struct RunCost {
     /// Time step (s).
     #[serde(deserialize_with = "stored_figure::number")]
     pub time_step: f64,
-    /// Time step over the critical one; absent where the method has none.
+    /// Time step as a fraction of the critical time step; absent if the method has none.
     pub fraction_of_critical: Option<f64>,
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::report::{Provenance, Report};
 
-/// `results.json`, as the rest of the world reads it.
+/// Content of `results.json`, whose keys are a public interface.
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
@@ -28,7 +28,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// One line of `points.csv`: what a run cost, whatever its verdicts.
+/// One line of `points.csv`: the cost of a run, regardless of its results.
 #[derive(Serialize)]
 struct Point<'a> {
     case: &'a str,
@@ -60,10 +60,10 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
     })
 }
 
-/// `results.json`: provenance, verdicts, controls and cost points.
+/// Returns `results.json`: provenance, results, controls and cost of runs.
 ///
 /// # Errors
-/// When something has no JSON form, which no report that was made by this project has.
+/// When a value has no JSON form; this does not occur in reports of this project.
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
@@ -74,13 +74,13 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// `points.csv`: a header and a line a run.
+/// Returns `points.csv`: a header and one line per run.
 ///
 /// # Errors
-/// When a line cannot be encoded, which none of this project can fail to be.
+/// When a line cannot be encoded; this does not occur in reports of this project.
 pub fn points_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    // Written apart from the rows, so that a report without runs has a header too.
+    // The header is written separately, so that a report without runs has one too.
     table.write_record([
         "case",
         "variant",

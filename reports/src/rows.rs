@@ -1,4 +1,4 @@
-//! Rows of a report as a table: `rows.csv`, and Parquet for who asks.
+//! Results of a report as a table: `rows.csv` and, on request, Parquet.
 
 use std::io;
 
@@ -11,8 +11,8 @@ use grainbench_harness::verdict::Verdict;
 /// Name of the table as Parquet.
 pub const ROWS_PARQUET: &str = "rows.parquet";
 
-/// The columns, each with its name. What is absent is null; of a bound, a band or an order `expected` is, and `bound` has it in
-/// words.
+/// Returns the columns with their names. Absent values are null. For a bound, a band or an order, `expected` is null
+/// and `bound` holds the expectation in words.
 fn columns(report: &Report) -> Vec<(String, Values)> {
     let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
     let words = |of: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| of(row)).collect());
@@ -44,15 +44,16 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
     columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
 }
 
-/// `rows.csv`: a header and a line a row. Numbers are the shortest text that reads back to the same bits.
+/// Returns `rows.csv`: a header and one line per result. Each number is the shortest text that reads back to the same
+/// bits.
 ///
 /// # Errors
-/// When a line cannot be encoded, which none of this project can fail to be.
+/// When a line cannot be encoded; this does not occur in reports of this project.
 pub fn rows_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
     csv(&columns(report))
 }
 
-/// Columns of words and numbers as CSV.
+/// Returns columns of words and numbers as CSV.
 pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.iter().map(|(name, _)| harmless(name.clone())))?;
@@ -72,10 +73,10 @@ pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
     table.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// The same as Parquet.
+/// Returns the table as Parquet.
 ///
 /// # Errors
-/// When it cannot be encoded.
+/// When the table cannot be encoded.
 pub fn rows_parquet(report: &Report) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     whole("rows", &columns(report), &mut bytes)?;
@@ -90,7 +91,7 @@ mod tests {
     use parquet::record::RowAccessor;
     use std::io::Write;
 
-    /// Both tables hold what the report holds, row by row.
+    /// Both tables contain every result of the report, row by row.
     #[test]
     fn a_table_has_every_row() {
         let report = sample::report();

@@ -1,5 +1,5 @@
-//! Lines in the plane, on sheets beside one another: with one scale for both axes, so that an angle on the page is the angle, or
-//! with as much room as there is.
+//! Lines in the plane, on sheets side by side. Both axes have the same scale, so that angles are preserved, or each
+//! axis fills the available room.
 
 use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
@@ -7,34 +7,35 @@ use maud::{Markup, html};
 use super::scale::Scale;
 use super::{FONTS, WIDTH, wrap};
 
-/// Room at the left of a sheet, for its numbers and its label.
+/// Width to the left of a sheet, for its numbers and its label.
 const LEFT: f64 = 62.0;
-/// Room between a sheet and what follows at the right.
+/// Width to the right of a sheet.
 const RIGHT: f64 = 14.0;
-/// Room for the title of the drawing and those of sheets.
+/// Height above the sheets, for the title of the drawing and the titles of the sheets.
 const TOP: f64 = 68.0;
-/// Room for numbers and label below a sheet.
+/// Height below a sheet, for its numbers and its label.
 const FOOT: f64 = 54.0;
 /// Height of a line of the legend.
 const LINE: f64 = 24.0;
 const TALLEST: f64 = 620.0;
-/// Height of sheets whose axes have scales of their own.
+/// Height of sheets whose axes have different scales.
 const FREE: f64 = 420.0;
-/// Width of the widest line.
+/// Width of the widest line (drawing units).
 const WIDEST: f64 = 5.0;
-/// Widths that are told apart: lines of one are one path.
+/// Number of line widths. Lines of equal width share a path.
 const WIDTHS: usize = 12;
-/// Blue, purple, orange, ink: apart without colour vision by their brightness, and by the widths that they are given.
+/// Blue, purple, orange and black. They differ in brightness and are drawn with different widths, so they are distinct
+/// without colour vision.
 const COLOURS: [&str; 4] = ["#0072b2", "#8b2f8f", "#e08214", "#222"];
 
-/// Draws lines as a complete SVG document. What is not finite is left out and counted.
+/// Draws lines as a complete SVG document. Lines that are not finite are left out and counted.
 #[must_use]
 pub fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
     let some = |length: f64| if length > 0.0 { length } else { 1.0 };
     let across = some(plot.sheets.iter().map(|sheet| size(sheet)[0]).sum());
     let up = some(plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(0.0, f64::max));
-    // Sheets share a scale; each is as wide as its share of the room.
+    // Sheets share a scale; the width of each is proportional to its extent.
     let widest = (WIDTH - count * (LEFT + RIGHT)) / across;
     let one = widest.min(TALLEST / up);
     let scale = if plot.to_scale { [one, one] } else { [widest, FREE / up] };
@@ -83,7 +84,7 @@ fn size(sheet: &Sheet) -> [f64; 2] {
     [0, 1].map(|axis| if (high[axis] - low[axis]).is_finite() { (high[axis] - low[axis]).max(0.0) } else { 0.0 })
 }
 
-/// From the plane to the units of the drawing, y up.
+/// Transformation from the plane to drawing units, with y upwards.
 struct View {
     scale: [f64; 2],
     left: f64,
@@ -97,7 +98,7 @@ impl View {
         [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
     }
 
-    /// Corner and size of a part of the plane, as a rectangle is drawn.
+    /// Returns the upper left corner and the size of a rectangle in the drawing.
     fn rectangle(&self, [low, high]: [[f64; 2]; 2]) -> [String; 4] {
         let ([x, y], [right, foot]) = (self.at([low[0], high[1]]), self.at([high[0], low[1]]));
         [x, y, right - x, foot - y].map(px)
@@ -118,7 +119,7 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
             text x=(px(middle[0])) y=(px(view.at(high)[1] - 9.0 - 16.0 * number as f64)) text-anchor="middle" font-size="14"
                 fill="#222" { (line) }
         }
-        // A drawing within the drawing is cut off at its edges.
+        // A nested SVG element clips the lines at the edges of the sheet.
         svg x=(x) y=(y) width=(width) height=(height) viewBox=(format!("{x} {y} {width} {height}")) {
             g fill="none" stroke-linecap="round" {
                 @for (place, kind) in sheet.kinds.iter().enumerate() { (kind_of_lines(kind, place, view, missing)) }
@@ -140,7 +141,7 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
                 text x=(px(view.left - 8.0)) y=(px(y + 4.5)) text-anchor="end" { (tick.label.unwrap_or_default()) }
             }
             text x=(px(middle[0])) y=(px(foot + 39.0)) text-anchor="middle" font-size="14" { (across) }
-            // A digit of this size is 7.5 wide; the label is centred on a line left of the widest number.
+            // A digit of this size is 7.5 units wide. The label is centred on a line to the left of the widest number.
             @let widest = ticks(1).into_iter().filter_map(|tick| tick.label).map(|label| label.chars().count()).max();
             @let x = px(view.left - (16.0 + 7.5 * widest.unwrap_or(0) as f64).max(40.0));
             text x=(x) y=(px(middle[1])) text-anchor="middle" font-size="14"
@@ -169,7 +170,7 @@ fn kind_of_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -
     }
 }
 
-/// The kinds that there are, by their places.
+/// Returns the index and the label of each kind that has lines.
 fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
     let most = sheets.iter().map(|sheet| sheet.kinds.len()).max().unwrap_or(0);
     let label = |place: usize| {

@@ -1,4 +1,4 @@
-//! Figures as SVG text that needs no font and no library to be read.
+//! Figures as SVG text that needs no external font or library.
 
 pub mod field;
 pub mod forces;
@@ -12,27 +12,27 @@ use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_scene::text::tamed;
 use thiserror::Error;
 
-/// Width of every figure in its own units, which a page scales.
+/// Width of every figure (drawing units); a page scales it.
 pub(crate) const WIDTH: f64 = 860.0;
 
-/// Fonts that are there on every desktop and phone.
+/// Fonts that are available on desktops and phones.
 pub(crate) const FONTS: &str =
     "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
 
-/// A figure that could not be drawn.
+/// Error when a figure cannot be drawn.
 #[derive(Debug, Error)]
 #[error("cannot draw figure `{figure}`: {reason}")]
 pub struct DrawError {
     /// Name of the figure.
     pub figure: String,
-    /// What went wrong.
+    /// Reason.
     pub reason: String,
 }
 
 /// Draws a figure as a complete SVG document.
 ///
 /// # Errors
-/// When frames of a field are not of one size.
+/// When a field has no panel, or when its frames differ in size or number.
 pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     let svg = match &figure.drawing {
         Drawing::Graph(graph) => graph::draw(&figure.title, graph),
@@ -44,11 +44,11 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     Ok(markup(&svg))
 }
 
-/// The same as light as a page wants it: a field with fewer pixels where it has many, and, where it moves, the film packed for
-/// the script of the page.
+/// Draws a figure in a size that suits a page. A field gets fewer pixels if it has many. A film is also packed for the
+/// script of the page.
 ///
 /// # Errors
-/// When frames of a field are not of one size.
+/// When a field has no panel, or when its frames differ in size or number.
 pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError> {
     let Drawing::Field(field) = &figure.drawing else { return Ok((draw(figure)?, None)) };
     let wrong = |reason: std::io::Error| DrawError { figure: figure.name.clone(), reason: reason.to_string() };
@@ -56,15 +56,15 @@ pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError
     Ok((markup(&field::draw(&figure.title, &light).map_err(wrong)?), reel))
 }
 
-/// A document without the characters that XML has no place for, whoever wrote the words in it.
+/// Returns a document without characters that XML does not allow.
 pub(crate) fn markup(document: &str) -> String {
     tamed(document, |character| matches!(character, '\n' | '\t'))
 }
 
-/// The film of a figure by itself, as an animated PNG; none where nothing moves.
+/// Returns the film of a figure as an animated PNG; none if the figure is no film.
 ///
 /// # Errors
-/// When the frames are not of one size.
+/// When the field has no panel, or when its frames differ in size or number.
 pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     match &figure.drawing {
         Drawing::Field(field) if field.times.len() > 1 => field::film(field)
@@ -74,7 +74,7 @@ pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     }
 }
 
-/// About how wide a text is. No font is at hand, so an average letter stands for all of them.
+/// Returns the approximate width of a text. Without font metrics, it uses average widths of a few kinds of letters.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let letters: f64 = text
         .chars()
@@ -88,7 +88,7 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     letters * size
 }
 
-/// Breaks a text into lines no wider than `width`, at spaces where there are some.
+/// Breaks a text into lines no wider than `width`, at spaces only.
 pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

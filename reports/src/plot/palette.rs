@@ -1,13 +1,12 @@
-//! Colours, markers and dashes that stay apart without colour vision and in grey print.
+//! Colours, markers and dashes that are distinct without colour vision and in grey print.
 
-/// Secondary text.
+/// Colour of secondary text.
 pub const FAINT: &str = "#666";
 
-/// Okabe and Ito's colours without the yellow, which is too pale on white, and without black, which dashed curves
-/// have.
+/// Colours of Okabe and Ito, without yellow, which is too pale on white, and without black, which dashed curves have.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
-/// Shades of dashed curves: exact answers and limits stand apart from what was computed.
+/// Shades of dashed curves, which are exact solutions and limits.
 const SHADES: [&str; 3] = ["#222", "#666", "#999"];
 
 /// Lengths of dash and gap.
@@ -16,19 +15,19 @@ const DASHES: [(u32, u32); 4] = [(9, 5), (3, 4), (16, 5), (5, 10)];
 /// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
-    /// Round.
+    /// Disc.
     Circle,
-    /// Four sides, flat.
+    /// Square with horizontal edges.
     Square,
-    /// Three sides, pointing up.
+    /// Triangle pointing up.
     Triangle,
-    /// Four sides, on a corner.
+    /// Square on a corner.
     Diamond,
-    /// Three sides, pointing down.
+    /// Triangle pointing down.
     Inverted,
-    /// Five sides.
+    /// Pentagon.
     Pentagon,
-    /// Five points.
+    /// Star with five points.
     Star,
 }
 
@@ -43,7 +42,8 @@ const MARKERS: [Marker; 7] = [
 ];
 
 impl Marker {
-    /// Corners of the shape for a marker of the size of a disc of radius one, y down; empty for the circle.
+    /// Returns the corners of the shape, with y downwards, for a marker as large as a disc of radius 1. Empty for the
+    /// circle.
     #[must_use]
     pub fn corners(self) -> Vec<(f64, f64)> {
         let polygon = |count: u32, radii: &[f64], first: f64| {
@@ -68,26 +68,26 @@ impl Marker {
     }
 }
 
-/// Colour of the curve at `place` among those that are not dashed.
+/// Returns the colour of a curve; `place` is its index among the curves that are not dashed.
 #[must_use]
 pub fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
 }
 
-/// Marker of the curve at `place` among those that are not dashed. Seven markers on six colours: the pairs repeat
-/// only after forty-two curves.
+/// Returns the marker of a curve; `place` is its index among the curves that are not dashed. With seven markers and six
+/// colours, pairs repeat after 42 curves.
 #[must_use]
 pub fn marker(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
 }
 
-/// Shade of the curve at `place` among the dashed ones.
+/// Returns the shade of a curve; `place` is its index among the dashed curves.
 #[must_use]
 pub fn shade(place: usize) -> &'static str {
     SHADES[place % SHADES.len()]
 }
 
-/// Lengths of dash and gap of the curve at `place` among the dashed ones.
+/// Returns the lengths of dash and gap of a curve; `place` is its index among the dashed curves.
 #[must_use]
 pub fn dash(place: usize) -> (u32, u32) {
     DASHES[place % DASHES.len()]

@@ -1,4 +1,5 @@
-//! Fields light enough for a page: pictures with fewer pixels, and films as differences between frames, which a script unpacks.
+//! Fields in a size that suits a page: pictures with fewer pixels, and films as differences between frames. A script
+//! unpacks the films.
 
 use std::io::{self, Write};
 
@@ -11,22 +12,24 @@ use grainbench_harness::raster::{HIGH, LOW, RIM, Raster, VOID};
 
 use super::field::{self, Frames};
 
-/// The most that a picture weighs in a page, and a film (B).
+/// Largest size of a picture and of a film in a page (B).
 const PICTURE: usize = 60_000;
 const FILM: usize = 45_000;
-/// The fewest frames of a film, and pixels of a picture across.
+/// Smallest number of frames of a film, and smallest width of a picture (pixels).
 const FRAMES: usize = 16;
 const ACROSS: u32 = 60;
 
-/// The field with as few pixels and frames as it must have to be light; of a film, its reel too.
+/// Reduces pixels and frames of a field until it is small enough for a page. Returns the field, and the packed film if
+/// it is one.
 ///
 /// # Errors
-/// When its frames do not fit each other.
+/// When its frames differ in size or number.
 pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     let mut field = field.clone();
     let is_film = field.times.len() > 1;
     loop {
-        // Packed in haste a film takes some tenths more: one that is far too heavy is not packed well only to find that out.
+        // Fast compression makes a film some tenths larger. It reveals a film that is much too large, without slow
+        // compression.
         let far_too_heavy = is_film && reel(&field, Compression::fast())?.len() > 2 * FILM;
         if far_too_heavy && field.panels[0].frames[0].width >= 2 * ACROSS {
             field = lighter(&field);
@@ -43,16 +46,16 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     }
 }
 
-/// Half the frames of a film of many, else half the pixels along each side.
+/// Halves the number of frames if a film has many, otherwise the number of pixels along each side.
 fn lighter(field: &Field) -> Field {
     if field.times.len() >= 2 * FRAMES { every_other(field) } else { halved(field) }
 }
 
-/// A film as `width height frames palette levels`: the palette in base64, and so the zlib stream of the levels, which of all
-/// frames but the first are differences to the frame before.
+/// Returns a film as `width height frames palette levels`. The palette is base64, and the levels are the base64 code of
+/// a zlib stream. After the first frame, the stream holds differences to the previous frame.
 ///
 /// # Errors
-/// When its frames do not fit each other.
+/// When its frames differ in size or number.
 fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
     let mut packed = ZlibEncoder::new(Vec::new(), compression);
@@ -69,7 +72,7 @@ fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     Ok(format!("{width} {height} {} {palette} {}", levels.len(), STANDARD.encode(packed.finish()?)))
 }
 
-/// The last of every two frames: the last one stays.
+/// Keeps every second frame, so that the last frame remains.
 fn every_other(field: &Field) -> Field {
     let odd = field.times.len() % 2;
     let keep = |at: &usize| at % 2 != odd;
@@ -81,7 +84,7 @@ fn every_other(field: &Field) -> Field {
     Field { panels: field.panels.iter().map(pick).collect(), times, ..field.clone() }
 }
 
-/// Half the pixels along each side.
+/// Halves the number of pixels along each side.
 fn halved(field: &Field) -> Field {
     let half = |panel: &Panel| Panel {
         frames: panel.frames.iter().map(|frame| halved_raster(frame, field.shades)).collect(),
@@ -90,7 +93,7 @@ fn halved(field: &Field) -> Field {
     Field { panels: field.panels.iter().map(half).collect(), pixel: 2.0 * field.pixel, ..field.clone() }
 }
 
-/// Of four pixels a rim where half of them are, else the mean of the values that there are.
+/// Combines four pixels into one: a rim if at least two are rims, otherwise the mean of the values.
 fn halved_raster(raster: &Raster, shades: Shades) -> Raster {
     let (width, height) = (raster.width.div_ceil(2), raster.height.div_ceil(2));
     let at =
@@ -101,7 +104,7 @@ fn halved_raster(raster: &Raster, shades: Shades) -> Raster {
         match (four.into_iter().filter(|level| *level == RIM).count(), values().count() as u32) {
             (2.., _) | (1, 0) => RIM,
             (_, 0) => VOID,
-            // Neighbouring levels of lit bodies are no neighbours in light.
+            // Levels of lit bodies cannot be averaged, because similar levels are not similar in brightness.
             _ if shades == Shades::Lit => values().next().unwrap_or(0) as u8,
             (_, count) => (values().sum::<u32>() / count) as u8,
         }

@@ -1,4 +1,4 @@
-//! One axis: its range, its ticks and their labels.
+//! Scale of an axis: range, ticks and labels.
 
 use std::ops::Range;
 
@@ -10,27 +10,27 @@ use crate::number::{power_of_ten, significant};
 #[derive(Clone, Debug)]
 pub struct Scale {
     logarithmic: bool,
-    /// Ends in axis units: the values, or their decimal logarithms.
+    /// Lower end of the axis: a value, or its decimal logarithm.
     low: f64,
     high: f64,
-    /// About how many labelled ticks fit.
+    /// Approximate number of labelled ticks that fit.
     room: f64,
-    /// Where ticks stand instead of at round numbers.
+    /// Values of the ticks, if they are not at round numbers.
     levels: Vec<f64>,
 }
 
-/// A place on an axis.
+/// A tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The value there.
+    /// Value of the tick.
     pub value: f64,
-    /// What is printed; nothing at the places between.
+    /// Label; none for minor ticks.
     pub label: Option<String>,
 }
 
 impl Scale {
-    /// An axis that shows all of `values`, with `margin` (a fraction of the range) to spare at both ends and room
-    /// for about `room` labels. Values that cannot stand on it are passed over.
+    /// Returns an axis that contains all `values`, with `margin` (a fraction of the range) at both ends and about
+    /// `room` labels. Values that the axis cannot show are ignored.
     #[must_use]
     pub fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
         let mut scale = Self {
@@ -50,7 +50,7 @@ impl Scale {
         if scale.low > scale.high {
             (scale.low, scale.high) = (0.0, 1.0);
         }
-        // Halved before they are subtracted: the ends may be as far apart as numbers go.
+        // Each end is halved before the subtraction, because their difference could overflow.
         let least = if logarithmic { 0.25 } else { 1e-12 * scale.low.abs().max(scale.high.abs()) };
         let half = 0.5 * scale.high - 0.5 * scale.low;
         if half <= least {
@@ -71,25 +71,25 @@ impl Scale {
         scale
     }
 
-    /// The axis with its labelled ticks at some values, where there are some.
+    /// Places labelled ticks at these values; without values, ticks stay at round numbers.
     #[must_use]
     pub fn at_levels(self, levels: &[f64]) -> Self {
         Self { levels: levels.iter().copied().filter(|level| self.shows(*level)).collect(), ..self }
     }
 
-    /// Whether a value has a place on this axis.
+    /// Returns true if the axis can show a value.
     #[must_use]
     pub fn shows(&self, value: f64) -> bool {
         value.is_finite() && !(self.logarithmic && value <= 0.0)
     }
 
-    /// Position from 0 at the low end to 1 at the high end.
+    /// Returns the position from 0 at the lower end to 1 at the upper end.
     #[must_use]
     pub fn position(&self, value: f64) -> f64 {
         (self.place(value) - self.low) / (self.high - self.low)
     }
 
-    /// Ticks in rising order.
+    /// Returns the ticks in ascending order.
     #[must_use]
     pub fn ticks(&self) -> Vec<Tick> {
         if !self.levels.is_empty() {
@@ -103,7 +103,7 @@ impl Scale {
         if self.logarithmic {
             value.log10()
         } else {
-            // Farther out, the length of the axis would overflow.
+            // The clamp keeps the length of the axis from overflowing.
             value.clamp(f64::MIN / 4.0, f64::MAX / 4.0)
         }
     }
@@ -118,7 +118,7 @@ impl Scale {
         let step = multiple * decade;
         let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
         let largest = self.low.abs().max(self.high.abs());
-        // One exponent for all labels of the axis, so that they compare at a glance.
+        // All labels of an axis have the same exponent, so that they are easy to compare.
         let exponent = if !(1e-2..1e5).contains(&largest) { largest.log10().floor() as i32 } else { 0 };
         let unit = 10_f64.powi(exponent);
         let decimals = (-(step / unit).log10() - 1e-9).ceil().clamp(0.0, 15.0) as usize;
@@ -154,11 +154,11 @@ impl Scale {
                 }
                 let label = match multiple {
                     1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
-                    // A short axis has too few powers of ten to be read by.
+                    // A short axis has too few powers of ten, so it also gets labels at 2 and 5.
                     2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
                     _ => None,
                 };
-                // A grid finer than the eye sees is only grey.
+                // Too many ticks would make the grid a grey area.
                 let fine = if multiple == 1 { 40.0 } else { 8.0 };
                 if label.is_some() || decades <= fine {
                     ticks.push(Tick { value: 10_f64.powf(place), label });
