@@ -1,5 +1,5 @@
-//! Hidden directories and files on their way, whose names tell the process that made them: what a process left that is no
-//! more can be told, from the first moment, from what another is working on, and from what a user calls alike.
+//! Temporary hidden directories and files. Their names contain the process that made them. Leftovers of ended processes
+//! are thus distinct from files in use, and from files of the user with similar names.
 
 use std::fs;
 use std::io;
@@ -9,39 +9,40 @@ use std::time::{Duration, SystemTime};
 
 use tempfile::{Builder, TempDir};
 
-/// What all names of ours begin with.
+/// Start of the names of all our temporary files.
 const PREFIX: &str = ".grainbench-";
-/// The lock of a directory that is being written.
+/// Name of the lock file of a directory that is being written.
 const LOCK: &str = ".grainbench-lock";
-/// After which time something of an owner on another machine, who cannot be asked, is taken for left.
+/// Age after which a file from another machine counts as a leftover, because its process cannot be checked.
 const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 
-/// A hidden directory on the same file system, so that a rename out of it is atomic. Files are made inside it rather
-/// than by `NamedTempFile` so that they get the permissions of any other new file. What others left there who are no more
-/// goes at this occasion.
+/// Creates a hidden directory on the same file system as `parent`, so that a rename out of it is atomic.
+///
+/// Files are created inside it and not by `NamedTempFile`, so that they get the permissions of ordinary new files.
+/// Leftovers of ended processes in `parent` are removed first.
 pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
-    // What cannot be taken away is no reason to write nothing.
+    // Leftovers that cannot be removed do not prevent writing.
     let _ = sweep(parent);
     Builder::new().prefix(&prefix()).tempdir_in(parent).map_err(without_its_path)
 }
 
-/// What the names of this process begin with. A lot follows, without a dash.
+/// Returns the start of the names of this process. A random suffix without a dash follows.
 fn prefix() -> String {
     format!("{PREFIX}{}@{}-", process::id(), machine())
 }
 
-/// The process and the machine that a name tells.
+/// Returns the process and the machine that a name contains.
 fn owner_in(name: &str) -> Option<(u32, &str)> {
     let (number, rest) = name.strip_prefix(PREFIX)?.split_once('@')?;
     Some((number.parse().ok()?, rest.rsplit_once('-')?.0))
 }
 
-/// Takes away what processes that are no more had on its way into a folder. What has no owner of ours stays.
+/// Removes leftovers of ended processes from a folder. Files whose names have another form remain.
 ///
 /// # Errors
-/// When the folder cannot be read, or something in it not be removed.
+/// When the folder cannot be read, or when a leftover cannot be removed.
 pub fn sweep(folder: &Path) -> io::Result<()> {
-    // The parent of a bare name is the current directory.
+    // The parent of a bare file name is the current directory.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -51,23 +52,23 @@ pub fn sweep(folder: &Path) -> io::Result<()> {
             continue;
         }
         let swept = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-        // Another may be sweeping too.
+        // Another process may have removed it at the same time.
         swept.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     }
     Ok(())
 }
 
-/// The lock of a directory, for as long as this is alive.
+/// Lock of a directory. It is released when this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock(std::path::PathBuf);
 
 impl Lock {
-    /// Takes the lock of a directory, within a while in which another may let go of it.
+    /// Locks a directory. It waits up to 10 s for another process to release the lock.
     pub(crate) fn of(directory: &Path) -> io::Result<Self> {
         const TRIES: u32 = 200;
         let path = directory.join(LOCK);
         for _ in 0..TRIES {
-            // With its owner in it from the first moment: an empty one would be nobody's for ever.
+            // The lock file contains its owner from the start. An empty file left by a crash could never be attributed.
             let mut file = Builder::new().prefix(&prefix()).tempfile_in(directory).map_err(without_its_path)?;
             io::Write::write_all(&mut file, owner().as_bytes())?;
             match file.persist_noclobber(&path).map_err(|error| error.error) {
@@ -91,7 +92,7 @@ impl Drop for Lock {
     }
 }
 
-/// This process, in words: its number, and the machine on which it is that.
+/// Returns the process number and the machine in words.
 fn owner() -> String {
     format!("process {} on {}\n", process::id(), machine())
 }
@@ -101,7 +102,7 @@ fn machine() -> String {
     name.map_or_else(|| "unknown".to_owned(), |name| name.trim().replace(char::is_whitespace, "-"))
 }
 
-/// Whether a lock names an owner who is no more.
+/// Returns true if the owner of a lock has ended.
 fn is_left(lock: &Path) -> bool {
     let Ok(text) = fs::read_to_string(lock) else { return false };
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -109,7 +110,7 @@ fn is_left(lock: &Path) -> bool {
     number.parse().is_ok_and(|process| is_gone(process, host, lock))
 }
 
-/// Whether a process is no more; of one on another machine, whether what it made there is old.
+/// Returns true if a process has ended. For a process on another machine, returns true if its file is old.
 fn is_gone(process: u32, host: &str, made: &Path) -> bool {
     if host == machine() && Path::new("/proc/self").exists() {
         return !Path::new(&format!("/proc/{process}")).exists();
@@ -117,12 +118,12 @@ fn is_gone(process: u32, host: &str, made: &Path) -> bool {
     age_of(made).is_some_and(|age| age > PATIENCE)
 }
 
-/// How long ago something was changed.
+/// Returns the time since a file was changed.
 fn age_of(path: &Path) -> Option<Duration> {
     SystemTime::now().duration_since(fs::metadata(path).ok()?.modified().ok()?).ok()
 }
 
-/// What the system said, without the temporary name that nobody asked for.
+/// Returns the error of the operating system, without the name of the temporary file.
 fn without_its_path(error: io::Error) -> io::Error {
     let inner =
         error.get_ref().and_then(|wrapper| wrapper.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
@@ -133,7 +134,7 @@ fn without_its_path(error: io::Error) -> io::Error {
 mod tests {
     use super::*;
 
-    /// A process that has been and is no more.
+    /// Returns the number of a process that has ended.
     fn gone() -> u32 {
         let mut child = process::Command::new("true").spawn().unwrap();
         child.wait().unwrap();

@@ -1,19 +1,19 @@
-//! What probes told over time, a graph a quantity: velocities beside one another, and positions, and forces.
+//! Time series of probes: one graph per quantity, such as velocities, positions and forces.
 
 use crate::record_figures::Named;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_scene::record::Series;
 
-/// More curves than this in one graph cannot be told apart.
+/// Largest number of curves in a graph that are easy to distinguish.
 const CURVES: usize = 8;
 
-/// What a column is of, and of which probe: `disc.vx` is `vx` of `disc`.
+/// Splits the name of a column into probe and quantity: `disc.vx` is `vx` of `disc`.
 fn parts(name: &str) -> (&str, &str) {
     name.rsplit_once('.').unwrap_or(("", name))
 }
 
-/// A graph of every quantity that any record's probes told, within a window of time. What is not finite, and what a column that
-/// ends early has not, is not drawn.
+/// Returns one graph for each quantity of the probes of any record, within a window of time. Missing values and values
+/// that are not finite are not plotted.
 pub(crate) fn figures(records: &[Named<'_>], window: (f64, f64)) -> Vec<Figure> {
     let mut quantities: Vec<(&str, &str)> = Vec::new();
     for column in records.iter().flat_map(|named| &named.record.series.columns) {

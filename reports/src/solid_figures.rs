@@ -1,7 +1,8 @@
-//! Pictures of records in space: grains as lit spheres seen from far away, walls as lines, contact forces as bars.
+//! Figures of records in three dimensions: grains as lit spheres without perspective, walls as lines, contact forces as
+//! bars.
 //!
-//! The view is orthographic: a place p stands at (p·r, p·u), and of two things in one pixel the one with the larger p·t is seen,
-//! where r, u and t point right, up and towards the eye.
+//! The projection is orthographic. A position p is drawn at (p·r, p·u), where r, u and t point right, up and towards
+//! the eye. Of two objects in one pixel, the one with the larger p·t is visible.
 
 use crate::number;
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
@@ -10,26 +11,26 @@ use grainbench_scene::record::{Partner, Snapshot, WallState};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
-/// Pixels along the longer side.
+/// Pixels along the longer side of a picture.
 const PIXELS: f64 = 640.0;
-/// Where the eye is, from the middle of what is seen.
+/// Direction of the eye from the centre of the scene.
 const EYE: Vector3<f64> = Vector3::new(0.5, -0.8, 0.4);
-/// Where the light comes from.
+/// Direction of the light source.
 const LIGHT: Vector3<f64> = Vector3::new(0.1, -0.7, 0.8);
-/// Light that reaches what is turned away from it.
+/// Light intensity on surfaces that face away from the light source.
 const AMBIENT: f64 = 0.3;
-/// The widest bar, in radii.
+/// Half-width of the widest bar, in radii.
 const WIDEST: f64 = 0.7;
-/// Straight pieces of a circle.
+/// Number of straight pieces of a circle.
 const PIECES: usize = 48;
 
-/// A record's snapshots and what they are called.
+/// Snapshots of a record, and a title.
 pub(crate) struct Shot<'a> {
     pub(crate) title: String,
     pub(crate) frames: Vec<&'a Snapshot>,
 }
 
-/// From places to pixels.
+/// Projection from positions to pixels.
 struct View {
     right: Vector3<f64>,
     up: Vector3<f64>,
@@ -40,7 +41,7 @@ struct View {
 }
 
 impl View {
-    /// What holds all grains and walls that end somewhere.
+    /// Returns a view that contains all grains, material points and finite walls.
     fn of(shots: &[Shot<'_>]) -> Option<Self> {
         let toward = EYE.normalize();
         let right = Vector3::z().cross(&toward).normalize();
@@ -66,7 +67,7 @@ impl View {
         Some(Self { right, up, toward, low, pixel, size: (count(reach.x), count(reach.y)) })
     }
 
-    /// Pixel, from the left and from the top, and depth towards the eye.
+    /// Returns the pixel from the left and from the top, and the depth towards the eye.
     fn at(&self, place: Vector3<f64>) -> (f64, f64, f64) {
         let across = (place.dot(&self.right) - self.low.x) / self.pixel;
         let up = (place.dot(&self.up) - self.low.y) / self.pixel;
@@ -74,7 +75,7 @@ impl View {
     }
 }
 
-/// Levels with the depth of what is seen.
+/// Levels of the pixels, and the depth of the visible objects.
 struct Canvas<'a> {
     view: &'a View,
     levels: Vec<u8>,
@@ -98,7 +99,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// A sphere, its level by how much light falls on it.
+    /// Draws a sphere; `level` returns the level for a light intensity.
     fn sphere(&mut self, centre: Vector3<f64>, radius: f64, level: impl Fn(f64) -> u8) {
         let (x, y, depth) = self.view.at(centre);
         let (reach, light) = (radius / self.view.pixel, LIGHT.normalize());
@@ -119,7 +120,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// A straight bar as wide as so many pixels.
+    /// Draws a straight bar with a width in pixels.
     fn bar(&mut self, from: Vector3<f64>, to: Vector3<f64>, width: f64, level: u8) {
         let (a, b) = (self.view.at(from), self.view.at(to));
         let length = (b.0 - a.0).hypot(b.1 - a.1);
@@ -155,14 +156,14 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// The edges of walls, as lines through places.
+/// Returns the edges of the walls as polylines.
 fn outlines(snapshot: &Snapshot) -> Vec<Vec<Vector3<f64>>> {
     snapshot.walls.iter().flat_map(|wall| outline(wall, snapshot.bounds)).collect()
 }
 
 fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<Vec<Vector3<f64>>> {
     match wall.corners[..] {
-        // A plane without end is drawn as far as the domain reaches.
+        // An infinite plane is drawn as far as the domain extends.
         [point, normal, ..] if wall.infinite => {
             let middle = 0.5 * (low + high);
             let foot = middle + normal * (point - middle).dot(&normal);
@@ -171,7 +172,7 @@ fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<V
             let (a, b) = (first * half(first), second * half(second));
             vec![vec![foot - a - b, foot + a - b, foot + a + b, foot - a + b, foot - a - b]]
         }
-        // The ends of an axis and a point of the rim at each: a cylinder or a cone.
+        // Two ends of an axis and a point of the rim at each end describe a cylinder or a cone.
         [a, b, rim_a, rim_b] if is_round([a, b, rim_a, rim_b]) => {
             let (first, second) = across((b - a).normalize());
             let circle = |centre: Vector3<f64>, radius: f64| {
@@ -185,33 +186,34 @@ fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<V
             let sides = (0..PIECES).step_by(PIECES / 8).map(|at| vec![ring_a[at], ring_b[at]]).collect::<Vec<_>>();
             [vec![ring_a, ring_b], sides].concat()
         }
-        // A snapshot has of a mesh where it is, and not its triangles.
+        // The snapshot contains the position of a mesh, but not its triangles.
         [] | [_, _, _] => Vec::new(),
         ref corners => vec![corners.iter().chain(corners.first()).copied().collect()],
     }
 }
 
-/// Of a rectangle the third corner lies across from the first; of a round wall it lies at the rim about it.
+/// Returns true for the corners of a round wall. The third point of a round wall lies on the rim, so its direction from
+/// the first is perpendicular to the axis. In a rectangle, it is the opposite corner.
 fn is_round([a, b, rim_a, rim_b]: [Vector3<f64>; 4]) -> bool {
     let axis = b - a;
     let is_across = |way: Vector3<f64>| way.dot(&axis).abs() <= 1e-9 * axis.norm_squared();
     is_across(rim_a - a) && is_across(rim_b - b)
 }
 
-/// Two unit vectors across a third and each other.
+/// Returns two unit vectors that are perpendicular to a third and to each other.
 fn across(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let other = if normal.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
     let first = normal.cross(&other).normalize();
     (first, normal.cross(&first))
 }
 
-/// Speed of what is seen (m/s).
+/// Returns the speeds of grains and material points (m/s).
 fn speeds(snapshot: &Snapshot) -> impl Iterator<Item = f64> {
     let points = snapshot.points.iter().map(|point| point.velocity.norm());
     snapshot.grains.iter().map(|grain| grain.velocity.norm()).chain(points)
 }
 
-/// Grains lit and coloured by their speed; as a film where there are several frames.
+/// Returns the grains, lit and coloured by their speed. Several frames make a film.
 pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
     let view = View::of(shots)?;
     let all = shots.iter().flat_map(|shot| &shot.frames).flat_map(|snapshot| speeds(snapshot));
@@ -224,7 +226,7 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
                 canvas.sphere(grain.position, grain.radius, |shade| lit(colour(grain.velocity), shade));
             }
         }
-        // A material point is drawn as large as its volume.
+        // A material point is drawn as a sphere of its volume.
         for point in &snapshot.points {
             let radius = (0.75 / std::f64::consts::PI * point.volume).cbrt();
             canvas.sphere(point.position, radius, |shade| lit(colour(point.velocity), shade));
@@ -241,7 +243,7 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
     ))
 }
 
-/// Contact forces as bars through the contacts; none where no one has told any.
+/// Returns the contact forces as bars through the contacts; none if no contacts are reported.
 pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     let view = View::of(shots)?;
     let told: Vec<Shot<'_>> = shots
@@ -315,7 +317,7 @@ fn field(
     }
 }
 
-/// A number of two digits that is not below a value; one where there is nothing to show.
+/// Returns a number with two digits that is at least `value`, or 1 if `value` is not positive.
 fn readable(value: f64) -> f64 {
     if value > 0.0 {
         let unit = 10_f64.powf(value.log10().floor() - 1.0);
@@ -335,7 +337,7 @@ mod tests {
         snapshot.grains.truncate(2);
         for (at, grain) in snapshot.grains.iter_mut().enumerate() {
             grain.radius = 1.0;
-            // The second behind the first, as the eye sees them.
+            // Seen from the eye, the second grain is behind the first.
             grain.position = -EYE.normalize() * 5.0 * at as f64;
             grain.velocity = Vector3::new(at as f64, 0.0, 0.0);
         }

@@ -1,4 +1,4 @@
-//! Writing a directory of files whole or not at all.
+//! Writing a directory of files completely or not at all.
 
 use std::fs;
 use std::io;
@@ -10,26 +10,26 @@ use crate::manifest::{MANIFEST, Manifest};
 use crate::scratch::{Lock, sweep, temporary_in};
 use crate::write::{WriteError, parent_of};
 
-/// Files on their way into a directory. They gather in a hidden sibling and move into place at
-/// [`StagedDir::commit`]; dropped before that, nothing of them remains.
+/// A set of files that will be moved to a directory. They are written to a hidden directory and moved at
+/// [`StagedDir::commit`]. If the value is dropped before that, no file remains.
 #[derive(Debug)]
 pub struct StagedDir {
     target: PathBuf,
-    /// Holds `new`, the content, and during the commit `old`, what it replaces.
+    /// Holds `new` with the new files and, during the commit, `old` with the files that they replace.
     holder: Option<TempDir>,
-    /// In the order in which they were written.
+    /// Files in the order in which they were written.
     files: Vec<PathBuf>,
-    /// Missing parents of the target that had to be made, outermost first; they go when nothing is committed.
+    /// Missing parents of the target that were created, outermost first. They are removed if nothing is committed.
     made: Vec<PathBuf>,
-    /// Whether a manifest stands with the files.
+    /// True if a manifest is written with the files.
     manifest: bool,
 }
 
 impl StagedDir {
-    /// Prepares output for `target`, which need not exist yet, nor its parents.
+    /// Prepares output for `target`. The target and its parents need not exist.
     ///
     /// # Errors
-    /// When `target` is a file, or nothing can be written beside it.
+    /// When `target` is a file, or when no file can be written next to it.
     pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
         let target = target.into();
         let mut staged = Self { target, holder: None, files: Vec::new(), made: Vec::new(), manifest: true };
@@ -41,7 +41,7 @@ impl StagedDir {
         if self.target.exists() && !self.target.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file of this name is in the way"));
         }
-        // An existing directory may stand in a read-only one, or be `.`: then the files gather inside it.
+        // An existing directory may be `.` or have a read-only parent, so its files are collected inside it.
         let parent = if self.target.is_dir() { self.target.as_path() } else { parent_of(&self.target) };
         let mut missing: Vec<_> = parent
             .ancestors()
@@ -53,8 +53,8 @@ impl StagedDir {
             fs::create_dir(&path)?;
             self.made.push(path);
         }
-        // What a process that was ended has left goes: beside the directory, if it was new then, or in it. What cannot be
-        // looked through is not swept, and is no reason not to write.
+        // Leftovers of an ended process are next to the directory if it was new then, otherwise inside it. Failure to
+        // remove them does not prevent writing.
         let _ = sweep(parent_of(&self.target));
         let _ = sweep(parent);
         let holder = temporary_in(parent)?;
@@ -63,31 +63,31 @@ impl StagedDir {
         Ok(())
     }
 
-    /// The same without a manifest, for directories whose files are listed elsewhere.
+    /// Writes no manifest, for directories whose files are listed in another file.
     #[must_use]
     pub fn without_manifest(mut self) -> Self {
         self.manifest = false;
         self
     }
 
-    /// The directory that the files will stand in.
+    /// Returns the directory that the files will be moved to.
     #[must_use]
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Adds a file; `name` is relative to the directory and may have subdirectories.
+    /// Adds a file. `name` is relative to the directory and may contain subdirectories.
     ///
     /// # Errors
-    /// When `name` leads out of the directory, or the disk refuses.
+    /// When `name` leads out of the directory, or when the file cannot be written.
     pub fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
         self.write_with(name, |out| io::Write::write_all(out, bytes.as_ref()))
     }
 
-    /// Adds a file that `fill` writes piece by piece, for what is too long to hold in memory.
+    /// Adds a file that `fill` writes piece by piece, for content that is too large for memory.
     ///
     /// # Errors
-    /// When `name` leads out of the directory, `fill` fails, or the disk refuses.
+    /// When `name` leads out of the directory, when `fill` fails, or when the file cannot be written.
     pub fn write_with<F>(&mut self, name: impl AsRef<Path>, fill: F) -> Result<(), WriteError>
     where
         F: FnOnce(&mut io::BufWriter<fs::File>) -> io::Result<()>,
@@ -112,11 +112,11 @@ impl StagedDir {
         Ok(())
     }
 
-    /// Adds a file that stands elsewhere on the same disk, without a copy where the disk can do that: it must not change any
-    /// more.
+    /// Adds a file that exists on the same disk, as a hard link if the disk supports it. The file must not change after
+    /// that.
     ///
     /// # Errors
-    /// As of [`StagedDir::write`].
+    /// When `name` leads out of the directory, or when the file cannot be linked or copied.
     pub fn link(&mut self, name: impl AsRef<Path>, from: &Path) -> Result<(), WriteError> {
         let name = name.as_ref();
         self.write(name, "")?;
@@ -128,25 +128,27 @@ impl StagedDir {
         place().map_err(|source| WriteError::new(self.target.join(name), source))
     }
 
-    /// Moves all files into place. Files of the same name are replaced, files that an earlier run left go, and other files
-    /// are left alone; when one cannot be moved, those already moved go back. Until all is done the manifest says that
-    /// the directory is mixed; one process at a time is at it.
+    /// Moves all files to the directory. Files of the same name are replaced, files of an earlier run are removed, and
+    /// other files stay unchanged.
+    ///
+    /// If a file cannot be moved, the files that were already moved are restored. During the commit the manifest states
+    /// that the directory is mixed. A lock excludes other processes.
     ///
     /// # Errors
-    /// When a file cannot be put in place; all files are then as they were.
+    /// When a file cannot be moved; all files are then unchanged.
     pub fn commit(self) -> Result<(), WriteError> {
         self.put_in_place(false, &mut || {})
     }
 
-    /// The same, but that files that an earlier run left stay: what is added belongs to them.
+    /// Moves all files to the directory and keeps the files of an earlier run, to which they are added.
     ///
     /// # Errors
-    /// As of [`StagedDir::commit`].
+    /// When a file cannot be moved; all files are then unchanged.
     pub fn commit_beside(self) -> Result<(), WriteError> {
         self.put_in_place(true, &mut || {})
     }
 
-    /// Puts all files in place; `after` is called after each thing that is done to the disk, for tests that end the
+    /// Moves all files to the directory. `after` is called after each operation on the disk, for tests that end the
     /// process there.
     fn put_in_place(mut self, keep: bool, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
@@ -157,7 +159,7 @@ impl StagedDir {
                 manifest.write(&holder.join("new")).map_err(at_target)?;
             }
             match fs::rename(holder.join("new"), &self.target) {
-                // Another may have been quicker.
+                // Another process may have created the directory in the meantime.
                 Err(_) if self.target.is_dir() => {}
                 done => {
                     after();
@@ -204,7 +206,7 @@ impl StagedDir {
     }
 
     fn replace_files(&self, holder: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
-        // (place, where the file that stood there waits)
+        // Path of each replaced file, and path of its backup if there was a file.
         let mut done: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
         for name in &self.files {
             let place = self.target.join(name);
@@ -212,7 +214,7 @@ impl StagedDir {
                 Ok(old) => done.push((place, old)),
                 Err(source) => {
                     for (place, old) in done.into_iter().rev() {
-                        // Nothing better can be done about a disk that refuses to undo.
+                        // If the disk rejects the restoration, nothing more can be done.
                         let _ = match old {
                             Some(old) => fs::rename(old, place),
                             None => fs::remove_file(place),
@@ -226,8 +228,8 @@ impl StagedDir {
     }
 }
 
-/// Takes away a file of an earlier run, and folders that are empty then. A manifest that names something outside is not
-/// heeded.
+/// Removes a file of an earlier run, and folders that become empty. Names in a manifest that lead out of the directory
+/// are ignored.
 fn remove_within(directory: &Path, name: &Path) {
     if !name.components().all(|part| matches!(part, Component::Normal(_))) {
         return;
@@ -238,7 +240,7 @@ fn remove_within(directory: &Path, name: &Path) {
     }
 }
 
-/// Puts `new` at `place`; returns where the file that stood there waits, if one did.
+/// Moves `new` to `place`. Returns the path of the backup if there was a file.
 fn replace(new: &Path, place: &Path, old: &Path, after: &mut dyn FnMut()) -> io::Result<Option<PathBuf>> {
     fs::create_dir_all(parent_of(place))?;
     after();
@@ -259,7 +261,7 @@ impl Drop for StagedDir {
     fn drop(&mut self) {
         self.holder = None;
         for path in self.made.iter().rev() {
-            // Not empty means that somebody else uses it by now.
+            // A folder that is not empty is in use by another process.
             let _ = fs::remove_dir(path);
         }
     }
@@ -350,7 +352,7 @@ mod tests {
         assert!(message.contains("a file of this name is in the way"), "{message}");
     }
 
-    /// The files of a run, and what they say.
+    /// Returns the files of a run and their contents.
     fn run_of(word: &str) -> Vec<(String, String)> {
         let names: &[&str] = match word {
             "old" => &["a.txt", "figures/1.svg", "figures/2.svg", "frames/1.vtk"],
@@ -365,7 +367,7 @@ mod tests {
         staged
     }
 
-    /// The files of ours in a directory, and what they say: not the manifest, and nothing hidden.
+    /// Returns our files in a directory and their contents, without the manifest and hidden files.
     fn found_in(folder: &Path) -> Vec<(String, String)> {
         let (mut found, mut open) = (Vec::new(), vec![folder.to_path_buf()]);
         while let Some(path) = open.pop() {
@@ -383,18 +385,19 @@ mod tests {
         found
     }
 
-    /// Where a process of the test below puts its files, and after how many operations it ends without a word.
+    /// Environment variables of the child process of the test below: its output directory, and the number of operations
+    /// after which it ends.
     const PLACE: &str = "GRAINBENCH_TEST_STAGED_PLACE";
     const OPERATIONS: &str = "GRAINBENCH_TEST_STAGED_OPERATIONS";
 
-    /// A process that is ended after each thing that a commit does to the disk: its directory is as it was, whole and
-    /// new, or says that it is mixed; and the next run leaves it whole, with nothing beside it.
+    /// A process ends after each disk operation of a commit. Its directory is then unchanged, or complete and new, or
+    /// states that it is mixed. The next run leaves it complete, with no leftovers.
     #[test]
     fn wherever_a_commit_is_cut_off_no_mixed_directory_is_taken_for_whole() {
         if let (Ok(place), Ok(last)) = (std::env::var(PLACE), std::env::var(OPERATIONS)) {
             let (last, mut done) = (last.parse::<u32>().unwrap(), 0);
             let staged = staged(Path::new(&place), "new");
-            // Nothing is dropped at such an end, so that nothing is cleared up.
+            // The exit drops no values, so that nothing is cleaned up.
             let done = staged.put_in_place(false, &mut || {
                 done += 1;
                 if done == last {
@@ -425,7 +428,7 @@ mod tests {
                     .unwrap();
                 let found = if target.exists() { found_in(&target) } else { Vec::new() };
                 let is_mixed = crate::refuse_mixed(&target).is_err();
-                // What stood there without a manifest is nobody's to take away.
+                // Files without a manifest do not belong to a run, so they are not removed.
                 let foreign = before == "old without a manifest";
                 let is_new = |found: &[(String, String)]| {
                     found == run_of("new") || (foreign && run_of("new").iter().all(|file| found.contains(file)))

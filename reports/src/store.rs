@@ -1,4 +1,4 @@
-//! The output directory: written whole, read back to redraw.
+//! Output directory of a report. It is written completely, and can be read back to draw the report again.
 
 use std::fs;
 use std::io;
@@ -20,67 +20,69 @@ use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
 use crate::staged::StagedDir;
 use crate::write::WriteError;
 
-/// The file from which everything else can be made again.
+/// File from which all other files can be written again.
 pub const REPORT_FILE: &str = "report.json";
 
-/// A report that could not be written.
+/// Error when a report cannot be written.
 #[derive(Debug, Error)]
 pub enum SaveError {
-    /// The disk refused.
+    /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// A figure cannot be drawn.
     #[error(transparent)]
     Draw(#[from] plot::DrawError),
-    /// Something has no form in a file format.
+    /// A value has no form in a file format.
     #[error("cannot encode {file}: {reason}")]
     Encode {
         /// Name of the file.
         file: &'static str,
-        /// What went wrong.
+        /// Reason.
         reason: String,
     },
 }
 
-/// A report that could not be read back.
+/// Error when a report cannot be read.
 #[derive(Debug, Error)]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// It is what is left of a run that broke or was ended.
+    /// The directory holds the output of a run that crashed or was ended.
     #[error("{}: expected the record of a whole run, but the run did not come to its end; the file says how", path.display())]
     Broken {
-        /// The file that says how it ended.
+        /// Path of the file with the reason.
         path: PathBuf,
     },
-    /// The file is not a report.
+    /// The file is not a valid report.
     #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line, from 1.
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// Keys that lead to the place.
+        /// Keys that lead to the invalid value.
         place: String,
-        /// What was expected and what stood there.
+        /// Expected and found content.
         reason: String,
     },
 }
 
-/// Writes `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
-/// `figures/CASE-NAME.svg` into `dir`, the data of graphs as `.csv` and films as `.png` beside them, and what the page has
-/// no room for; all of them or none.
+/// Writes a report to `dir`: all files, or none if an error occurs.
+///
+/// The files are `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
+/// `figures/CASE-NAME.svg`. The data of graphs are added as `.csv`, films as `.png`, and parts that the page has no
+/// room for as separate pages.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir.as_ref())?;
     add_report(&mut out, report)?;
@@ -88,10 +90,10 @@ pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveEr
     Ok(())
 }
 
-/// The same, with the rows as Parquet too.
+/// Writes a report to `dir`, with the results also as Parquet.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir.as_ref())?;
     add_report(&mut out, report)?;
@@ -102,10 +104,10 @@ pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Resul
     Ok(())
 }
 
-/// Adds all files of a report to a directory that is being written.
+/// Adds all files of a report to a staged directory.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
     let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let results = results_json(report).map_err(|error| encode("results.json")(error.to_string()))?;
@@ -135,10 +137,10 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     Ok(())
 }
 
-/// Adds a figure by itself: as a picture, the data of a graph as CSV, a film as an animated PNG.
+/// Adds the files of a figure: the picture, the data of a graph as CSV, and a film as an animated PNG.
 ///
 /// # Errors
-/// When the disk refuses or it cannot be drawn.
+/// When a file cannot be written or the figure cannot be drawn.
 pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Result<(), SaveError> {
     for (path, bytes) in figure_files(figure, name)? {
         out.write(path, bytes)?;
@@ -146,7 +148,7 @@ pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Re
     Ok(())
 }
 
-/// The files of a figure, by their paths.
+/// Returns the paths and the contents of the files of a figure.
 fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
     let mut files = vec![(format!("figures/{name}.svg"), plot::draw(figure)?.into_bytes())];
     if let Drawing::Graph(graph) = &figure.drawing {
@@ -160,14 +162,14 @@ fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, S
     Ok(files)
 }
 
-/// The data of a graph: a line a point. What is not finite is left empty.
+/// Returns the data of a graph, one line per point. Values that are not finite are left empty.
 fn graph_csv(graph: &Graph) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["curve", &graph.x.label, &graph.y.label])?;
     let number = |value: f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
     let mut name = String::new();
     for curve in &graph.curves {
-        // Points without a name of their own belong to the curve before them.
+        // Points without a label belong to the previous curve with a label.
         if !curve.label.is_empty() {
             name = harmless(curve.label.clone());
         }
@@ -179,10 +181,10 @@ fn graph_csv(graph: &Graph) -> Result<Vec<u8>, csv::Error> {
 }
 
 impl Report {
-    /// Reads the report that [`write_report`] left in `dir`.
+    /// Reads the report that [`write_report`] wrote to `dir`.
     ///
     /// # Errors
-    /// When the file is missing or damaged; the message names the place.
+    /// When the file is missing or damaged; the message names the position.
     pub fn load(dir: impl AsRef<Path>) -> Result<Self, LoadError> {
         let path = dir.as_ref().join(REPORT_FILE);
         let text = match fs::read_to_string(&path) {
@@ -193,14 +195,14 @@ impl Report {
     }
 }
 
-/// What the parser repeats of the file, as a message may show it.
+/// Returns text from a file in a form that is safe in a one-line message.
 fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }
 
-/// What was expected and what stood there.
+/// Returns the expected and the found content.
 fn reason(error: &serde_json::Error, text: &str) -> String {
-    // The parser repeats the line and column at the end.
+    // The message of the parser repeats line and column at its end.
     let words = error.to_string();
     let words = words.split(" at line ").next().unwrap_or_default();
     match words.strip_prefix("EOF while parsing ") {
@@ -210,7 +212,7 @@ fn reason(error: &serde_json::Error, text: &str) -> String {
     }
 }
 
-/// Reads a file of ours; an error names the place.
+/// Reads one of our files. An error names the position.
 pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
@@ -255,7 +257,7 @@ mod tests {
         ] {
             assert!(out.join(name).is_file(), "{name}");
         }
-        // For a look with a browser.
+        // A copy of the report for inspection in a browser.
         if let Ok(copy) = std::env::var("GRAINBENCH_REPORT_DIR") {
             write_report(copy, &report).unwrap();
         }
@@ -276,7 +278,7 @@ mod tests {
         assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
         assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
 
-        // What steers a terminal is written out.
+        // Control characters of a terminal are escaped.
         fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"ma\u{7f}ny\"", 1)).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
         assert!(message.contains("string \"ma\\u{7f}ny\""), "{message:?}");

@@ -1,5 +1,5 @@
-//! Reading figures back. A run that blew up has points that are not finite; JSON writes those as `null`, and here
-//! `null` becomes not-a-number again, which every drawer leaves out and counts.
+//! Reading of stored figures. A diverged run has points that are not finite, which JSON stores as `null`. They are read
+//! back as NaN; drawings leave them out and count them.
 
 use grainbench_harness::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, LinePlot, Stroke};
 use serde::{Deserialize, Deserializer};
