@@ -1,18 +1,18 @@
-//! What accuracy costs, drawn and said: fronts, the cheapest settings, and measured against expected.
+//! Cost of accuracy: Pareto fronts, cheapest settings, and measured against expected values.
 
 use super::Study;
 use super::point::{Counts, Diagram, Point, Standing};
 use crate::number;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// The solvers that every diagram has, in one order, so that each has the same colour in all.
+/// Solvers of every diagram in a fixed order, so that each has the same colour in all diagrams.
 const OWN: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
-/// Errors that a sentence is said about.
+/// Errors for which the cost is stated.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
-/// Errors below this are drawn here: rounding.
+/// Smallest plotted error; smaller errors are rounding and are plotted here.
 const LEAST: f64 = 1e-16;
 
-/// The points that no other is better than in both error and time, by rising time.
+/// Returns the Pareto front: the points that no other point improves in both error and time, in the order of time.
 #[must_use]
 pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
     let mut sorted: Vec<(f64, f64, &Point)> =
@@ -27,7 +27,7 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
     sorted.into_iter().map(|(_, _, point)| point).collect()
 }
 
-/// The lines of some diagrams: our own, and after them whoever else was measured.
+/// Returns the solvers of some diagrams: ours first, then all others with points.
 pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
     let mut lines = OWN.to_vec();
     for point in diagrams.into_iter().flat_map(|diagram| &diagram.points) {
@@ -38,19 +38,19 @@ pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str
     lines
 }
 
-/// The points of a line.
+/// Returns the points of a solver.
 pub fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
     diagram.points.iter().filter(move |point| point.solver == line)
 }
 
-/// The cheapest point of a line within an error.
+/// Returns the cheapest point of a solver within an error.
 #[must_use]
 pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<&'a Point> {
     let within = of_line(diagram, line).filter(|point| point.place().is_some_and(|(error, _)| error <= target));
     within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
 }
 
-/// Whether no other line reaches an error in less time.
+/// Returns true if no other solver reaches an error in less time.
 #[must_use]
 pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
     let time = |line: &str| cheapest(diagram, line, target).and_then(|point| point.wall_seconds);
@@ -58,14 +58,16 @@ pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
     time(line).is_some_and(|mine| others().all(|other| mine <= other))
 }
 
-/// Whether a line reaches an error in a time that cannot be told: less than its program's start varies by.
+/// Returns true if a solver reaches an error in a time that cannot be measured, because the start-up time varies by
+/// more.
 #[must_use]
 pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {
     let is_reached = |point: &Point| point.error.is_some_and(|error| error <= target) && point.wall_seconds.is_none();
     cheapest(diagram, line, target).is_none() && of_line(diagram, line).any(is_reached)
 }
 
-/// One sentence for a target: the cheapest setting of each solver, and how many times the cheapest of all it costs.
+/// Returns one sentence for an error: the cheapest setting of each solver, and its time as a multiple of the shortest
+/// time.
 #[must_use]
 pub fn sentence(diagram: &Diagram, target: f64) -> String {
     let lines = lines([diagram]);
@@ -98,7 +100,7 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
     format!("{}: {}.", number::fraction(target), parts.join("; "))
 }
 
-/// Error against time.
+/// Returns the figure of error against time.
 #[must_use]
 pub fn figure(diagram: &Diagram) -> Figure {
     let drawn = |point: &Point| point.place().map(|(error, time)| (time, error.max(LEAST)));
@@ -166,7 +168,7 @@ const fn word(standing: Standing) -> &'static str {
     }
 }
 
-/// Bars at the floors of a line: from the first point on it to the last.
+/// Returns bars at the error floors of a solver, from the first point on a floor to the last.
 fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     let mut names: Vec<(&str, &str)> = of_line(diagram, line)
         .filter_map(|point| point.floor.as_deref().map(|floor| (floor, point.knobs.as_str())))
@@ -188,8 +190,8 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     bars
 }
 
-/// Measured against expected over all cases, a figure a unit: of each solver and quantity the point with the smallest
-/// error.
+/// Returns figures of measured against expected values over all cases, one for each unit. Each solver has its point
+/// with the smallest error for each quantity.
 #[must_use]
 pub fn scatters(study: &Study) -> Vec<Figure> {
     let mut units: Vec<&str> = study.diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
@@ -198,7 +200,7 @@ pub fn scatters(study: &Study) -> Vec<Figure> {
     units.iter().filter_map(|unit| scatter(study, unit)).collect()
 }
 
-/// The best point of each solver in each diagram of a unit.
+/// Returns the point of a solver with the smallest error in each diagram of a unit.
 fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     let of = |diagram: &'a Diagram| {
         let points = of_line(diagram, line).filter(|point| point.unit == unit && point.place().is_some());
@@ -207,8 +209,8 @@ fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     study.diagrams.iter().filter_map(of).collect()
 }
 
-/// Bias and spread of the logarithm of measured over expected: the factor that a solver is off by on average, and the
-/// relative standard deviation about it.
+/// Returns bias and spread of measured/expected. The bias is the geometric mean, and the spread is the standard
+/// deviation of the logarithm.
 #[must_use]
 pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = points
@@ -259,10 +261,10 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
     ))
 }
 
-/// `points.csv` of a study.
+/// Returns `points.csv` of a study.
 ///
 /// # Errors
-/// When a line cannot be encoded, which none of this project can fail to be.
+/// When a line cannot be encoded; this does not occur in studies of this project.
 pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut head = vec![

@@ -1,4 +1,4 @@
-//! The ledger of effects: its rows, what a scene calls for and what that is worth, and their tables.
+//! Study of effects: the effects of each scene, and the error and cost of leaving them out.
 
 use super::Study;
 use crate::number;
@@ -6,24 +6,24 @@ use crate::page::scrolling;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// What an effect turned out to be worth in a scene.
+/// Result for an effect in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Worth {
-    /// It is on; without it a gate turns red.
+    /// The effect is on, and without it a claim fails.
     Needed,
-    /// It is on, and nothing that is gated changes beyond what its gates allow: not worth simulating here.
+    /// The effect is on, and without it no claimed quantity changes by more than its tolerance.
     NotWorthSimulating,
-    /// It is on, and without it nothing could be judged.
+    /// The effect is on, and without it no claim can be judged.
     Untold,
-    /// It is off; compiled in with a value that does nothing, the answer is the same in every bit.
+    /// The effect is off. Compiled in with a neutral value, it changes no bit of the result.
     Inert,
-    /// It is off; compiled in with a value that does nothing, the answer differs.
+    /// The effect is off. Compiled in with a neutral value, it changes the result.
     NotInert,
 }
 
 impl Worth {
-    /// The word used in tables.
+    /// Returns the name used in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Worth {
     }
 }
 
-/// What a gated quantity does when an effect is switched off.
+/// Change of a claimed quantity when an effect is switched off.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shift {
     /// Quantity.
@@ -45,41 +45,41 @@ pub struct Shift {
     pub solver: String,
     /// Signed error with the effect.
     pub with: Option<f64>,
-    /// Signed error without it; none where the run broke.
+    /// Signed error without the effect; none if the run crashed.
     pub without: Option<f64>,
-    /// Largest error that passes.
+    /// Largest |error| that passes.
     pub allowed: f64,
-    /// Whether its gate turned red.
+    /// True if the claim fails without the effect.
     pub red: bool,
 }
 
-/// One effect in one scene of a case.
+/// An effect in a scene of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Case.
     pub case: String,
-    /// Variant of its scene.
+    /// Variant of the scene.
     pub variant: String,
     /// Effect, in words.
     pub effect: String,
-    /// Whether the scene calls for it.
+    /// True if the scene has the effect.
     pub on: bool,
-    /// The key that turned it on.
+    /// Key of the scene file that switches it on.
     pub key: String,
-    /// What it is worth.
+    /// Result.
     pub worth: Worth,
-    /// Every gated quantity without it.
+    /// Changes of all claimed quantities without the effect.
     pub shifts: Vec<Shift>,
-    /// Particle-steps and contact evaluations with the effect over those without it.
+    /// Number of particle-steps and contact evaluations with the effect, divided by the number without it.
     pub counts: Option<f64>,
-    /// Processor time with the effect over that without it.
+    /// Processor time with the effect, divided by the time without it.
     pub time: Option<f64>,
-    /// The solvers that an absent effect was tried with.
+    /// Solvers that were run with a neutral value of an effect that is off.
     #[serde(default)]
     pub tried: Vec<String>,
 }
 
-/// The section of the page.
+/// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Markup {
     let count = |worth: Worth| study.ledger.iter().filter(|entry| entry.worth == worth).count();
     html! {
@@ -118,12 +118,12 @@ const fn class(worth: Worth) -> &'static str {
     }
 }
 
-/// The quantity that moves farthest in units of what its gate allows.
+/// Returns the quantity with the largest change in units of its tolerance.
 fn farthest(entry: &Entry) -> Option<&Shift> {
     entry.shifts.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))
 }
 
-/// Change of the error in units of what is allowed; infinite where the run broke.
+/// Returns the change of the error in units of the tolerance; infinite if the run crashed.
 fn moved(shift: &Shift) -> f64 {
     match (shift.with, shift.without) {
         (Some(with), Some(without)) => (without - with).abs() / shift.allowed.max(f64::MIN_POSITIVE),
@@ -131,7 +131,7 @@ fn moved(shift: &Shift) -> f64 {
     }
 }
 
-/// Scenes by effects: colour and number by what the scene loses without the effect.
+/// Renders the matrix of scenes and effects. Colour and number show the change without the effect.
 fn heat(ledger: &[Entry]) -> Markup {
     let mut effects: Vec<&str> = Vec::new();
     let mut scenes: Vec<(&str, &str)> = Vec::new();

@@ -1,4 +1,4 @@
-//! What a step costs of one grain, of a hundred and of ten thousand, start-up apart: the rows, their table and their figure.
+//! Cost of a step for 1, 100 and 10,000 grains, without start-up: data, table and figure.
 
 use super::page::figure as framed;
 use crate::number;
@@ -9,38 +9,38 @@ use grainbench_harness::statistics::median;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// What a solver took for a scene of so many grains.
+/// Cost of a solver for a scene with a number of grains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Load {
-    /// Grains.
+    /// Number of grains.
     pub grains: usize,
-    /// The solver.
+    /// Solver.
     pub solver: String,
-    /// Its resolution.
+    /// Resolution.
     pub resolution: String,
-    /// Lap by lap.
+    /// Timings.
     pub laps: Vec<Lap>,
-    /// Why it took no part.
+    /// Reason why the solver was not measured.
     pub absent: Option<String>,
 }
 
-/// A long run less a short one, in processor time.
+/// Timing from the difference of a long and a short run, in processor time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lap {
-    /// All that is no step: reading, setting up, neighbours of the start, settling, output (s).
+    /// Everything except steps: reading, set-up, initial neighbour search, relaxation and output (s).
     pub start_up: f64,
     /// One step (s).
     pub step: f64,
-    /// One second of the simulated motion (s).
+    /// One second of simulated time (s).
     pub second: f64,
 }
 
-/// The median of the laps.
+/// Returns the median over the timings.
 fn middle(load: &Load, of: fn(&Lap) -> f64) -> f64 {
     median(&load.laps.iter().map(of).collect::<Vec<_>>())
 }
 
-/// Processor time for a second of the motion, against grains; none where nothing was measured.
+/// Returns the figure of processor time per second of simulated time against grains; none without timings.
 pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
     let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
     for load in loads.iter().filter(|load| !load.laps.is_empty()) {
@@ -64,7 +64,7 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
     })
 }
 
-/// The table, the figure and their words.
+/// Renders the table and the figure with their text.
 ///
 /// # Errors
 /// When the figure cannot be drawn.

@@ -1,4 +1,4 @@
-//! Reports of the three studies: what accuracy costs, what stays stable, what each effect is worth.
+//! Reports of the three studies: cost of accuracy, stability and effects.
 
 pub mod cost;
 pub mod effects;
@@ -20,24 +20,24 @@ use std::collections::BTreeMap;
 
 pub use store::{STUDY_FILE, kept_text, load_study, points_of, study_json, write_study};
 
-/// What a study left: enough to redo every output without a solver.
+/// Data of a study. They suffice to write every output again without a solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Study {
-    /// What ran, where and when.
+    /// Provenance.
     pub provenance: Provenance,
-    /// What accuracy costs, quantity by quantity.
+    /// Cost of accuracy by quantity.
     #[serde(default)]
     pub diagrams: Vec<Diagram>,
-    /// What a step costs, piece by piece.
+    /// Cost model of a step.
     #[serde(default)]
     pub model: Option<Model>,
-    /// What a step costs of few grains and of many.
+    /// Cost of a step against the number of grains.
     #[serde(default)]
     pub loads: Vec<Load>,
-    /// What changed since another session.
+    /// Changes since another session.
     #[serde(default)]
     pub changes: Vec<Change>,
-    /// The session that this one was compared with.
+    /// Session that this one was compared with.
     #[serde(default)]
     pub against: Option<String>,
     /// Largest stable steps.
@@ -46,16 +46,16 @@ pub struct Study {
     /// Hard cases.
     #[serde(default)]
     pub hard: Vec<Hard>,
-    /// The ledger of effects.
+    /// Entries of the study of effects.
     #[serde(default)]
     pub ledger: Vec<Entry>,
-    /// Hashes of the sources of the solvers that were measured, by their names.
+    /// Hashes of the solvers' sources at the time of the measurement, by solver name.
     #[serde(default)]
     pub sources: BTreeMap<String, String>,
 }
 
 impl Study {
-    /// An empty one.
+    /// Returns an empty study.
     #[must_use]
     pub const fn new(provenance: Provenance) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The page of a study.
+//! Page of a study.
 
 use super::point::{Diagram, Point, Standing};
 use super::{Study, cost, effects, load, stability, step};
@@ -42,7 +42,7 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
     Ok(shell(&format!("grainbench · {title}"), &body))
 }
 
-/// A figure with its caption.
+/// Renders a figure with its caption.
 pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
     Ok(html! {
         figure {
@@ -52,7 +52,7 @@ pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
     })
 }
 
-/// What each error costs over all cases, a sentence a target.
+/// Returns one sentence for each error: the cost over all cases.
 fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
     let sentence = |(at, target): (usize, f64)| {
         let parts: Vec<String> = costs
@@ -120,7 +120,7 @@ fn changes(study: &Study, old: &str) -> Markup {
     }
 }
 
-/// One row a diagram: for each solver its cheapest setting at 1 %.
+/// Renders a table with one row per diagram: the cheapest setting of each solver at an error of 1 %.
 fn which(study: &Study) -> Markup {
     let lines = cost::lines(&study.diagrams);
     let table = html! {
@@ -158,7 +158,7 @@ fn which(study: &Study) -> Markup {
     scrolling("Which solver for which scene at 1 %", &table)
 }
 
-/// Why a solver has no setting at 1 %.
+/// Returns the reason why a solver has no setting at 1 %.
 fn not_reached(diagram: &Diagram, line: &str) -> String {
     if cost::is_hidden(diagram, line, 0.01) {
         return "in less time than its start varies by".to_owned();
@@ -191,7 +191,7 @@ fn cost_section(diagram: &Diagram, anchor: &str) -> Result<Markup, DrawError> {
     })
 }
 
-/// Why points have no error, each reason once for each solver.
+/// Renders the reasons why points have no error, each once per solver.
 fn reasons(diagram: &Diagram) -> Markup {
     let mut reasons: Vec<(&str, &str)> = diagram
         .points

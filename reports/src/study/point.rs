@@ -1,38 +1,39 @@
-//! One point of a work–precision diagram: an error, and what it cost.
+//! Points of a work–precision diagram: error and cost.
 
 use grainbench_scene::record::Cost;
 use serde::{Deserialize, Serialize};
 
-/// How a point ended.
+/// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Standing {
-    /// It has an error and a time.
+    /// The point has an error and a time.
     Measured,
-    /// The run broke, or its error is not finite: it is drawn where it failed.
+    /// The run crashed, or its error is not finite. It is plotted at the time of the failure.
     Failed,
-    /// The solver cannot express the scene.
+    /// The solver cannot represent the scene.
     Unsupported,
-    /// A program that is not installed.
+    /// The program is not installed.
     NotAvailable,
 }
 
-/// What a run did, whatever the machine: equal from run to run. What a program did not count is absent.
+/// Counts of a run. They do not depend on the machine, and are equal in repeated runs. Values that a program does not
+/// count are absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps times grains, or times material points.
+    /// Number of steps times number of grains, or of material points.
     pub particle_steps: u64,
-    /// Contact laws evaluated.
+    /// Number of evaluated contact laws.
     pub contact_evaluations: Option<u64>,
-    /// Listed pairs tested for touching.
+    /// Number of listed pairs checked for contact.
     pub pair_tests: Option<u64>,
-    /// Neighbour lists built.
+    /// Number of neighbour lists built.
     pub neighbour_builds: Option<u64>,
-    /// Nodes of a grid that took a step, in all steps.
+    /// Number of grid nodes that were updated, over all steps.
     pub node_updates: Option<u64>,
-    /// Memory that the state takes up at its largest (B).
+    /// Largest memory of the state (B).
     pub bytes: Option<u64>,
 }
 
@@ -51,7 +52,7 @@ impl From<&Cost> for Counts {
 }
 
 impl Counts {
-    /// Names and values, in one order.
+    /// Returns names and values in a fixed order.
     #[must_use]
     pub const fn named(&self) -> [(&'static str, Option<u64>); 7] {
         [
@@ -71,72 +72,72 @@ impl Counts {
 pub struct Timing {
     /// Wall-clock time of the stepping loop.
     pub wall: f64,
-    /// Processor time of the whole run, start-up included; of a program, that of its process less that of a run of one
-    /// step.
+    /// Processor time of the whole run, including start-up. For an external program, it is the time of its process
+    /// minus the time of a run of one step.
     pub cpu: f64,
-    /// Wall-clock time of everything but the stepping loop.
+    /// Wall-clock time of everything except the stepping loop.
     pub start_up: f64,
-    /// Processor time of a fixed piece of arithmetic, timed just before: how fast the machine was at that moment.
+    /// Processor time of a fixed computation just before the run, which measures the present speed of the machine.
     pub reference: f64,
 }
 
-/// One point.
+/// A point: one run of a setting, with error and cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Case, such as `backspin`.
     pub case: String,
-    /// Variant of its scene.
+    /// Variant of the scene.
     pub variant: String,
     /// Solver.
     pub solver: String,
     /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
-    /// The other knobs in words, such as `overlap/R = 1e-3`; empty where there are none.
+    /// Other parameters in words, such as `overlap/R = 1e-3`; empty if there are none.
     pub knobs: String,
-    /// What is measured.
+    /// Measured quantity.
     pub quantity: String,
     /// Unit of `value` and `expected`.
     pub unit: String,
-    /// How it ended.
+    /// Status.
     pub standing: Standing,
-    /// What came out.
+    /// Measured value.
     pub value: Option<f64>,
-    /// The exact answer.
+    /// Exact value.
     pub expected: Option<f64>,
     /// |value − expected|/scale.
     pub error: Option<f64>,
-    /// What the error is made of, where a finer resolution no longer makes it smaller.
+    /// Cause of the error, if a finer resolution no longer reduces it.
     pub floor: Option<String>,
-    /// Median wall-clock time of the stepping loop (s); of a run that failed, until then.
+    /// Median wall-clock time of the stepping loop (s). For a failed run, it is the time until the failure.
     pub wall_seconds: Option<f64>,
-    /// Largest less smallest of the repetitions over the median; none of one repetition.
+    /// Range of the repetitions divided by their median; none for one repetition.
     pub wall_spread: Option<f64>,
     /// Median processor time of the run (s).
     pub cpu_seconds: Option<f64>,
     /// Median time of start-up (s).
     pub start_up_seconds: Option<f64>,
-    /// Every repetition.
+    /// Timings of all repetitions.
     pub repetitions: Vec<Timing>,
-    /// What it did.
+    /// Counts of the run.
     pub counts: Counts,
-    /// Why it has no error.
+    /// Reason why the point has no error.
     pub detail: Option<String>,
 }
 
 impl Point {
-    /// What tells a point from others: the same in two sessions.
+    /// Returns a key that identifies the point in every session.
     #[must_use]
     pub fn key(&self) -> [&str; 6] {
         [&self.case, &self.variant, &self.quantity, &self.solver, &self.resolution, &self.knobs]
     }
 
-    /// Resolution and other knobs in words.
+    /// Returns the resolution and the other parameters in words.
     #[must_use]
     pub fn setting(&self) -> String {
         if self.knobs.is_empty() { self.resolution.clone() } else { format!("{}, {}", self.resolution, self.knobs) }
     }
 
-    /// Error and wall-clock time, of a point that has both.
+    /// Returns error and wall-clock time (s), if the point has both.
     #[must_use]
     pub fn place(&self) -> Option<(f64, f64)> {
         match (self.standing, self.error, self.wall_seconds) {
@@ -146,28 +147,28 @@ impl Point {
     }
 }
 
-/// The points of one quantity, over all solvers.
+/// Points of one quantity for all solvers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagram {
     /// Case.
     pub case: String,
-    /// Variant of its scene.
+    /// Variant of the scene.
     pub variant: String,
     /// Quantity.
     pub quantity: String,
-    /// What its exact answer is taken from.
+    /// Source of the exact value.
     pub source: String,
-    /// The points.
+    /// Points.
     pub points: Vec<Point>,
 }
 
 /// Difference between two sessions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
-    /// What changed: a point or a solver.
+    /// Point or solver that changed.
     pub what: String,
-    /// How, in words.
+    /// Description of the change.
     pub how: String,
-    /// Whether it counts as worse.
+    /// True if the change is for the worse.
     pub worse: bool,
 }

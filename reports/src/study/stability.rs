@@ -1,4 +1,4 @@
-//! What stays stable: the rows, largest stable steps and hard cases, and how they are drawn and tabulated.
+//! Study of stability: largest stable steps and hard cases, with their figures and tables.
 
 use super::Study;
 use super::page::figure;
@@ -10,55 +10,55 @@ use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// The largest stable step of an assembly with one solver.
+/// Largest stable step of an assembly with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Assembly, such as `square lattice of discs`.
     pub scene: String,
-    /// Name of the knob beside the step, such as `k_s/k_n`; empty where there is none.
+    /// Name of a parameter other than the step, such as `k_s/k_n`; empty if there is none.
     pub knob: String,
-    /// Its value.
+    /// Value of the parameter.
     pub at: Option<f64>,
     /// Solver.
     pub solver: String,
-    /// What steps are divided by, such as `√(m/k)`.
+    /// Unit of the steps, such as `√(m/k)`.
     pub unit: String,
     /// Largest step that was stable.
     pub found: Option<f64>,
-    /// Smallest step that was not.
+    /// Smallest step that was unstable.
     pub unstable: Option<f64>,
     /// Exact limit.
     pub exact: Option<f64>,
     /// (found − exact)/exact.
     pub error: Option<f64>,
-    /// The step that is taken by default.
+    /// Default step.
     pub default: Option<f64>,
-    /// Found over default.
+    /// `found` divided by `default`.
     pub margin: Option<f64>,
-    /// How it fails above, or why there is no number.
+    /// Failure above the limit, or reason why there is no number.
     pub detail: String,
 }
 
-/// How a solver stands in a hard case.
+/// Outcome of a hard case with one solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hardness {
-    /// What must hold does, at the default step.
+    /// The required property holds at the default step.
     Holds,
-    /// It does at a smaller step.
+    /// The required property holds only at a smaller step.
     HoldsAtASmallerStep,
-    /// The run ends in an error that says when, where and why, at the default step and at smaller ones.
+    /// The run ends with an error that states time, place and reason, at the default step and at smaller ones.
     TypedFailure,
-    /// The run ends as if nothing were wrong, and what must hold does not.
+    /// The run ends without an error, and the required property does not hold.
     QuietlyWrong,
-    /// The solver cannot express the scene.
+    /// The solver cannot represent the scene.
     Unsupported,
-    /// A program that is not installed.
+    /// The program is not installed.
     NotAvailable,
 }
 
 impl Hardness {
-    /// The word used in tables.
+    /// Returns the name used in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -72,24 +72,24 @@ impl Hardness {
     }
 }
 
-/// One solver in one hard case.
+/// Result of one solver in a hard case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hard {
     /// Name of the case, such as `mass-ratio-1e6`.
     pub case: String,
-    /// What must hold.
+    /// Required property.
     pub must: String,
     /// Solver.
     pub solver: String,
-    /// How it stands.
+    /// Outcome.
     pub standing: Hardness,
-    /// The resolution at which it holds, or the default one.
+    /// Resolution at which the property holds, or the default resolution.
     pub resolution: String,
-    /// What was seen at the default step.
+    /// Observation at the default step.
     pub detail: String,
 }
 
-/// Each value once, in the order of first sight.
+/// Returns the values without duplicates, in the order of their first occurrence.
 fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for value in values {
@@ -100,7 +100,7 @@ fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     seen
 }
 
-/// Largest stable step against the knob, a figure a unit of steps.
+/// Returns figures of the largest stable step against the parameter, one for each unit of the step.
 #[must_use]
 pub fn figures(study: &Study) -> Vec<Figure> {
     let maps = distinct(study.limits.iter().map(|limit| limit.unit.as_str())).into_iter().filter_map(|unit| {
@@ -154,7 +154,7 @@ fn map(rows: Vec<&Limit>, unit: &str) -> Option<Figure> {
         .then(|| Figure::graph(name, title, caption, [x, Axis::linear(&format!("Δt / ({unit})"))], curves))
 }
 
-/// Every largest stable step that was found against the exact one: on the line where they agree.
+/// Returns the figure of largest stable steps against the exact limits.
 fn against_exact(study: &Study) -> Option<Figure> {
     let mut curves = Vec::new();
     let mut ends = (f64::INFINITY, 0.0_f64);
@@ -181,7 +181,7 @@ fn against_exact(study: &Study) -> Option<Figure> {
     })
 }
 
-/// A line a solver: its limits, and how it stands in hard cases.
+/// Renders the table of totals: one row per solver with its limits and its outcomes in hard cases.
 fn totals(study: &Study) -> Markup {
     let table = html! {
         table {
@@ -216,7 +216,7 @@ fn totals(study: &Study) -> Markup {
     scrolling("Totals", &table)
 }
 
-/// The section of the page.
+/// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
     let pictures: Vec<Markup> = figures(study).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {

@@ -1,5 +1,4 @@
-//! What a step costs, piece of work by piece of work: the rows, and their table beside what the machine does at most in the same
-//! time.
+//! Cost model of a step: cost per task, and a table that compares it with the peak performance of the machine.
 
 use crate::number;
 use crate::page::scrolling;
@@ -7,38 +6,38 @@ use grainbench_harness::statistics::{median, range};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// What a solver takes for a piece of work.
+/// Cost of a task with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Price {
-    /// The solver.
+    /// Solver.
     pub solver: String,
-    /// The piece: a grain in space, a listed pair, a contact, a material point, a node.
+    /// Task: a grain in space, a listed pair, a contact, a material point, or a node.
     pub piece: String,
-    /// How it was found.
+    /// Method by which the cost was found.
     pub found: String,
-    /// Processor time for one in one step, lap by lap (ns).
+    /// Processor time per task and step, for each timing (ns).
     pub nanoseconds: Vec<f64>,
 }
 
-/// What the machine does at most on one thread.
+/// Peak performance of the machine on one thread.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
-    /// Bytes read and written in a nanosecond, out of the caches' reach, lap by lap.
+    /// Bytes read from and written to memory outside the caches per nanosecond, for each timing.
     pub streamed: Vec<f64>,
-    /// Numbers multiplied or added in registers in a nanosecond, lap by lap.
+    /// Multiplications and additions in registers per nanosecond, for each timing.
     pub computed: Vec<f64>,
 }
 
-/// Prices, beside what the machine can do.
+/// Cost per task, and the peak performance of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
-    /// Piece by piece.
+    /// Costs of the tasks.
     pub prices: Vec<Price>,
-    /// The machine.
+    /// Peak performance of the machine.
     pub probe: Probe,
 }
 
-/// The table with its words.
+/// Renders the table with its text.
 pub(crate) fn render(model: &Model) -> Markup {
     let [streamed, computed] = [&model.probe.streamed, &model.probe.computed].map(|laps| median(laps));
     let table = html! {
@@ -81,7 +80,7 @@ pub(crate) fn render(model: &Model) -> Markup {
     }
 }
 
-/// The least and the largest of the laps.
+/// Returns the smallest and the largest timing.
 fn spread(price: &Price) -> String {
     let shown = |value| number::significant(value, 3);
     range(&price.nanoseconds)
@@ -92,7 +91,7 @@ fn spread(price: &Price) -> String {
 mod tests {
     use super::*;
 
-    /// In 8 ns a machine that streams 30 B and computes 50 numbers in one does 240 B and 400 numbers.
+    /// The machine streams 30 B/ns and computes 50 numbers per nanosecond, so in 8 ns it does 240 B and 400 numbers.
     #[test]
     fn a_price_stands_beside_what_the_machine_does() {
         let price = Price {

@@ -1,4 +1,4 @@
-//! The files of a study: written whole, read back to redraw or to compare.
+//! Files of a study. They are written completely, and can be read back to draw or to compare.
 
 use super::effects::Entry;
 use super::load::Load;
@@ -18,10 +18,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// The file from which everything else can be made again.
+/// File from which all other files can be written again.
 pub const STUDY_FILE: &str = "study.json";
 
-/// `results.json`, as the rest of the world reads it.
+/// Content of `results.json`, whose keys are a public interface.
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
@@ -36,17 +36,17 @@ struct Results<'a> {
     loads: &'a [Load],
 }
 
-/// What stays stable.
+/// Results on stability.
 #[derive(Serialize)]
 struct Stability<'a> {
     limits: &'a [Limit],
     hard: &'a [Hard],
 }
 
-/// `results.json` of a study.
+/// Returns `results.json` of a study.
 ///
 /// # Errors
-/// When something has no JSON form, which nothing that was made by this project has.
+/// When a value has no JSON form; this does not occur in studies of this project.
 pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &study.provenance,
@@ -61,11 +61,11 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` into a directory, all of them or
-/// none.
+/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` to a directory: all files, or
+/// none if an error occurs.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError> {
     let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let mut out = StagedDir::new(dir.as_ref())?;
@@ -85,7 +85,7 @@ pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError
     Ok(())
 }
 
-/// Every figure, with a name for its file.
+/// Returns all figures with names for their files.
 fn figures(study: &Study) -> Vec<(String, Figure)> {
     let diagrams = study.diagrams.iter().map(|diagram| {
         let figure = cost::figure(diagram);
@@ -95,10 +95,11 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
-/// What is kept of a study in the tree: of every solver the settings that no other of its settings beats, without repetitions.
+/// Returns the text of a study for storage in the source tree. It has the Pareto front of each solver, without
+/// repetitions.
 ///
 /// # Errors
-/// When something has no JSON form, which nothing that was made by this project has.
+/// When a value has no JSON form; this does not occur in studies of this project.
 pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     let mut study = study.clone();
     study.model = None;
@@ -107,7 +108,7 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
         let mut kept: Vec<Point> = Vec::new();
         for line in cost::lines([&*diagram]) {
             let front = cost::front(cost::of_line(diagram, line));
-            // Of who reaches nothing one point says why.
+            // If a solver has no point on a front, one point states the reason.
             let first = cost::of_line(diagram, line).take(usize::from(front.is_empty()));
             kept.extend(front.into_iter().chain(first).map(|point| Point { repetitions: Vec::new(), ..point.clone() }));
         }
@@ -116,18 +117,18 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&study).map(|text| text + "\n")
 }
 
-/// Reads the study that [`write_study`] left in a directory.
+/// Reads the study that [`write_study`] wrote to a directory.
 ///
 /// # Errors
-/// When the file is missing or damaged; the message names the place.
+/// When the file is missing or damaged; the message names the position.
 pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, LoadError> {
     read(&dir.as_ref().join(STUDY_FILE))
 }
 
-/// The points of a `results.json`.
+/// Returns the points of a `results.json`.
 ///
 /// # Errors
-/// When the file is missing or damaged; the message names the place.
+/// When the file is missing or damaged; the message names the position.
 pub fn points_of(path: &Path) -> Result<Vec<Point>, LoadError> {
     #[derive(Deserialize)]
     struct Session {

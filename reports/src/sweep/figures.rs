@@ -1,18 +1,18 @@
-//! Graphs of a sweep: what accuracy takes over the whole design.
+//! Figures of a sweep: error against cost over the whole design.
 
 use super::Sweep;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Every graph.
+/// Returns all figures.
 pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
     work(sweep).into_iter().collect()
 }
 
-/// Solvers with their levels, in the order of the points.
+/// Returns the solvers with their resolution levels, in the order of the points.
 pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> = Vec::new();
     for point in &sweep.points {
-        // Points of a level follow one another.
+        // Points of a level are consecutive.
         if found.last().is_none_or(|(solver, level)| *solver != point.solver || *level != point.resolution) {
             let level = (point.solver.clone(), point.resolution.clone());
             if !found.contains(&level) {
@@ -23,13 +23,13 @@ pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
     found
 }
 
-/// The value below which this part of some values lies; none of none.
+/// Returns the quantile of some values for a fraction; none without values.
 fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
 }
 
-/// Errors against steps of particles, a point a level.
+/// Returns the figure of error against particle-steps, with one point per level.
 fn work(sweep: &Sweep) -> Option<Figure> {
     let mut curves: Vec<Curve> = Vec::new();
     for (solver, level) in levels(sweep) {
