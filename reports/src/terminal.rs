@@ -1,4 +1,4 @@
-//! The summary as plain text.
+//! Summary of a report as plain text.
 
 use grainbench_harness::verdict::Verdict;
 
@@ -7,7 +7,7 @@ use crate::line;
 use crate::number;
 use crate::report::{Report, Section};
 
-/// A row a case, the counts, then every line that fails. No colour codes: it goes to files as well.
+/// Returns one row per case, the counts, and all failures. It has no colour codes, because it is also written to files.
 #[must_use]
 pub fn summary_table(report: &Report) -> String {
     let (counts, all) = (Headline::of_report(report), report);
@@ -36,13 +36,13 @@ pub fn summary_table(report: &Report) -> String {
     text
 }
 
-/// Whether a row that ended so makes a run red: a stale reference does too.
+/// Returns true if a result is red, which includes stale references.
 #[must_use]
 pub fn is_red(verdict: &Verdict) -> bool {
     verdict.outcome.is_red()
 }
 
-/// Every row that fails, broke or is stale, and every negative control that stayed green, a line each.
+/// Returns one line for each red result and for each negative control that did not fail as required.
 #[must_use]
 pub fn failing_lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();

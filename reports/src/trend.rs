@@ -1,4 +1,4 @@
-//! The trend over plans: verdicts and counts of several reports beside one another, as `trend.html`.
+//! Trend over several reports: outcomes and counts side by side, as `trend.html`.
 
 use crate::number;
 use crate::page::{scrolling, shell, sign};
@@ -14,15 +14,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Rows that changed and are told.
+/// Largest number of changed rows that are listed.
 const MOST: usize = 400;
-/// What runs count, in the order of tables.
+/// Counts of runs, in the order of the tables.
 const COUNTED: [&str; 5] = ["steps", "particle_steps", "contact_evaluations", "node_updates", "pair_tests"];
 
-/// One report.
+/// A report of the trend.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// What it is called.
+    /// Name of the report.
     name: String,
     commit: String,
     date: String,
@@ -32,7 +32,7 @@ pub struct Column {
     runs: BTreeMap<String, BTreeMap<&'static str, u64>>,
 }
 
-/// `results.json`, as far as it is looked at.
+/// The parts of `results.json` that the trend uses.
 #[derive(Deserialize)]
 struct Results {
     provenance: About,
@@ -57,7 +57,7 @@ struct Row {
     verdict: Option<Outcome>,
 }
 
-/// What tells a row or a run from others, in words.
+/// Returns a key in words that identifies a result or a run.
 fn key(about: &Map<String, Value>) -> String {
     const PARTS: [&str; 7] = ["case", "variant", "set", "solver", "resolution", "knobs", "quantity"];
     let words = PARTS.iter().filter_map(|part| match about.get(*part)? {
@@ -76,12 +76,12 @@ impl Column {
     /// Reads a `results.json`.
     ///
     /// # Errors
-    /// When it is other text.
+    /// When the text is not a valid `results.json`.
     pub fn read(name: &str, text: &str) -> Result<Self, serde_json::Error> {
         let Results { provenance, verdicts, points } = serde_json::from_str(text)?;
         let rows = verdicts.iter().filter_map(|row| Some((key(&row.about), row.verdict?))).collect();
         let counts = |point: &Map<String, Value>| {
-            // Points of a study have theirs one level below.
+            // Points of a study have their counts one level deeper.
             let inner = point.get("counts").and_then(Value::as_object).unwrap_or(point);
             COUNTED.iter().filter_map(|name| Some((*name, inner.get(*name)?.as_u64()?))).collect()
         };
@@ -93,23 +93,23 @@ impl Column {
         self.rows.values().filter(|outcome| outcome.severity() == of).count() as u64
     }
 
-    /// The sum over all runs that all of some columns have.
+    /// Returns the sum of a count over the runs that all reports contain.
     fn sum(&self, name: &str, shared: &[&String]) -> u64 {
         shared.iter().filter_map(|run| self.runs.get(*run)?.get(name)).sum()
     }
 }
 
-/// Colours with their words.
+/// Labels of the colours.
 const KINDS: [(&str, Severity); 3] =
     [("pass", Severity::Green), ("fail, broken or stale", Severity::Red), ("amber", Severity::Amber)];
 
-/// Adds `trend.html` and `figures/trend-*.svg` to the directory of a report, for reports from the oldest to this one.
+/// Adds `trend.html` to the directory of a report. The reports are ordered from the oldest to the present one.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), SaveError> {
     let page = render(columns)?;
-    // What stands in the directory stays: the page is one of its files.
+    // The page is part of the directory, whose other files are kept.
     let mut out = StagedDir::new(dir.as_ref())?;
     keep(&mut out, dir.as_ref(), dir.as_ref())?;
     out.write("trend.html", page)?;
@@ -117,7 +117,7 @@ pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), Save
     Ok(())
 }
 
-/// Takes over the files of a directory.
+/// Adds the existing files of a directory.
 fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
     let told = |source| crate::write::WriteError::new(folder, source);
     for entry in fs::read_dir(folder).map_err(told)? {
@@ -177,7 +177,7 @@ fn verdicts(columns: &[Column]) -> Figure {
     )
 }
 
-/// Counts over those of the first report.
+/// Returns the figure of counts divided by the counts of the first report.
 fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
     let first = columns.first()?;
     let curves: Vec<Curve> = COUNTED
@@ -217,7 +217,7 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
     html! { section id="reports" { h2 { "Reports" } (scrolling("Reports", &table)) } }
 }
 
-/// Rows that did not end alike in all reports.
+/// Renders the results whose outcome differs between reports.
 fn changed_rows(columns: &[Column]) -> Markup {
     let mut names: Vec<&String> = columns.iter().flat_map(|column| column.rows.keys()).collect();
     names.sort();
@@ -252,7 +252,7 @@ fn changed_rows(columns: &[Column]) -> Markup {
     }
 }
 
-/// Runs whose counts changed from a report to the next.
+/// Renders the runs whose counts differ between consecutive reports.
 fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
     let mut lines: Vec<[String; 4]> = Vec::new();
     for run in shared {

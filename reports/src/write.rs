@@ -1,4 +1,4 @@
-//! Writing a file whole or not at all.
+//! Writing a file completely or not at all.
 
 use std::fs;
 use std::io;
@@ -9,25 +9,25 @@ use thiserror::Error;
 
 use crate::scratch::temporary_in;
 
-/// A file or directory that could not be written.
+/// Error when a file or directory cannot be written.
 #[derive(Debug, Error)]
 #[error("cannot write {}: {source}", path.display())]
 pub struct WriteError {
-    /// What was to be written.
+    /// Path of the file or directory.
     pub path: PathBuf,
-    /// What the system said.
+    /// Error of the operating system.
     pub source: io::Error,
 }
 
 impl WriteError {
-    /// An error about `path`.
+    /// Returns an error about `path`.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, source: io::Error) -> Self {
         Self { path: path.into(), source }
     }
 }
 
-/// Writes `bytes` beside `path` and then renames, so that a reader never sees half a file.
+/// Writes `bytes` to a temporary file and renames it to `path`, so that a reader never sees an incomplete file.
 ///
 /// # Errors
 /// When the directory does not exist, is read-only or full, or when `path` is a directory.
@@ -44,8 +44,8 @@ pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(),
     write().map_err(|source| WriteError::new(path, source))
 }
 
-/// Writes many files into one folder, each whole or not at all: beside it stands one hidden directory for all of them, so that
-/// a file costs no look through the folder.
+/// Writes many files to one folder, each completely or not at all. One hidden directory serves all files, so that the
+/// folder is searched for leftovers only once.
 #[derive(Debug)]
 pub struct Desk {
     folder: PathBuf,
@@ -53,31 +53,31 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// A desk for a folder that is there.
+    /// Prepares writing to an existing folder.
     ///
     /// # Errors
-    /// When nothing can be written in it.
+    /// When the folder cannot be written to.
     pub fn new(folder: &Path) -> Result<Self, WriteError> {
         let beside = temporary_in(folder).map_err(|source| WriteError::new(folder, source))?;
         Ok(Self { folder: folder.to_owned(), beside })
     }
 
-    /// Writes a file of the folder.
+    /// Writes a file to the folder.
     ///
     /// # Errors
-    /// When the disk refuses.
+    /// When the file cannot be written.
     pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
         let (path, staged) = (self.folder.join(name), self.beside.path().join(name));
         let written = fs::write(&staged, bytes.as_ref()).and_then(|()| fs::rename(&staged, &path));
         written.map_err(|source| {
-            // What of it was written takes room that others need.
+            // A partly written file would occupy space that other files need.
             let _ = fs::remove_file(&staged);
             WriteError::new(path, source)
         })
     }
 }
 
-/// The directory that holds `path`; the current one for a bare name.
+/// Returns the directory that contains `path`; for a bare file name, the current directory.
 pub(crate) fn parent_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

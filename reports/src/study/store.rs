@@ -95,8 +95,8 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
-/// Returns the text of a study for storage in the source tree. It has the Pareto front of each solver, without
-/// repetitions.
+/// Returns the text of a study for storage in the source tree. It has the Pareto front of each solver, without the
+/// repetitions, the cost model and the costs against grains.
 ///
 /// # Errors
 /// When a value has no JSON form; this does not occur in studies of this project.

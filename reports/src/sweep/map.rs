@@ -1,4 +1,4 @@
-//! Where each solver is within what is allowed: a map over two factors, a panel for each solver at each level.
+//! Maps over two factors that show where each solver is within the tolerance, one panel per solver and level.
 
 use super::figures::levels;
 use super::{Line, Point, Standing, Sweep};
@@ -7,32 +7,32 @@ use crate::plot::{FONTS, WIDTH, wrap};
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Panels side by side.
+/// Number of panels side by side.
 const ACROSS: usize = 3;
-/// Room left of a panel for numbers, and below it.
+/// Room to the left of a panel, for its numbers, and below it.
 const LEFT: f64 = 58.0;
 const FOOT: f64 = 46.0;
-/// Room above a panel for its title, and above all for theirs.
+/// Room above a panel for its title, and above all panels for the title of the drawing.
 const HEAD: f64 = 26.0;
 const TOP: f64 = 46.0;
-/// Room between panels.
+/// Distance between panels.
 const GAP: f64 = 12.0;
-/// A panel is this high.
+/// Height of a panel.
 const HIGH: f64 = 210.0;
-/// Values of a factor that are told apart; of more, neighbours share a cell.
+/// Largest number of distinct values of a factor. If there are more, neighbouring values share a cell.
 const MOST: usize = 40;
-/// A cell narrower than this has no room for a sign.
+/// Smallest size of a cell that shows a sign.
 const SIGN: f64 = 13.0;
-/// Numbers stand this far apart at least.
+/// Smallest distance between numbers along each axis.
 const APART: [f64; 2] = [36.0, 15.0];
 
-/// The colours of a cell: all within, some, none, and nothing judged.
+/// Colours of a cell: all points within the tolerance, some, none, and no point judged.
 const COLOURS: [&str; 4] = ["#009e73", "#f0c36a", "#d55e00", "#e4e7eb"];
-/// What stands in it, so that colour alone never tells.
+/// Signs of a cell, so that the meaning does not depend on colour.
 const SIGNS: [&str; 4] = ["", "·", "×", "–"];
 const WORDS: [&str; 4] = ["within what is allowed at every other factor", "at some", "at none", "cannot be asked"];
 
-/// The maps: file name, caption, drawing.
+/// Returns the maps: file name, caption and SVG.
 pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let Some([x, y]) = sweep.map.or_else(|| usual(sweep)) else { return Vec::new() };
     if sweep.points.is_empty() || !sweep.points.iter().any(|point| point.error().is_some()) {
@@ -71,7 +71,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     vec![("map".to_owned(), caption, svg.into_string())]
 }
 
-/// The first two factors with several numbers.
+/// Returns the first two factors with several numeric values.
 fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
     let varies = |place: &usize| {
         let mut values = sweep.points.iter().map(|point| &point.factors[*place]);
@@ -82,7 +82,7 @@ fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
     Some([places.next()?, places.next()?])
 }
 
-/// The values along an axis, in their order: those of a factor, or slices of its range.
+/// Marks of an axis in ascending order: the values of a factor, or slices of its range.
 struct Marks {
     values: Vec<f64>,
     words: Vec<String>,
@@ -95,7 +95,7 @@ impl Marks {
         values.sort_by(f64::total_cmp);
         values.dedup();
         if values.len() > MOST {
-            // The middles of slices with equally many values.
+            // Each slice contains equally many values and is represented by its middle value.
             let slices = MOST / 2;
             values = (0..slices).map(|slice| values[(2 * slice + 1) * values.len() / (2 * slices)]).collect();
         }
@@ -103,8 +103,8 @@ impl Marks {
         Self { values, words, label: sweep.factors[place].label.clone() }
     }
 
-    /// How many cells from the start a value is: at the middle of a cell where it is that of one, between them on a straight
-    /// line, and half a cell beyond the first and the last at most.
+    /// Returns the position of a value in cells from the start of the axis. A mark is at the middle of its cell, values
+    /// between marks are interpolated linearly. Returns none if the value is more than half a cell outside the marks.
     fn along(&self, value: f64) -> Option<f64> {
         let last = self.values.len().checked_sub(2)?;
         let after = self.values.partition_point(|mark| *mark < value).clamp(1, last + 1);
@@ -113,7 +113,7 @@ impl Marks {
         (0.0..=self.values.len() as f64).contains(&place).then_some(place)
     }
 
-    /// The cell of a value.
+    /// Returns the cell of a value.
     fn cell(&self, value: &Value) -> Option<usize> {
         let value = value.as_f64()?;
         let after = self.values.partition_point(|mark| *mark < value);
@@ -188,7 +188,7 @@ fn panel(
     }
 }
 
-/// The line on a panel, in runs: it is cut where it leaves the panel.
+/// Returns the line on a panel in pieces, because it is cut where it leaves the panel.
 fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2]) -> Vec<String> {
     let mut runs: Vec<Vec<String>> = vec![Vec::new()];
     for (x, y) in sweep.line.iter().flat_map(|line| &line.points) {
@@ -203,7 +203,7 @@ fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2])
     runs.into_iter().filter(|run| run.len() > 1).map(|run| run.join(" ")).collect()
 }
 
-/// Which colour a cell has; none where no point lies in it.
+/// Returns the index of a cell's colour; none if the cell has no points.
 fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
     match (within, outside) {
         (0, 0) if amber == 0 => None,
@@ -214,7 +214,7 @@ fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
     }
 }
 
-/// As many of the words as have room.
+/// Returns as many of the words as there is room for.
 fn thinned(words: &[String], size: f64, apart: f64) -> impl Iterator<Item = (usize, &String)> {
     let every = (apart / size).ceil().max(1.0) as usize;
     words.iter().enumerate().step_by(every)

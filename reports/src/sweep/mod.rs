@@ -1,4 +1,4 @@
-//! Reports of sweeps: a scene over a design of its keys, by solvers at their levels.
+//! Reports of sweeps: a scene run over a design of its parameters, with several solvers and resolution levels.
 
 mod figures;
 mod map;
@@ -17,63 +17,63 @@ use serde_json::Value;
 use std::io;
 use std::path::Path;
 
-/// What a sweep left: enough to make every output.
+/// Data of a sweep. They suffice to write every output.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// What ran, where and when.
+    /// Provenance.
     pub provenance: Provenance,
     /// Title.
     pub title: String,
-    /// What it shows.
+    /// Description.
     pub about: String,
-    /// Case and variant, or file of the scene.
+    /// Case and variant, or scene file.
     pub scene: String,
-    /// What was varied.
+    /// Varied parameters.
     pub factors: Vec<Factor>,
-    /// What was looked at.
+    /// Measured quantities.
     pub quantities: Vec<Quantity>,
-    /// Every point of every solver at every level that is finished.
+    /// Finished points of all solvers and levels.
     pub points: Vec<Point>,
-    /// How many are not.
+    /// Number of points that are not finished.
     pub missing: usize,
-    /// Places of the factors over which the map is drawn.
+    /// Indices of the two factors of the map.
     pub map: Option<[usize; 2]>,
-    /// A line on it.
+    /// Line on the map.
     pub line: Option<Line>,
 }
 
 /// A line on the map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it parts.
+    /// Meaning of the line.
     pub label: String,
     /// Values of the two factors.
     pub points: Vec<(f64, f64)>,
 }
 
-/// What was varied.
+/// A varied parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Factor {
-    /// Its name, a column of tables.
+    /// Name, which is a column name in tables.
     pub name: String,
-    /// What figures call it.
+    /// Label in figures.
     pub label: String,
 }
 
-/// What was looked at.
+/// A measured quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// In words.
+    /// Quantity in words.
     pub words: String,
     /// Its unit.
     pub unit: String,
-    /// How far it may be off in every point; none where each point says it.
+    /// Tolerance for all points; none if each point has its own.
     pub allowed: Option<f64>,
-    /// Where what is expected comes from.
+    /// Source of the expected value.
     pub source: String,
 }
 
-/// A point by a solver at a level.
+/// A point of the design with one solver and level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Values of the factors.
@@ -82,35 +82,35 @@ pub struct Point {
     pub solver: String,
     /// Its resolution, in words.
     pub resolution: String,
-    /// What came out.
+    /// Output of the run.
     pub left: Left,
 }
 
-/// What came out of a point.
+/// Output of a point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Left {
-    /// What the run did; none where there is no record.
+    /// Counts and times of the run; none if there is no record.
     pub ran: Option<Ran>,
-    /// What was looked at, in the order of the quantities.
+    /// Results in the order of the quantities.
     pub looked: Vec<Looked>,
-    /// Every repetition, where times were wanted.
+    /// Timings of all repetitions, if times are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub timings: Vec<Timing>,
-    /// Why there is no record.
+    /// Reason why there is no record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detail: Option<String>,
 }
 
-/// What a run did.
+/// Counts and times of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps times grains or material points.
+    /// Number of steps times number of grains or material points.
     pub particle_steps: u64,
-    /// Contact laws evaluated.
+    /// Number of evaluated contact laws.
     pub contact_evaluations: Option<u64>,
-    /// Nodes that took a step, in all steps.
+    /// Number of grid nodes that were updated, over all steps.
     pub node_updates: Option<u64>,
     /// Time step (s).
     pub time_step: f64,
@@ -118,28 +118,28 @@ pub struct Ran {
     pub wall_seconds: f64,
 }
 
-/// What was seen of a quantity.
+/// Result for a quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Looked {
-    /// Its value.
+    /// Measured value.
     pub value: Option<f64>,
-    /// What it should be.
+    /// Expectation.
     pub expected: Option<Expected>,
-    /// What the difference is divided by.
+    /// Scale by which the error is divided.
     pub scale: Option<f64>,
     /// Signed (value − expected)/scale.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: Option<f64>,
-    /// How it ended; none where nothing was judged.
+    /// Outcome; none if the quantity is not judged.
     pub verdict: Option<Outcome>,
-    /// Why.
+    /// Reason for the outcome.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detail: Option<String>,
 }
 
 impl Sweep {
-    /// How many points ended how in any quantity that is judged: those where all pass, where one fails, and the rest.
+    /// Returns the number of points with each status: within, outside and amber.
     #[must_use]
     pub fn counts(&self) -> [usize; 3] {
         let mut counts = [0; 3];
@@ -150,19 +150,19 @@ impl Sweep {
     }
 }
 
-/// How a point stands.
+/// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// All that is judged passes, or nothing is judged.
+    /// All judged quantities pass, or none is judged.
     Within,
-    /// Something does not, or the run broke.
+    /// A quantity fails, or the run crashed.
     Outside,
-    /// The solver cannot express it, or is not there.
+    /// The solver cannot represent the scene, or is not available.
     Amber,
 }
 
 impl Point {
-    /// How it stands.
+    /// Returns the status of the point.
     #[must_use]
     pub fn standing(&self) -> Standing {
         let severities = self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity);
@@ -173,17 +173,18 @@ impl Point {
         }
     }
 
-    /// The largest |error| of what is looked at; none where there is none.
+    /// Returns the largest |error| of the quantities; none if there is no error.
     #[must_use]
     pub fn error(&self) -> Option<f64> {
         self.left.looked.iter().filter_map(|looked| looked.error).map(f64::abs).reduce(f64::max)
     }
 }
 
-/// Writes `index.html`, `results.json`, `rows.csv`, `rows.parquet` and `figures/*.svg` into a directory, all of them or none.
+/// Writes `index.html`, `results.json`, `rows.csv`, `rows.parquet` and `figures/*.svg` to a directory: all files, or
+/// none if an error occurs.
 ///
 /// # Errors
-/// When the disk refuses or a figure cannot be drawn.
+/// When a file cannot be written or a figure cannot be drawn.
 pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError> {
     let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let mut out = StagedDir::new(dir.as_ref())?;
@@ -209,10 +210,10 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
     Ok(())
 }
 
-/// `results.json` of a sweep.
+/// Returns `results.json` of a sweep.
 ///
 /// # Errors
-/// When something has no JSON form, which nothing that was made by this project has.
+/// When a value has no JSON form; this does not occur in sweeps of this project.
 pub fn sweep_json(sweep: &Sweep) -> io::Result<String> {
     let mut bytes = Vec::new();
     table::write_results(sweep, &mut bytes)?;

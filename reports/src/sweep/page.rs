@@ -1,4 +1,4 @@
-//! The page of a sweep.
+//! Page of a sweep.
 
 use super::figures::levels;
 use super::{Standing, Sweep};
@@ -6,7 +6,7 @@ use crate::number;
 use crate::page::{provenance, scrolling, shell};
 use maud::{Markup, PreEscaped, html};
 
-/// Points that are told one by one.
+/// Largest number of points that are listed individually.
 const MOST: usize = 50;
 
 /// Renders the page, with drawings by name, caption and SVG.
@@ -45,7 +45,7 @@ fn factors(sweep: &Sweep) -> String {
     if words.is_empty() { "nothing: one point".to_owned() } else { words.join(", ") }
 }
 
-/// A row a solver and level: how many points stand how, and the errors.
+/// Renders a table with one row per solver and level: number of points by status, and errors.
 fn table(sweep: &Sweep) -> Markup {
     let rows = levels(sweep).into_iter().map(|(solver, level)| {
         let of = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
@@ -90,7 +90,7 @@ fn table(sweep: &Sweep) -> Markup {
     html! { section id="levels" { h2 { "Solvers and levels" } (scrolling("Solvers and levels", &table)) } }
 }
 
-/// The points that are farthest off, or broke.
+/// Renders the points with the largest errors, crashed runs first.
 fn worst(sweep: &Sweep) -> Markup {
     let mut points: Vec<&super::Point> =
         sweep.points.iter().filter(|point| point.standing() == Standing::Outside).collect();

@@ -1,4 +1,4 @@
-//! Rows of a sweep: a line for each point, solver, level and quantity.
+//! Table of a sweep: one row per point, solver, level and quantity.
 
 use super::{Looked, Point, Sweep};
 use crate::parts::Values;
@@ -7,7 +7,7 @@ use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// A row: the point, and what was seen of a quantity.
+/// A row: the point, the index of a quantity, and its result.
 type Row<'a> = (&'a Point, usize, &'a Looked);
 
 fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
@@ -18,7 +18,7 @@ fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
     sweep.points.iter().flat_map(of).collect()
 }
 
-/// The columns, each with its name. What is absent is null.
+/// Returns the columns with their names. Absent values are null.
 pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     let rows = rows(sweep);
     let words = |of: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(of).collect());
@@ -69,7 +69,7 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     columns
 }
 
-/// The median of the repetitions, or what the one run took (s).
+/// Returns the median time of the repetitions, or the time of the single run (s).
 pub(super) fn wall(point: &Point) -> Option<f64> {
     let walls: Vec<f64> = point.left.timings.iter().map(|timing| timing.wall).collect();
     if walls.is_empty() {
@@ -78,8 +78,8 @@ pub(super) fn wall(point: &Point) -> Option<f64> {
     Some(grainbench_harness::statistics::median(&walls))
 }
 
-/// `results.json`, as the rest of the world reads it: a verdict a row, and what each run cost. Of a hundred thousand rows it is
-/// eighty megabytes, which are written as they are made.
+/// Writes `results.json`, whose keys are a public interface: one entry per result, and the cost of each run. The file
+/// is written piece by piece, because 100,000 results take about 80 MB.
 pub(super) fn write_results(sweep: &Sweep, out: &mut impl Write) -> io::Result<()> {
     let knobs = |point: &Point| -> serde_json::Map<String, Value> {
         let names = sweep.factors.iter().map(|factor| factor.name.clone());
