@@ -376,7 +376,7 @@ impl Claim {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 
-    /// Returns the smallest set of runs in which the claim can be judged.
+    /// Returns the smallest tier in which the claim can be judged.
     #[must_use]
     pub fn set(&self) -> Set {
         self.runs.iter().map(Run::judged_in).max().unwrap_or_default()

@@ -57,7 +57,7 @@ pub struct Control {
     pub wrong: Wrong,
     /// Way in which the claim must fail.
     pub red: Red,
-    /// Smallest set of runs in which a stored run is repeated under this control.
+    /// Smallest tier in which a stored run is repeated under this control.
     pub set: Set,
 }
 
@@ -66,7 +66,7 @@ impl Control {
         Self { name, wrong, red: Red::Value, set: Set::Main }
     }
 
-    /// Limits the control to the long set for runs that have a stored result.
+    /// Repeats stored runs under this control only in the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }

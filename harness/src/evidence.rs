@@ -10,15 +10,15 @@ pub enum Evidence {
     Analytic,
     /// A measurement on real grains.
     Experiment,
-    /// Another program ran the same scene: a run of it is stored, or it was run now.
+    /// Another program ran the same scene, and its run is stored or was done now.
     OtherCode,
-    /// Another program ran the same scene. Its run is stored, or was done now.
+    /// A figure or statement printed in a paper.
     Paper,
     /// An independent prototype, whose numbers are stored.
     Prototype,
     /// Our own results at several resolutions, or by several methods.
     Convergence,
-    /// Our own results at several resolutions or with several methods.
+    /// A law that holds for every solution: conservation, symmetry, determinism.
     Invariant,
     /// Today's value, stored to detect changes. It is no evidence that the value is right.
     Regression,

@@ -1,9 +1,9 @@
 //! The harness: definition and evaluation of claims.
 //!
-//! A [`claim::Claim`] states the runs from which a quantity is read, the expectation and its source, the tolerance and
-//! its reason, and the wrong physics that it must refuse. A [`runner::Runner`] does each run once, with solvers that
-//! the caller supplies, and returns a [`verdict::Verdict`]. The harness knows no solver: all records are evaluated in
-//! the same way.
+//! A [`claim::Claim`] states the runs from which a quantity is read, the expectation with its source, and the tolerance
+//! with its reason. It also states the wrong physics that it must refuse. A [`runner::Runner`] does each run once, with
+//! solvers that the caller supplies, and returns a [`verdict::Verdict`]. The harness knows no solver: all records are
+//! evaluated in the same way.
 
 pub mod case;
 pub mod claim;

@@ -29,13 +29,13 @@ pub struct Run {
     pub standing: Standing,
     /// Largest |error| of a known error, in units of the claim's scale; a larger one is red.
     pub known_up_to: f64,
-    /// Smallest set to which the run belongs.
+    /// Smallest tier to which the run belongs.
     pub set: Set,
     /// Reference run: negative controls are not applied to it.
     pub aside: bool,
     /// Reading of its snapshots, if they are read and not stored.
     pub reading: Option<Reading>,
-    /// True if its tables are stored with the case. Smaller sets then use the stored result.
+    /// True if its tables are stored with the case. Smaller tiers then use the stored result.
     pub kept: bool,
 }
 
@@ -48,17 +48,17 @@ pub struct Made {
     pub is_current: bool,
 }
 
-/// Set of runs. Each set includes all smaller ones.
+/// Tier of runs. Each tier includes all smaller ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Set {
-    /// Quick runs: at most a few seconds each.
+    /// Quick tier: runs of at most a few seconds each.
     #[default]
     Main,
-    /// Runs that only the tests add.
+    /// Standard tier: runs that only the tests add.
     Tests,
-    /// Runs that take minutes.
+    /// Long tier: runs that take minutes.
     Long,
-    /// Runs that take an hour, with scenes as large as in a publication.
+    /// Full-scale tier: runs that take an hour, with scenes as large as in a publication.
     Paper,
 }
 
@@ -122,19 +122,19 @@ impl Run {
         Self { known_up_to: error, ..self }
     }
 
-    /// Adds the run to the tests only, not to the quick set.
+    /// Assigns the run to the standard tier, which only the tests run.
     #[must_use]
     pub fn slow(self) -> Self {
         Self { set: Set::Tests, ..self }
     }
 
-    /// Assigns the run to the long set.
+    /// Assigns the run to the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
-    /// Assigns the run to the set of scenes as large as in a publication.
+    /// Assigns the run to the full-scale tier.
     #[must_use]
     pub fn paper_size(self) -> Self {
         Self { set: Set::Paper, ..self }
@@ -146,13 +146,13 @@ impl Run {
         Self { reading: Some(reading), ..self }
     }
 
-    /// Stores its tables with the case. Every set then judges the stored result, and the run's own set repeats the run.
+    /// Stores its tables with the case. Smaller tiers then judge the stored result, and its own tier repeats the run.
     #[must_use]
     pub fn kept(self) -> Self {
         Self { kept: true, ..self }
     }
 
-    /// Returns the smallest set in which a claim about this run can be judged.
+    /// Returns the smallest tier in which a claim about this run can be judged.
     #[must_use]
     pub fn judged_in(&self) -> Set {
         if self.kept { Set::Main } else { self.set }

@@ -43,7 +43,7 @@ pub struct Runner {
     controlled: bool,
     /// Number of threads per run.
     threads: usize,
-    /// Largest set whose runs are repeated even if their results are stored.
+    /// Largest tier whose runs are repeated even if their results are stored; none to repeat no stored run.
     afresh: Option<Set>,
     /// Directory of third-party data.
     data: Option<PathBuf>,
@@ -117,7 +117,7 @@ impl Runner {
         Self { threads, ..self }
     }
 
-    /// Repeats the runs of sets up to this one even if their results are stored.
+    /// Repeats the runs of all tiers up to this one even if their results are stored.
     #[must_use]
     pub fn afresh(self, set: Set) -> Self {
         Self { afresh: Some(set), ..self }
@@ -304,8 +304,8 @@ impl Runner {
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
     }
 
-    /// Returns true if the stored result of a run is used. This is so if the run belongs to a larger set than the runs
-    /// done now.
+    /// Returns true if the stored result of a run is used, because the run belongs to a larger tier than those repeated
+    /// now. An external solver never uses it.
     fn is_read_back(&self, run: &Run, control: Option<&control::Control>) -> bool {
         let set = control.map_or(run.set, |control| run.set.max(control.set));
         let is_wanted_now = self.live && self.solvers.is_program(run.solver);

@@ -21,8 +21,8 @@ pub struct Estimate {
 /// Returns the difference of two series with the same sample times, from block averages.
 ///
 /// Both series are cut into `blocks` blocks of equal length; samples left over at the start are not used. The
-/// differences of the block means are treated as independent. Their mean then has a half-width t s/√n, with their
-/// standard deviation s and Student's t for n − 1 degrees of freedom (Flyvbjerg & Petersen 1989). A trend that both
+/// differences of the block means are treated as independent (Flyvbjerg & Petersen 1989). Their mean then has the
+/// half-width t s/√n, with their standard deviation s and Student's t for n − 1 degrees of freedom. A trend that both
 /// series share cancels in the differences. Returns none if a block would be empty, or if the lengths of the series
 /// differ.
 #[must_use]
@@ -61,8 +61,8 @@ pub fn median(values: &[f64]) -> f64 {
     range(values).map_or(f64::NAN, |[_, middle, _]| middle)
 }
 
-/// Returns the half-width t s √2 of the interval that contains the difference of two further values of the same kind.
-/// The standard deviation s is from independent values. Returns none if there are too few values or all are equal.
+/// Returns the half-width t s √2 of the prediction interval for the difference of two further values. Here s is the
+/// standard deviation of the given independent values. Returns none if there are too few values or all are equal.
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
@@ -82,8 +82,8 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
 }
 
-/// Returns the mean of independent values and the half-width t s √(1 + 1/n) of the interval that contains one further
-/// value of the same kind. Here s is the standard deviation. Returns none if there are too few values or all are equal.
+/// Returns the mean of independent values, and the half-width t s √(1 + 1/n) of the prediction interval for one further
+/// value. Here s is their standard deviation. Returns none if there are too few values or all are equal.
 #[must_use]
 pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;

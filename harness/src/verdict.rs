@@ -35,7 +35,7 @@ pub enum Outcome {
     Outdated,
     /// There is no reference to compare with.
     NoReference,
-    /// The solver cannot express this scene.
+    /// The solver cannot represent this scene.
     Unsupported,
     /// The program is not installed.
     NotAvailable,

@@ -100,8 +100,8 @@ impl Judged {
         Self { program, version, adapter, provenance: report.provenance.clone(), rows }
     }
 
-    /// Returns the differences of another run of the solver, one line each. Compared are outcomes, controls, missing
-    /// results, and errors that changed by more than the tolerance.
+    /// Returns the differences between the stored results and another run of the solver, one line each. It compares
+    /// outcomes and controls, and lists new results and errors that changed by more than the tolerance.
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
         let now = Self::of(self.program.clone(), String::new(), String::new(), report);

@@ -128,8 +128,8 @@ pub fn against<'a>(
         let (times, found, expected) = together(observed, &observed.values[at], &nearest.series, &column.name)?;
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
-        // Contact conventions differ in free vibration and drift, so a difference at one time says little: take the
-        // largest.
+        // Contact conventions differ in free vibration and drift. The difference at one time is therefore not
+        // representative, and the largest over time is used.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();

@@ -1,7 +1,7 @@
 //! Comparison of chaotic runs: sample by sample up to the predictability horizon, and by means with confidence
 //! intervals after it.
 //!
-//! The horizon is measured. Up to the horizon, a run with one position perturbed by one unit in the last place stays
+//! The horizon is measured. Up to the horizon, a run with one position perturbed by one unit in the last place remains
 //! within [`PARTED`] of the original run. Two programs that sum in another order differ by many such units at once;
 //! [`ALLOWED`] leaves room for that.
 //!

@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Size of a flaw, as a fraction of the velocities.
 const SIZE: f64 = 1e-9;
-/// Size of a larger flaw. It is used in free fall if a solver claims no second order, because its error may be gΔt/2.
+/// Size of a larger flaw, for material points and for free fall. If a solver claims no second order, its error in free
+/// fall may be gΔt/2.
 const LARGE: f64 = 1e-2;
 /// Fraction by which walls turn slower, or grains if no wall turns.
 const SLOWER: f64 = 0.05;

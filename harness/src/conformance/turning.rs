@@ -28,7 +28,7 @@ const DRUM: f64 = 3.0;
 /// Motion of the grains when everything rotates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Course {
-    /// Each grain stays at its position in the rotating frame.
+    /// Each grain is at rest in the rotating frame.
     Rigid,
     /// A grain is held by springs that are equal in all directions and initially unloaded. Their frequency is ω
     /// (rad/s).
@@ -43,7 +43,7 @@ pub(super) struct Turning {
     course: Course,
     /// Largest overlap (m).
     pub(super) overlap: f64,
-    /// True if slip due to lever arms that the overlap shortens moves the centres.
+    /// True if the centres move because the overlap shortens the lever arms, which makes surfaces slip.
     pub(super) carried: bool,
     /// True if contacts rotate about their normals.
     pub(super) twisted: bool,

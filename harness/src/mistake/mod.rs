@@ -60,7 +60,7 @@ struct Judged<'a> {
     row: &'a Verdict,
 }
 
-/// Errors of all results with one mistake; none if the error cannot be computed.
+/// Errors of all results with one mistake; none for a result whose error cannot be computed.
 struct Candidate {
     words: &'static str,
     errors: Vec<Option<f64>>,

@@ -22,7 +22,7 @@ pub(crate) enum Rank {
 
 /// A piece of the page.
 pub(crate) enum Piece {
-    /// A piece that always stays in the page.
+    /// A piece that is never moved out of the page.
     Fixed(String),
     /// A piece that can be moved out of the page.
     Part(Part),

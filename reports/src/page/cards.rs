@@ -152,7 +152,7 @@ fn kinds(report: &Report, solver: &str) -> String {
     KINDS.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the number of results of other solvers that are compared with this program, and how many of them agree.
+/// Renders the number of results of other solvers that are compared with this program, and how many of them agree.
 fn compared(report: &Report, solver: &str) -> Markup {
     let against = format!("against {solver}");
     let by_it = |row: &&Verdict| {

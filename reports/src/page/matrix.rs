@@ -24,7 +24,7 @@ struct Cell<'a> {
     solver: &'a str,
 }
 
-/// Returns the rank of an outcome: red above known errors above passes. Results that show nothing have the lowest rank.
+/// Returns the rank of an outcome. The order is red, known error, pass, and last outcomes that show nothing.
 const fn order(outcome: Outcome) -> u8 {
     match outcome {
         Outcome::Broken => 5,

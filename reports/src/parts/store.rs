@@ -22,7 +22,7 @@ use crate::write::{WriteError, parent_of};
 /// Largest number of rows (grains, contacts and points) of a small run. Its snapshots are written as readable text.
 pub const READABLE: u64 = 200_000;
 
-/// Memory limit of snapshots that are not yet on disk (B).
+/// Memory that snapshots may occupy before they are written to disk (B).
 const WAITING: usize = 8 << 20;
 /// Size at which a part is closed (B).
 const PART: usize = 64 << 20;

@@ -88,7 +88,7 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     letters * size
 }
 
-/// Breaks a text into lines no wider than `width`, at spaces only.
+/// Breaks a text at spaces into lines no wider than `width`, unless a single word is wider.
 pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

@@ -71,7 +71,7 @@ impl Scale {
         scale
     }
 
-    /// Places labelled ticks at these values; without values, ticks stay at round numbers.
+    /// Places labelled ticks at these values. Without values, ticks are at round numbers.
     #[must_use]
     pub fn at_levels(self, levels: &[f64]) -> Self {
         Self { levels: levels.iter().copied().filter(|level| self.shows(*level)).collect(), ..self }

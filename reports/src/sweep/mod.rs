@@ -157,7 +157,7 @@ pub enum Standing {
     Within,
     /// A quantity fails, or the run crashed.
     Outside,
-    /// The solver cannot represent the scene, or is not available.
+    /// No quantity is red, and at least one is amber: the solver cannot represent the scene, or is not available.
     Amber,
 }
 

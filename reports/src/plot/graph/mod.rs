@@ -97,9 +97,9 @@ impl Panel {
 /// Size of a drawing, and whether it has a legend.
 #[derive(Clone, Copy)]
 pub struct Form {
-    /// Width.
+    /// Width (drawing units).
     pub width: f64,
-    /// Height.
+    /// Height (drawing units).
     pub height: f64,
     /// True if there is a legend.
     pub legend: bool,
