@@ -1,5 +1,5 @@
-//! Deliberate defects for solvers. Each changes one thing by about 1e-9, or by 1e-2 if a smaller change is not
-//! detected.
+//! Deliberate defects for solvers. Most change one thing by about 1e-9. Larger defects are used if a property does not
+//! detect smaller ones.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
