@@ -129,6 +129,25 @@ fn a_folder_of_outputs_is_judged_together() {
     let (code, rows) = judged(&["--all", &runs]);
     let of = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
     assert!(code == Some(0) && of("incline-disc") == 9 && of("backspin") > 5, "{rows:#?}");
+    // The content of a file decides, not its name; what is not judged is red unless it is ignored by name.
+    let place = directory.path().join("runs/incline-disc/60deg-mu.9");
+    fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
+    for input in ["in.lammps", "data.grains"] {
+        fs::write(place.join(input), "units si\n").unwrap();
+    }
+    let (code, rows) = judged(&["--all", &runs]);
+    assert_eq!((code, count(&rows, |row| row["case"] == "incline-disc")), (Some(0), 9), "{rows:#?}");
+    fs::write(place.join("notes.txt"), "a run of yesterday\n").unwrap();
+    fs::write(directory.path().join("runs/stray.dump"), "").unwrap();
+    let (code, rows) = judged(&["--all", &runs]);
+    let files: Vec<&Value> = rows.iter().filter(|row| row["case"] == "files").map(|row| &row["quantity"]).collect();
+    let names = ["incline-disc/60deg-mu.9/notes.txt, not judged", "stray.dump, not judged"];
+    assert_eq!((code, &files[..]), (Some(1), &names.map(Value::from).iter().collect::<Vec<_>>()[..]), "{rows:#?}");
+    let (code, rows) = judged(&["--all", &runs, "--ignore", "notes.txt", "--ignore", "*.dump"]);
+    assert_eq!((code, count(&rows, |row| row["case"] == "files")), (Some(0), 0));
+    fs::remove_file(place.join("notes.txt")).unwrap();
+    fs::remove_file(directory.path().join("runs/stray.dump")).unwrap();
+    fs::rename(place.join("dump.grains"), place.join("lammps-incline.dump.gz")).unwrap();
     into("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz");
     fs::remove_file(directory.path().join("runs/incline-disc/60deg-mu.9/lammps-incline.dump.gz")).unwrap();
     assert_eq!(judged(&["--all", &runs]).0, Some(1));

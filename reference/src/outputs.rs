@@ -17,6 +17,8 @@ use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
 use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
 
+pub use crate::run_files::is_of_a_run;
+
 /// Most files that are named one by one.
 const MOST_NAMED: usize = 3;
 

@@ -6,7 +6,7 @@ use crate::read::line_reader::LineReader;
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::table::header;
+use crate::read::table::{header, read_table};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -85,6 +85,22 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
         }
     }
     Ok(if has_comments { Kind::Table } else { Kind::Grains(&dump::FORMAT) })
+}
+
+/// Checks that the content of a file is that of a run: grains at moments, entries of a dump, or a table of numbers. Names do not
+/// matter.
+///
+/// # Errors
+/// The content is another one, or cannot be read that far.
+pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
+    let length = std::fs::metadata(path).map_err(|error| ReadError::opening(&shown(path), error))?.len();
+    if length == 0 {
+        return Err(ReadError::at(&shown(path), 1, "grains or a table of numbers", "an empty file"));
+    }
+    match kind(path)? {
+        Kind::Table => read_table(path).map(drop),
+        Kind::Grains(_) => Ok(()),
+    }
 }
 
 /// A file, and which moment it is of where it holds one only.

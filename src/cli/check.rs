@@ -1,19 +1,22 @@
 //! `grainbench check`: what any program left of a case, judged.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::pattern;
 use super::provenance::provenance;
 use super::run::{exit_code, is_judged};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
+use glob::Pattern;
 use grainbench::check::{Options, Power, Subject, check as judge, is_of_power};
-use grainbench::harness::verdict;
+use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::observer::Names;
-use grainbench::reference::outputs::{Outputs, Sources};
+use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, line, write_report};
 use grainbench::scene::scene::Scene;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -35,6 +38,10 @@ pub(crate) struct Arguments {
     /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
+    /// File that `--all` does not judge, by its name or a pattern in quotes such as `'*.log'`; any other file that is no output is
+    /// red. Repeatable.
+    #[arg(long, value_name = "NAME", requires = "all")]
+    ignore: Vec<String>,
     /// Log of the run; by default `log.lammps` or `log.liggghts` next to the first dump.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
@@ -150,48 +157,86 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
 /// What a program calls its log where nothing else is said.
 const LOGS: [&str; 2] = ["log.lammps", "log.liggghts"];
 
-/// Judges what lies in the folders of cases and of their variants.
+/// Files that `deck` writes for a program and that are no output.
+const INPUTS: [&str; 4] = ["in.lammps", "in.liggghts", "data.grains", "wall-*.stl"];
+
+/// Judges the outputs in the folders of cases and of their variants. Content decides what an output is.
 fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
+    let mut ignored: Vec<Pattern> =
+        arguments.ignore.iter().map(|name| pattern::read("--ignore", name)).collect::<Result<_, _>>()?;
+    ignored.extend(LOGS.iter().chain(&INPUTS).filter_map(|name| Pattern::new(name).ok()));
     let found = |folder: &Path| -> Result<(Vec<PathBuf>, Vec<PathBuf>), Fault> {
-        let entries = fs::read_dir(folder).map_err(|error| {
+        let unreadable = |error: io::Error| {
             Fault::input(format!("{}: expected a folder that can be read, found {error}", folder.display()))
-        })?;
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        };
+        let entries = fs::read_dir(folder).map_err(unreadable)?;
+        let paths = entries.map(|entry| entry.map(|entry| entry.path()));
+        let mut paths = paths.collect::<io::Result<Vec<_>>>().map_err(unreadable)?;
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        paths.retain(|path| !ignored.iter().any(|pattern| pattern.matches(&name(path))));
         paths.sort();
         Ok(paths.into_iter().partition(|path| path.is_dir()))
     };
-    let mut sections = Vec::new();
+    let (mut sections, mut not_judged) = (Vec::new(), Vec::new());
     let mut judge = |scene: &str, files: Vec<PathBuf>| -> Result<(), Fault> {
-        let dump: Vec<PathBuf> = files.into_iter().filter(|file| looks_like_output(file)).collect();
+        let mut dump = Vec::new();
+        for file in files {
+            match is_of_a_run(&file) {
+                Ok(()) => dump.push(file),
+                Err(error) => not_judged.push((file, error.to_string())),
+            }
+        }
         if !dump.is_empty() {
             let arguments = Arguments { dump, ..arguments.clone() };
             sections.push(one(&arguments, scene)?.0);
         }
         Ok(())
     };
-    for of_case in found(folder)?.0 {
+    let (of_cases, beside_cases) = found(folder)?;
+    let mut beside = Vec::new();
+    for of_case in of_cases {
         let name = of_case.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (variants, files) = found(&of_case)?;
         judge(&name, files)?;
         for of_variant in variants {
             let variant = of_variant.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            judge(&format!("{name}/{variant}"), found(&of_variant)?.1)?;
+            let (folders, files) = found(&of_variant)?;
+            judge(&format!("{name}/{variant}"), files)?;
+            beside.extend(folders);
         }
     }
-    if sections.is_empty() {
+    let place = |path: PathBuf| (path, "it is in no folder `CASE` or `CASE/VARIANT`".to_owned());
+    not_judged.extend(beside_cases.into_iter().chain(beside).map(place));
+    if sections.is_empty() && not_judged.is_empty() {
         let folder = folder.display();
         return Err(Fault::input(format!("{folder}: expected outputs in `CASE` or `CASE/VARIANT` of it, found none")));
     }
+    sections.extend((!not_judged.is_empty()).then(|| section_of_not_judged(folder, &not_judged)));
     Ok(sections)
 }
 
-/// Whether a file is an output by the end of its name, compressed or not.
-fn looks_like_output(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let name = name.trim_end_matches(".gz").trim_end_matches(".zst");
-    [".dump", ".local", ".lammpstrj", ".csv", ".vtk", ".vtkhdf", ".vtp", ".vtu", ".pvd"]
-        .iter()
-        .any(|end| name.ends_with(end))
+/// A red row for each file that was not judged, with the reason.
+fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section {
+    let row = |(path, reason): &(PathBuf, String)| {
+        let name = path.strip_prefix(folder).unwrap_or(path).to_string_lossy();
+        let row = Verdict {
+            because: "each file must be judged, or ignored by its name (--ignore)".to_owned(),
+            source: "content of the file".to_owned(),
+            ..Verdict::open("files", format!("{name}, not judged"), "1")
+        };
+        row.left(verdict::Outcome::Fail, reason)
+    };
+    Section {
+        name: "files".to_owned(),
+        title: format!("Files of {} that were not judged", folder.display()),
+        claim: "Each file below the directory is judged, or ignored by its name.".to_owned(),
+        derivation: String::new(),
+        weak: String::new(),
+        figures: Vec::new(),
+        verdicts: files.iter().map(row).collect(),
+        controls: Vec::new(),
+        runs: Vec::new(),
+    }
 }
 
 /// Most rows that a snapshot can have: a grain has a dozen contacts at most, and walls.
