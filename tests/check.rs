@@ -152,7 +152,8 @@ fn forces_at_contacts_are_judged_where_a_dump_tells_them() {
         let of_forces = |row: &&Value| row["evidence"] == "analytic" && row["unit"] == "N";
         rows.iter().filter(of_forces).filter(|row| row["verdict"] == verdict).count()
     };
-    let (code, rows) = judged("lammps-nine-static", &["--map", CONTACTS]);
+    // Three snapshots show the end alone.
+    let (code, rows) = judged("lammps-nine-static", &["--map", CONTACTS, "--partial"]);
     assert_eq!((code, forces(&rows, "pass"), count(&rows, "fail")), (0, 4, 0), "{rows:#?}");
     let (code, rows) = judged("lammps-nine-static-stiffer", &["--map", CONTACTS]);
     assert_eq!((code, forces(&rows, "fail")), (1, 4));
@@ -288,6 +289,86 @@ fn half_a_run_is_not_judged_as_the_whole() {
     let (code, rows) = checked(&["--partial"]);
     assert_eq!((code, &rows[0]["verdict"]), (Some(0), &"known".into()));
     assert_eq!(checked(&["--partial", "--strict"]).0, Some(1));
+}
+
+/// The first and the last snapshot alone are no run; a tenth of the snapshots is.
+#[test]
+fn samples_far_apart_judge_no_course() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
+    let checked = |kept: &dyn Fn(usize) -> bool, more: &[&str]| {
+        // Each part ends with the first line of the next snapshot; the first part has no snapshot.
+        let kept: String = (1..snapshots.len()).filter(|at| kept(at - 1)).map(|at| snapshots[at]).collect();
+        let text = format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n"));
+        fs::write(directory.path().join("thinned"), text).unwrap();
+        let arguments = [&["check", "incline-disc/60deg-mu.9", "--dump", "thinned", "--json"], more].concat();
+        let answer = grainbench(directory.path(), &arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    };
+    let last = snapshots.len() - 2;
+    let is_end = move |at: usize| at == 0 || at == last;
+    let (code, rows) = checked(&is_end, &[]);
+    assert_eq!((code, count(&rows, "pass")), (Some(1), 4), "{rows:#?}");
+    // Values at the end are judged all the same, because no sample in between can change them.
+    assert!(rows[1..].iter().all(|row| (row["evidence"] == "analytic") == (row["verdict"] == "pass")), "{rows:#?}");
+    let detail = rows.iter().find(|row| row["verdict"] == "fail").unwrap()["detail"].as_str().unwrap();
+    assert!(detail.starts_with("no sample for 1 s from t = 0 s, above 0.1"), "{detail}");
+    let (code, rows) = checked(&is_end, &["--partial"]);
+    assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 5), "{rows:#?}");
+    let (code, rows) = checked(&|at| at % 10 == 0, &[]);
+    assert_eq!((code, count(&rows, "fail")), (Some(0), 0), "{rows:#?}");
+    // One hole of two tenths in a dense run.
+    let (code, rows) = checked(&|at| !(31..50).contains(&at), &[]);
+    assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
+}
+
+/// A step or a time that is there twice with other numbers is an error in every reader.
+#[test]
+fn a_step_that_is_there_twice_with_other_numbers_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let last = &whole[whole.rfind("ITEM: TIME\n").unwrap()..];
+    let moved = last.rsplit_once("ITEM: ATOMS").unwrap();
+    let row = moved.1.lines().nth(1).unwrap();
+    let other = last.replace(row, &row.replacen(" 5.", " 4.", 1).replacen(" 8.", " 7.", 1));
+    write("same", &format!("{whole}{last}"));
+    write("twice", &format!("{whole}{other}"));
+    write("end", &other);
+    assert_ne!(last, other);
+    let scene = "incline-disc/60deg-mu.9";
+    for arguments in [
+        &["check", scene, "--dump", "twice"][..],
+        &["check", scene, "--dump", &data("lammps-incline.dump.gz"), "end"],
+        &["compare", "same", "twice"],
+        &["fields", "twice", "--cell", "1"],
+    ] {
+        let message = refusal(directory.path(), arguments);
+        assert!(message.contains(" as before at step ") && message.contains("which is there twice"), "{message}");
+    }
+    assert_eq!(grainbench(directory.path(), &["check", scene, "--dump", "same"]).code, Some(0));
+    let once = "time,x\n0,1.0000\n1,2.0000\n2,2.5000\n";
+    write("once.csv", once);
+    write("again.csv", &format!("{once}2,2.5000\n"));
+    write("twice.csv", &format!("{once}2,3.5000\n"));
+    assert_eq!(grainbench(directory.path(), &["compare", "once.csv", "again.csv"]).code, Some(0));
+    let message = refusal(directory.path(), &["compare", "once.csv", "twice.csv"]);
+    assert!(message.contains("twice.csv:5: expected a time after 2.0, found 2.0"), "{message}");
+    write("steps.csv", "step,time,x\n0,0,1.0\n5,1,2.0\n5,2,2.5\n");
+    let message = refusal(directory.path(), &["compare", "steps.csv", "steps.csv"]);
+    assert!(message.contains("steps.csv:4: expected a step after 5, found 5"), "{message}");
+    let message = refusal(directory.path(), &["check", scene, "--dump", "steps.csv"]);
+    assert!(message.contains("expected a step after 5 in row 3, found 5"), "{message}");
+}
+
+/// The text of a packed file of the data.
+fn unpacked(name: &str) -> String {
+    let mut whole = String::new();
+    let file = fs::File::open(data(name)).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut whole).unwrap();
+    whole
 }
 
 /// A result with a tolerance as large as its value is amber, and a run without a verdict is not a success.

@@ -313,15 +313,26 @@ impl Outputs {
             return self.observe_table(scene, table);
         }
         let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
+        // The number and the time (s) of the last snapshot of grains; the last snapshot of the last file.
         let mut last: Option<u64> = None;
+        let mut last_time = f64::NEG_INFINITY;
+        let mut before = DumpSnapshot::default();
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
             let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
+            let mut number = None;
             while self.next(&mut reader, &mut snapshot)? {
-                let number = snapshot.step;
+                if snapshot.kind == DumpKind::Entries {
+                    continue;
+                }
+                let is_first = number.is_none();
+                let number = *number.insert(snapshot.step);
                 // Where one dump continues another, its first snapshot is the last of that.
-                if snapshot.kind == DumpKind::Entries || last == Some(number) {
+                if last == Some(number) {
+                    if is_first {
+                        snapshot.check_repeated(&name, &before)?;
+                    }
                     continue;
                 }
                 if let Some(before) = last.filter(|before| number < *before) {
@@ -329,9 +340,18 @@ impl Outputs {
                     return Err(ReadError::at(&name, snapshot.first_line, expected, number.to_string()).into());
                 }
                 let time = self.time(&name, &snapshot)?;
+                if time <= last_time {
+                    let expected = format!("a time after {last_time:?}, the time of the snapshot before");
+                    return Err(ReadError::at(&name, snapshot.first_line, expected, format!("{time:?}")).into());
+                }
+                last_time = time;
                 snapshot.step = self.step(&snapshot, time);
                 observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), last.is_none())?;
                 last = Some(number);
+                snapshot.step = number;
+            }
+            if number.is_some() {
+                before = snapshot;
             }
         }
         let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
@@ -410,10 +430,14 @@ impl Outputs {
             (None, _, _) => return Err(OutputError::NoTime(name)),
         };
         let steps = match (step, self.time_step()) {
-            (Some(step), _) => table.values(step).map(|step| (step as u64).saturating_sub(first)).collect(),
+            (Some(step), _) => table.values(step).map(|step| (step as u64).saturating_sub(first)).collect::<Vec<_>>(),
             (None, Some(length)) => times.iter().map(|time| (time / length).round() as u64).collect(),
             (None, None) => (0..times.len() as u64).collect(),
         };
+        if let Some((at, pair)) = steps.windows(2).enumerate().find(|(_, pair)| step.is_some() && pair[1] <= pair[0]) {
+            let expected = format!("a step after {} in row {}", pair[0] + first, at + 2);
+            return Err(ReadError::at(&name, 1, expected, (pair[1] + first).to_string()).into());
+        }
         if let Some(at) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
             let expected = format!("a time after {:?} in row {}", times[at], at + 2);
             return Err(ReadError::at(&name, 1, expected, format!("{:?}", times[at + 1])).into());

@@ -8,10 +8,39 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
-use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::record::Series;
+use grainbench_scene::scene::{Duration, Sampling, Scene};
 
 /// Part of the run that a time printed with few digits may be short of its end.
 const PRINTED: f64 = 1e-6;
+
+/// Longest time between samples, as a part of the run. Coarser samples hide an excursion of a tenth of the run.
+const PART: f64 = 0.1;
+
+/// A time between two samples that follow each other (s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Gap {
+    from: f64,
+    to: f64,
+}
+
+impl Gap {
+    /// The longest of some times of samples (s); the run starts at time 0.
+    fn longest(times: impl Iterator<Item = f64>) -> Self {
+        let (mut longest, mut from) = (Self { from: 0.0, to: 0.0 }, 0.0);
+        for to in times {
+            if to - from > longest.to - longest.from {
+                longest = Self { from, to };
+            }
+            from = to;
+        }
+        longest
+    }
+
+    fn length(self) -> f64 {
+        self.to - self.from
+    }
+}
 
 /// How far outputs reach into the run of a scene.
 #[derive(Clone, Copy)]
@@ -23,12 +52,19 @@ pub(super) struct Covered {
     /// Most that the last sample may be short of the end (s).
     slack: f64,
     samples: usize,
+    /// Longest time between samples that results can be judged with (s): the sampling interval of the scene, or a tenth of the run
+    /// where that is longer. None where the time of the run is not known.
+    most: Option<f64>,
+    /// Longest time between samples.
+    gap: Gap,
+    /// Outputs that cover a part of the run are meant.
+    partial: bool,
 }
 
 impl Covered {
     /// Of outputs with a time step (s), where that is known. Samples after the end of the scene are taken away: it says
     /// nothing of them.
-    pub(super) fn of(scene: &Scene, step: Option<f64>, observed: &mut Observed) -> Self {
+    pub(super) fn of(scene: &Scene, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
         let whole = match scene.duration {
             Duration::Seconds(seconds) => Some(seconds),
             Duration::Cycles(cycles) => step.map(|step| step * cycles as f64),
@@ -39,8 +75,18 @@ impl Covered {
         if let Some(whole) = whole {
             observed.keep(observed.series.time.partition_point(|&time| time <= whole + slack));
         }
+        let interval = |whole: f64| match scene.sampling {
+            Sampling::Seconds(interval) => interval,
+            Sampling::Cycles(cycles) => step.map_or(0.0, |step| step * cycles as f64),
+            Sampling::Count(count) => whole / count.max(1) as f64,
+        };
+        // Samples are at whole steps.
+        let rounding = step.unwrap_or_default().min(most) + PRINTED * whole.unwrap_or_default();
+        let most = whole.map(|whole| interval(whole).max(PART * whole) + rounding);
         let time = &observed.series.time;
-        Self { reached: time.last().copied().unwrap_or_default(), whole, slack, samples: time.len() }
+        let reached = time.last().copied().unwrap_or_default();
+        let gap = Gap::longest(time.iter().copied());
+        Self { reached, whole, slack, samples: time.len(), most, gap, partial }
     }
 
     /// The same of a part of the samples.
@@ -69,8 +115,57 @@ impl Covered {
         (!self.is_whole()).then(|| format!("the files show {}", short()))
     }
 
+    /// A series with a sample in the middle of the longest time between samples, whose values are off by a part of the largest
+    /// value of each column; none where samples are dense enough.
+    pub(super) fn with_wrong_sample(&self, series: &Series, part: f64) -> Option<Series> {
+        self.most.filter(|most| self.gap.length() > *most)?;
+        let mut series = series.clone();
+        let at = series.time.partition_point(|&time| time < self.gap.to);
+        let before = at.saturating_sub(1);
+        let step = series.step.get(before).zip(series.step.get(at)).map_or(0, |(a, b)| a + (b - a) / 2);
+        series.step.insert(at.min(series.step.len()), step);
+        series.time.insert(at, 0.5 * (self.gap.from + self.gap.to));
+        for values in &mut series.values {
+            let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let wrong = values.get(before).copied().unwrap_or_default() + part * (1.0 + largest);
+            values.insert(at.min(values.len()), wrong);
+        }
+        Some(series)
+    }
+
+    /// The row of a result that needs samples all over the run, with the time between samples that it can be judged with: red
+    /// where samples lie farther apart, amber where that is meant.
+    pub(super) fn dense(&self, row: Verdict) -> Verdict {
+        let (Some(most), true) = (self.most, row.value.is_some()) else { return row };
+        let [limit, length, from] = [most, self.gap.length(), self.gap.from].map(|time| number::significant(time, 6));
+        let because = format!("{}; samples at most {limit} s apart", row.because);
+        let row = Verdict { because, ..row };
+        if row.outcome != Outcome::Pass || self.gap.length() <= most {
+            return row;
+        }
+        let found = format!("no sample for {length} s from t = {from} s, above {limit} s");
+        if self.partial {
+            return row.left(Outcome::Known, format!("{found}; a part of the run is meant (--partial)"));
+        }
+        row.left(Outcome::Fail, format!("{found}; --partial judges what is there"))
+    }
+
+    /// The row of a comparison at some times of the samples (s): amber where those lie too far apart.
+    pub(super) fn dense_in(&self, times: impl Iterator<Item = f64>, row: Verdict) -> Verdict {
+        let row = self.dense(row);
+        let gap = Gap::longest(times);
+        if row.outcome != Outcome::Pass || self.most.is_none_or(|most| gap.length() <= most) {
+            return row;
+        }
+        let [length, from] = [gap.length(), gap.from].map(|time| number::significant(time, 6));
+        row.left(
+            Outcome::NoReference,
+            format!("no sample at a time of the stored run for {length} s from t = {from} s"),
+        )
+    }
+
     /// The row that says it: red where less than the whole was seen, amber where that is meant.
-    pub(super) fn row(&self, partial: bool, outputs: &Outputs, row: Verdict) -> Verdict {
+    pub(super) fn row(&self, outputs: &Outputs, row: Verdict) -> Verdict {
         let row = Verdict {
             evidence: Evidence::Invariant,
             source: "duration of the scene".to_owned(),
@@ -90,7 +185,7 @@ impl Covered {
         if let [cut, ..] = outputs.cuts() {
             return row.left(Outcome::Known, format!("whole frames before a cut are meant (--partial): {cut}"));
         }
-        match (row.outcome, partial) {
+        match (row.outcome, self.partial) {
             (Outcome::Fail, true) => row.left(Outcome::Known, "a part of the run is meant (--partial)"),
             (Outcome::Fail, false) => {
                 let shown = self.why_not().unwrap_or_default();

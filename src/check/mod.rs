@@ -85,7 +85,7 @@ pub enum NotChecked {
 /// What of outputs is judged, and how.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// Outputs that end before the run does are meant.
+    /// Outputs that end before the run does, or have few samples, are meant.
     pub partial: bool,
     /// Takes time steps above the critical one.
     pub allow_unstable: bool,
@@ -132,7 +132,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
         return Err(NotChecked::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
     if let Some((candidate, observed)) = matching.first_mut() {
-        let covered = Covered::of(&candidate.scene, outputs.time_step(), observed);
+        let covered = Covered::of(&candidate.scene, outputs.time_step(), observed, options.partial);
         refuse_unstable(&candidate.scene, outputs, options)?;
         return Ok(section(subject, candidate, outputs, observed, &covered, options));
     }
@@ -210,7 +210,7 @@ fn section(
             ..Verdict::open(subject.name(), quantity, unit)
         }
     };
-    let mut verdicts = vec![covered.row(options.partial, outputs, row("time of the last sample".to_owned(), "s"))];
+    let mut verdicts = vec![covered.row(outputs, row("time of the last sample".to_owned(), "s"))];
     let judge = |claim| exact(claim, candidate, outputs, observed, covered, &row);
     let mut of_claims: Vec<Option<Verdict>> = candidate.claims.iter().map(|claim| Some(judge(claim))).collect();
     if let Some(case) = subject.as_stored() {
@@ -228,9 +228,10 @@ fn section(
         }
         Err(reason) => (vec![no_comparison(&row, reason)], Vec::new()),
     };
-    verdicts.extend(verdicts_of_ours);
+    let dense = |row: Verdict| if is_of_power(&row) { row } else { covered.dense(row) };
+    verdicts.extend(verdicts_of_ours.into_iter().map(dense));
     if let Some(case) = subject.as_stored() {
-        verdicts.extend(stored::compare(case, candidate, outputs, observed, &row));
+        verdicts.extend(stored::compare(case, candidate, outputs, observed, covered, &row));
     }
     let (derivation, weak) = match subject.case() {
         Some(case) => (case.derivation, case.weakness),

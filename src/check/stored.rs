@@ -1,5 +1,6 @@
 //! Against the stored runs of LAMMPS and LIGGGHTS of the same scene.
 
+use super::covered::Covered;
 use super::ours::is_compared;
 use super::{Beside, Candidate, judged_in_time};
 use grainbench_cases::stored;
@@ -27,6 +28,7 @@ pub(super) fn compare(
     candidate: &Candidate,
     outputs: &Outputs,
     observed: &Observed,
+    covered: &Covered,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
     let runs = runs(case, candidate);
@@ -42,7 +44,7 @@ pub(super) fn compare(
             ..row(format!("{}, worst of {} stored samples to t = {until} s", of.name, of.samples.len()), of.unit)
         };
         let beside = Beside { floor: FLOOR, times: SAFETY, conventions: "stored runs" };
-        judged_in_time(row, &of, &beside, outputs)
+        covered.dense_in(of.samples.iter().map(|sample| sample.time), judged_in_time(row, &of, &beside, outputs))
     });
     rows.collect()
 }

@@ -55,7 +55,8 @@ pub(crate) struct Arguments {
     /// optional `tangential_x`; `WALL.force_x` is the force of a wall on a grain, and `angle` the angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Accept output that ends before the run does: amber instead of red. The whole frames of a truncated file are judged.
+    /// Accept output that ends before the run does, or whose samples are more than a tenth of the run and more than the sampling
+    /// interval of the scene apart: amber instead of red. The whole frames of a truncated file are judged.
     #[arg(long)]
     partial: bool,
     /// Accept a time step above the critical one.

@@ -47,6 +47,8 @@ pub(super) struct Frames {
     wanted: Vec<String>,
     number: u64,
     ids: Ids,
+    /// Place and numbers of the last frame; those of a snapshot without its numbers.
+    last: Option<(Place, Vec<f64>)>,
     partial: bool,
     /// Where the file is cut off, if that was allowed.
     pub(super) cut: Option<String>,
@@ -54,8 +56,19 @@ pub(super) struct Frames {
 }
 
 enum From {
-    Grains { files: vec::IntoIter<RunFile>, reader: Option<Snapshots>, snapshot: DumpSnapshot },
-    Table { table: Table, step: Option<usize>, time: Option<usize>, rows: vec::IntoIter<usize> },
+    Grains {
+        files: vec::IntoIter<RunFile>,
+        reader: Option<Snapshots>,
+        /// Whether nothing was read of the open file.
+        is_new: bool,
+        snapshot: DumpSnapshot,
+    },
+    Table {
+        table: Table,
+        step: Option<usize>,
+        time: Option<usize>,
+        rows: vec::IntoIter<usize>,
+    },
 }
 
 impl Frames {
@@ -64,7 +77,7 @@ impl Frames {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
             let files = in_order(&[path.to_owned()])?.into_iter();
-            From::Grains { files, reader: None, snapshot: DumpSnapshot::default() }
+            From::Grains { files, reader: None, is_new: true, snapshot: DumpSnapshot::default() }
         } else {
             let table = read_table(path)?;
             let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
@@ -73,7 +86,7 @@ impl Frames {
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
         let (wanted, ids, partial) = (Vec::new(), Ids::default(), options.partial);
-        Ok(Self { file, time_step, names, wanted, number: 0, ids, partial, cut: None, from })
+        Ok(Self { file, time_step, names, wanted, number: 0, ids, last: None, partial, cut: None, from })
     }
 
     /// Asks for these columns from now on, by our names.
@@ -113,10 +126,47 @@ impl Frames {
         }
     }
 
-    /// The next frame; none at the end of the file.
+    /// The next frame; none at the end of the file. A frame that repeats the one before is passed over.
     pub(super) fn next(&mut self) -> Result<Option<Frame>, ReadError> {
+        loop {
+            let Some((frame, numbers)) = self.frame()? else { return Ok(None) };
+            let place = frame.place;
+            let repeats = match &self.last {
+                Some((before, of_before)) => self.is_repeated(before, of_before, &place, &numbers)?,
+                None => false,
+            };
+            if !repeats {
+                self.number += 1;
+                self.last = Some((place, numbers));
+                return Ok(Some(frame));
+            }
+        }
+    }
+
+    /// Returns whether a frame repeats the one before.
+    ///
+    /// # Errors
+    /// The frame has the step or the time of the one before and other numbers, or goes back.
+    fn is_repeated(&self, before: &Place, of_before: &[f64], at: &Place, numbers: &[f64]) -> Result<bool, ReadError> {
+        let steps = before.step.zip(at.step);
+        let times = before.time.zip(at.time);
+        let same_step = steps.is_none_or(|(before, now)| before == now);
+        let same_time = times.is_none_or(|(before, now)| before == now);
+        let is_keyed = steps.is_some() || times.is_some();
+        if is_keyed && same_step && same_time && of_before == numbers {
+            return Ok(true);
+        }
+        let fault = |expected: String, found: String| Err(ReadError::at(&self.file, at.line, expected, found));
+        match (steps, times) {
+            (Some((before, now)), _) if now <= before => fault(format!("a step after {before}"), now.to_string()),
+            (_, Some((before, now))) if now <= before => fault(format!("a time after {before:?}"), format!("{now:?}")),
+            _ => Ok(false),
+        }
+    }
+
+    /// Reads the next frame, with all numbers of the row of a table.
+    fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
-        self.number += 1;
         match &mut self.from {
             From::Grains { .. } => {
                 if !self.next_snapshot()? {
@@ -125,35 +175,47 @@ impl Frames {
             }
             From::Table { rows, table, step, time } => {
                 let Some(row) = rows.next() else { return Ok(None) };
-                let value = |at: usize| table.values(at).nth(row).unwrap_or(f64::NAN);
+                let numbers = table.rows_from(row, 1).to_vec();
+                let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
                 let step = step.map(|at| value(at) as u64);
                 let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
-                let place = Place { step, time, number, line: number + 2 };
+                let place = Place { step, time, number, line: row as u64 + 2 };
                 let column = |name: &String| table.column(self.names.of(name)).map_or(f64::NAN, value);
                 let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
-                return Ok(Some(Frame { place, ids: None, values }));
+                return Ok(Some((Frame { place, ids: None, values }, numbers)));
             }
         }
         let From::Grains { snapshot, .. } = &self.from else { return Ok(None) };
         if let Some(id) = snapshot.column(self.names.of("id")) {
             self.ids.check(&self.file, snapshot, id)?;
         }
-        Ok(Some(self.of_snapshot(snapshot, number)))
+        // A snapshot that repeats a step was compared with the one before when it was read.
+        Ok(Some((self.of_snapshot(snapshot, number), Vec::new())))
     }
 
     /// Reads the next snapshot; false behind the last, or where the file is cut off and that is allowed.
     fn next_snapshot(&mut self) -> Result<bool, ReadError> {
-        let From::Grains { files, reader, snapshot } = &mut self.from else { return Ok(false) };
+        let From::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
         loop {
             let open = match reader {
                 Some(open) => open,
                 None => match files.next() {
-                    Some(file) => reader.insert(Snapshots::open(&file, u64::MAX)?),
+                    Some(file) => {
+                        *is_new = true;
+                        reader.insert(Snapshots::open(&file, u64::MAX)?)
+                    }
                     None => return Ok(false),
                 },
             };
+            let before = (*is_new).then(|| snapshot.clone());
             match open.read(snapshot) {
-                Ok(true) => return Ok(true),
+                Ok(true) => {
+                    *is_new = false;
+                    if let Some(before) = before.filter(|of| !of.columns.is_empty() && of.step == snapshot.step) {
+                        snapshot.check_repeated(&self.file, &before)?;
+                    }
+                    return Ok(true);
+                }
                 Ok(false) => *reader = None,
                 Err(error) if error.is_cut() && self.partial => {
                     self.cut = Some(error.to_string());

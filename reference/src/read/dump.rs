@@ -63,8 +63,8 @@ impl<'r> DumpReader<'r> {
     /// digits is carried along while their names stay the same.
     ///
     /// # Errors
-    /// The file breaks off, holds something else than text, goes back in time, names an atom twice, or says something
-    /// that is not understood; see [`ReadError`].
+    /// The file breaks off, holds something else than text, goes back in time, has a step twice with other numbers, names an atom
+    /// twice, or says something that is not understood; see [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let header = DumpHeader::read(&mut self.blocks).map_err(|error| self.blocks.cut_if_unended(error))?;
         let Some(header) = header else {
@@ -84,6 +84,8 @@ impl<'r> DumpReader<'r> {
             let expected = format!("a step from {last} on, the one before");
             return Err(ReadError::at(self.blocks.name(), header.step_line, expected, header.step.to_string()));
         }
+        let is_repeated = self.last_step == Some(header.step) && snapshot.step == header.step;
+        let before = is_repeated.then(|| snapshot.clone());
         self.last_step = Some(header.step);
         let same = snapshot.columns.len() == header.columns.len()
             && snapshot.columns.iter().zip(&header.columns).all(|(old, new)| old.name == new.name);
@@ -112,6 +114,9 @@ impl<'r> DumpReader<'r> {
         }
         if let Some(column) = snapshot.column("id").filter(|_| snapshot.kind == DumpKind::Atoms) {
             self.ids.check(self.blocks.name(), snapshot, column)?;
+        }
+        if let Some(before) = before {
+            snapshot.check_repeated(self.blocks.name(), &before)?;
         }
         Ok(true)
     }

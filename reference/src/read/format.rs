@@ -62,20 +62,24 @@ pub(crate) trait Moments {
 
 /// Moments that are had by their place.
 pub(crate) struct ByPlace<F> {
+    file: String,
     of: F,
     next: usize,
 }
 
 impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> ByPlace<F> {
-    /// By what gives the one at a place, and none after the last.
-    pub(crate) fn boxed(of: F) -> Box<dyn Moments> {
-        Box::new(Self { of, next: 0 })
+    /// Of a file, by what gives the one at a place, and none after the last.
+    pub(crate) fn boxed(path: &Path, of: F) -> Box<dyn Moments> {
+        Box::new(Self { file: path.to_string_lossy().into_owned(), of, next: 0 })
     }
 }
 
 impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for ByPlace<F> {
     fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let Some(next) = (self.of)(self.next)? else { return Ok(false) };
+        if self.next > 0 && snapshot.step == next.step {
+            next.check_repeated(&self.file, snapshot)?;
+        }
         *snapshot = next;
         self.next += 1;
         Ok(true)

@@ -2,6 +2,7 @@
 
 use crate::read::digits::Digits;
 use crate::read::numbers::NumberColumn;
+use crate::read::read_error::ReadError;
 
 /// What the rows of a dump are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -114,6 +115,43 @@ impl DumpSnapshot {
         }
         let (low, high) = self.corners();
         Some(Coordinate { column, origin: low[axis], scale: high[axis] - low[axis], tilted })
+    }
+
+    /// Finds the first number that differs from the same number of another snapshot, beyond the printed digits of both: its row,
+    /// and in words the expected and the found value. Rows are matched by id; columns that only one of them has are passed over.
+    pub(crate) fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
+        if self.rows() != other.rows() {
+            return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
+        }
+        let orders = [other, self].map(|of| {
+            let mut order: Vec<usize> = (0..of.rows()).collect();
+            if let Some(id) = of.column("id") {
+                order.sort_by(|&a, &b| of.row(a)[id].total_cmp(&of.row(b)[id]));
+            }
+            order
+        });
+        let of_files = [other, self].map(Self::digits);
+        for (at, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_text) {
+            let Some(before) = other.column(&column.name) else { continue };
+            let digits = [other.columns[before].digits, column.digits];
+            for (&first, &second) in orders[0].iter().zip(&orders[1]) {
+                let values = [other.row(first)[before], self.row(second)[at]];
+                let open: f64 = (0..2).map(|which| digits[which].half_unit(values[which], &of_files[which])).sum();
+                let is_one = (values[0] - values[1]).abs() <= open || values.iter().all(|value| value.is_nan());
+                if !is_one {
+                    let [expected, found] = values.map(|value| format!("`{}` {value:?}", column.name));
+                    return Some((second, expected, found));
+                }
+            }
+        }
+        None
+    }
+
+    /// Refuses a snapshot of the step or time of another one if its numbers differ.
+    pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
+        let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
+        let expected = format!("{expected} as before at step {}, which is there twice", self.step);
+        Err(ReadError::at(file, self.first_line + row as u64, expected, found))
     }
 
     /// What all columns of numbers show together of the format.

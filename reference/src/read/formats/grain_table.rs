@@ -17,6 +17,6 @@ pub(crate) static FORMAT: Format = Format {
         let moments = read_moments(path)?;
         let most = moments.iter().map(|moment| moment.snapshot.rows()).max().unwrap_or_default();
         check_grains(&path.to_string_lossy(), most, most_rows)?;
-        Ok(ByPlace::boxed(move |place| Ok(moments.get(place).map(|moment| moment.snapshot.clone()))))
+        Ok(ByPlace::boxed(path, move |place| Ok(moments.get(place).map(|moment| moment.snapshot.clone()))))
     },
 };

@@ -15,6 +15,6 @@ pub(crate) static FORMAT: Format = Format {
     open: |path, most_rows| {
         let course = read_course(path)?;
         check_grains(course.name(), course.grains(), most_rows)?;
-        Ok(ByPlace::boxed(move |place| Ok(course.snapshot(place))))
+        Ok(ByPlace::boxed(path, move |place| Ok(course.snapshot(place))))
     },
 };

@@ -12,6 +12,6 @@ pub(crate) static FORMAT: Format = Format {
     open: |path, most_rows| {
         let moments = vtk::read_moments(path)?;
         check_grains(moments.name(), moments.grains(), most_rows)?;
-        Ok(ByPlace::boxed(move |place| moments.snapshot(place)))
+        Ok(ByPlace::boxed(path, move |place| moments.snapshot(place)))
     },
 };

@@ -10,7 +10,7 @@ pub(crate) static FORMAT: Format = Format {
     numbering: Numbering::Files,
     holds: |_| Ok(Holds::Moment),
     open: |path, _| {
-        let path = path.to_owned();
-        Ok(ByPlace::boxed(move |place| if place == 0 { vtk::read_points(&path).map(Some) } else { Ok(None) }))
+        let file = path.to_owned();
+        Ok(ByPlace::boxed(path, move |place| if place == 0 { vtk::read_points(&file).map(Some) } else { Ok(None) }))
     },
 };
