@@ -324,6 +324,30 @@ fn samples_far_apart_judge_no_course() {
     assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
 }
 
+/// A dump of grains of another size or mass is of another scene, wherever the grains are.
+#[test]
+fn grains_of_another_radius_or_mass_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let row =
+        |radius: &str, mass: &str| whole.replace("\n1 1 0.5 2356.1944901923448 ", &format!("\n1 1 {radius} {mass} "));
+    for (radius, mass, said) in [
+        (
+            "0.5005",
+            "2356.1944901923448",
+            "expected the radius of grain 1 of the scene, 0.5 m, found 0.5005 m in `radius`",
+        ),
+        ("0.5", "2356.2944901923448", "expected the mass of grain 1 of the scene, 2356.1944901923"),
+    ] {
+        fs::write(directory.path().join("other"), row(radius, mass)).unwrap();
+        let message = refusal(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "other"]);
+        assert!(message.contains(said), "{message}");
+    }
+    // Six digits of the mass are its first six.
+    fs::write(directory.path().join("rounded"), row("0.5", "2356.19")).unwrap();
+    assert_eq!(grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "rounded"]).code, Some(0));
+}
+
 /// A step or a time that is there twice with other numbers is an error in every reader.
 #[test]
 fn a_step_that_is_there_twice_with_other_numbers_is_refused() {

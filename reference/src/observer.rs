@@ -73,9 +73,15 @@ struct Columns {
     velocity: [Option<usize>; 3],
     spin: [Option<usize>; 3],
     angle: Option<usize>,
+    /// Radius, and the factor of the column.
+    radius: Option<(usize, f64)>,
+    mass: Option<usize>,
     /// Forces of each wall on the grains.
     walls: Vec<[Option<usize>; 3]>,
 }
+
+/// Relative error of a radius or mass that a program computes from another quantity.
+const COMPUTED: f64 = 1e-9;
 
 /// How digits that were not printed are taken.
 #[derive(Clone, Copy)]
@@ -135,6 +141,9 @@ impl<'s> Observer<'s> {
         if self.known.pairs && !self.pairs.has(snapshot.step) {
             let expected = format!("the contacts of step {} in a dump of contacts", snapshot.step);
             return Err(ReadError::at(file, snapshot.first_line, expected, "grains alone"));
+        }
+        if let Some(digits) = digits {
+            self.check_grains(file, snapshot, &columns, &order, digits)?;
         }
         let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
         let shifts = if digits.is_some() { &[Shift::None, Shift::Along, Shift::Outwards][..] } else { &[Shift::None] };
@@ -241,8 +250,46 @@ impl<'s> Observer<'s> {
             velocity: vector(["vx", "vy", "vz"]),
             spin: vector(["omegax", "omegay", "omegaz"]),
             angle: column("angle"),
+            radius: column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5))),
+            mass: column("mass"),
             walls: self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect(),
         })
+    }
+
+    /// Refuses grains whose radius or mass is not the one of the scene, to the printed digits.
+    fn check_grains(
+        &self,
+        file: &str,
+        snapshot: &DumpSnapshot,
+        columns: &Columns,
+        order: &[(usize, usize)],
+        digits: &[Digits],
+    ) -> Result<(), ReadError> {
+        let of_file = digits.iter().fold(Digits::default(), |all, digits| all.with(digits));
+        for &(place, row) in order {
+            let grain = &self.scene.grains[place];
+            let known = [
+                ("radius", "m", columns.radius, grain.radius),
+                ("mass", "kg", columns.mass.map(|at| (at, 1.0)), grain.mass),
+            ];
+            for (name, unit, column, expected) in known {
+                let Some((at, factor)) = column else { continue };
+                let Some(&printed) = snapshot.row(row).get(at) else { continue };
+                let open = digits.get(at).map_or(0.0, |digits| digits.uncertainty(printed, &of_file));
+                if (factor * printed - expected).abs() <= factor * open + COMPUTED * expected {
+                    continue;
+                }
+                let (line, column) = (snapshot.first_line + row as u64, &snapshot.columns[at].name);
+                let expected = format!("the {name} of grain {} of the scene, {expected:?} {unit}", place + 1);
+                return Err(ReadError::at(
+                    file,
+                    line,
+                    expected,
+                    format!("{:?} {unit} in `{column}`", factor * printed),
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The grains that are there, by their place in the scene, each with its row: ids in their order are the grains in that of
