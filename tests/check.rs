@@ -348,6 +348,29 @@ fn grains_of_another_radius_or_mass_are_refused() {
     assert_eq!(grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "rounded"]).code, Some(0));
 }
 
+/// Three digits allow two starts of the variant; the nearer one has the exact answers.
+#[test]
+fn few_digits_take_no_other_start() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    for digits in [3, 4] {
+        let word = |word: &str| match word.parse::<f64>() {
+            Ok(value) if word.contains('.') => format!("{value:.*e}", digits - 1),
+            _ => word.to_owned(),
+        };
+        let row = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ");
+        let line = |line: &str| if line.starts_with("1 1 ") { row(line) } else { line.to_owned() };
+        let text: String = whole.lines().map(|text| line(text) + "\n").collect();
+        fs::write(directory.path().join("rounded"), text).unwrap();
+        let words = ["check", "incline-disc/60deg-mu.9", "--dump", "rounded", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let rows = results["verdicts"].as_array().unwrap();
+        let exact = rows.iter().filter(|row| row["evidence"] == "analytic").count();
+        assert_eq!((exact, count(rows, "fail")), (3, 0), "{digits}: {rows:#?}");
+    }
+}
+
 /// A step or a time that is there twice with other numbers is an error in every reader.
 #[test]
 fn a_step_that_is_there_twice_with_other_numbers_is_refused() {

@@ -131,10 +131,20 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
         let variants = variants.join(", ");
         return Err(NotChecked::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
+    // Few printed digits allow several starts of a variant: the nearest one counts, and the first of those that are as near.
+    let starts = matching.len();
+    let distance = |(candidate, observed): &(Candidate, Observed)| distance(&candidate.scene, observed);
+    matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     if let Some((candidate, observed)) = matching.first_mut() {
         let covered = Covered::of(&candidate.scene, outputs.time_step(), observed, options.partial);
         refuse_unstable(&candidate.scene, outputs, options)?;
-        return Ok(section(subject, candidate, outputs, observed, &covered, options));
+        let mut section = section(subject, candidate, outputs, observed, &covered, options);
+        if let Some(row) = section.verdicts.first_mut().filter(|_| starts > 1) {
+            let words =
+                format!("; {starts} scenes of the variant start so within the printed digits, the nearest is taken");
+            row.because.push_str(&words);
+        }
+        return Ok(section);
     }
     Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
         file: outputs.name(),
@@ -144,23 +154,45 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
     }))
 }
 
+/// A coordinate of a grain in the first sample.
+struct Start<'o> {
+    name: &'o str,
+    /// Coordinate in the scene (m).
+    expected: f64,
+    /// Coordinate in the sample (m).
+    found: f64,
+    /// What the printed digits leave open (m).
+    open: f64,
+    /// Radius of the grain (m).
+    radius: f64,
+}
+
+/// The coordinates of grains in the first sample.
+fn starts<'o>(scene: &'o Scene, observed: &'o Observed) -> impl Iterator<Item = Start<'o>> {
+    observed.series.columns.iter().enumerate().filter_map(|(at, column)| {
+        let (probe, quantity) = column.name.rsplit_once('.')?;
+        let probe = scene.probes.iter().find(|other| other.name == probe)?;
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == quantity)?;
+        let ProbeTarget::Grain(grain) = probe.target else { return None };
+        let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
+        let (found, open) = (*observed.series.values[at].first()?, *observed.uncertainty[at].first()?);
+        Some(Start { name: &column.name, expected, found, open, radius })
+    })
+}
+
+/// Largest distance of a coordinate from the start of a scene, in radii.
+fn distance(scene: &Scene, observed: &Observed) -> f64 {
+    starts(scene, observed).map(|start| (start.found - start.expected).abs() / start.radius).fold(0.0, f64::max)
+}
+
 /// Where the first grain that does not start as in the scene should be, and where it is.
 fn misplaced(scene: &Scene, outputs: &Outputs, observed: &Observed) -> Option<(String, String)> {
     let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
     let mut is_placed = false;
-    for (at, column) in observed.series.columns.iter().enumerate() {
-        let (probe, quantity) = column.name.rsplit_once('.')?;
-        let probe = scene.probes.iter().find(|other| other.name == probe)?;
-        let (ProbeTarget::Grain(grain), Some(axis)) =
-            (probe.target, ["x", "y", "z"].iter().position(|axis| *axis == quantity))
-        else {
-            continue;
-        };
-        let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
-        let (found, open) = (observed.series.values[at][0], observed.uncertainty[at][0]);
+    for Start { name, expected, found, open, radius } in starts(scene, observed) {
         if (found - expected).abs() > open + START * radius {
             let late = late.map(|late| format!(" in {late}")).unwrap_or_default();
-            return Some((format!("{} = {expected:?} m", column.name), format!("{found:?} m{late}")));
+            return Some((format!("{name} = {expected:?} m"), format!("{found:?} m{late}")));
         }
         is_placed = true;
     }
