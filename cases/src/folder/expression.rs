@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 
 /// Largest depth of nesting.
 const DEEPEST: usize = 100;
+/// Most numbers and names. A chain of operators is as deep as it is long.
+const MOST_TERMS: usize = 1000;
 
 /// Expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +91,7 @@ impl Expression {
     /// # Errors
     /// The message gives the expected text, the found text and the column.
     pub fn read(text: &str) -> Result<Self, String> {
-        let mut reader = Reader { text, at: 0, depth: 0 };
+        let mut reader = Reader { text, at: 0, depth: 0, terms: 0 };
         let expression = reader.sum()?;
         match reader.next() {
             None => Ok(expression),
@@ -136,6 +138,7 @@ struct Reader<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    terms: usize,
 }
 
 impl Reader<'_> {
@@ -200,6 +203,11 @@ impl Reader<'_> {
     }
 
     fn atom(&mut self) -> Result<Expression, String> {
+        self.terms += 1;
+        if self.terms > MOST_TERMS {
+            let column = self.text[..self.at].chars().count() + 1;
+            return Err(format!("expected at most {MOST_TERMS} numbers and names, found more at column {column}"));
+        }
         match self.next() {
             Some('(') => {
                 self.takes('(');
@@ -296,12 +304,14 @@ mod tests {
         for (text, expected) in known {
             assert!(value(text).is_ok_and(|found| (found - expected).abs() < 1e-14), "{text}: {:?}", value(text));
         }
+        let long = "1+".repeat(999) + "1";
+        assert_eq!(value(&long), Ok(1000.0));
         assert!(value("max(nothing, 1)").is_ok_and(f64::is_nan), "what has no value is no number");
     }
 
     #[test]
     fn what_is_wrong_is_said_with_its_column() {
-        let deep = "(".repeat(1000);
+        let (deep, long) = ("(".repeat(1000), "1+".repeat(20_000) + "1");
         for (text, said) in [
             ("", "expected a number, a name or `(` at column 1, found the end"),
             ("1 +", "at column 4, found the end"),
@@ -314,6 +324,7 @@ mod tests {
             ("1 $", "found `$`"),
             ("µ", "`µ`"),
             (deep.as_str(), "expected at most 100 levels"),
+            (long.as_str(), "expected at most 1000 numbers and names, found more at column 2001"),
         ] {
             let found = value(text);
             let is_said = found.as_ref().is_err_and(|error| error.contains(said));
