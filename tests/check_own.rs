@@ -185,6 +185,17 @@ fn files_that_do_not_tell_are_refused() {
         b"# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n",
         "other_5.vtk:4: expected",
     );
+    let points = |numbers: &str| {
+        format!(
+            "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData><Piece><Points>\
+             <DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">{numbers}</DataArray>\
+             </Points></Piece></PolyData></VTKFile>"
+        )
+    };
+    refused("entity_5.vtp", points("0 &x; 0 0").as_bytes(), "entity_5.vtp:1: expected one of the entities `&lt;`");
+    refused("named_5.vtp", points("0 &amp; 0 0").as_bytes(), "named_5.vtp:1: expected a number in the array");
+    // A letter by its number is a part of the number: two, and not three.
+    refused("letter_5.vtp", points("1&#50;3 0").as_bytes(), "expected a whole number of points of 3 numbers");
     refused(
         "list.pvd",
         b"<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection></Collection></VTKFile>",

@@ -8,7 +8,8 @@ use crate::read::read_error::{ReadError, quoted};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
-use quick_xml::events::{BytesStart, Event};
+use quick_xml::escape::resolve_predefined_entity;
+use quick_xml::events::{BytesRef, BytesStart, Event};
 use quick_xml::reader::Reader;
 use std::io::Read;
 
@@ -99,7 +100,17 @@ impl File<'_> {
                 Event::Text(text) if path.last().is_some_and(|name| name == b"DataArray") => {
                     if let Some((_, numbers)) = &mut array {
                         numbers.push_str(&String::from_utf8_lossy(&text));
-                        numbers.push(' ');
+                    }
+                }
+                Event::CData(text) if path.last().is_some_and(|name| name == b"DataArray") => {
+                    if let Some((_, numbers)) = &mut array {
+                        numbers.push_str(&String::from_utf8_lossy(&text));
+                    }
+                }
+                Event::GeneralRef(reference) => {
+                    let text = self.resolved(&reference, at)?;
+                    if let Some((_, numbers)) = &mut array {
+                        numbers.push_str(&text);
                     }
                 }
                 Event::End(_) => {
@@ -115,6 +126,15 @@ impl File<'_> {
         }
         let positions = positions.ok_or_else(|| self.bytes.error_at(0, "an array in `<Points>`", "none"))?;
         Ok(Points { time, positions, arrays })
+    }
+
+    /// The text of a reference such as `&#32;` or `&amp;`. Files that define others are not read.
+    fn resolved(&self, reference: &BytesRef<'_>, at: usize) -> Result<String, ReadError> {
+        let name = String::from_utf8_lossy(reference);
+        let letter = reference.resolve_char_ref().ok().flatten();
+        let known = letter.map(String::from).or_else(|| resolve_predefined_entity(&name).map(str::to_owned));
+        let expected = "one of the entities `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`, or the number of a letter";
+        known.ok_or_else(|| self.bytes.error_at(at, expected, quoted(&format!("&{name};"))))
     }
 
     /// Takes the attributes of a tag.
