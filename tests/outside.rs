@@ -51,7 +51,7 @@ fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
 #[test]
 fn a_program_that_lies_is_found_out() {
     let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
-    let lies: [(&str, String, &str, &str); 11] = [
+    let lies: [(&str, String, &str, &str); 14] = [
         ("leaves nothing", "exit 0".to_owned(), "broken", "grains.csv"),
         (
             "garbage",
@@ -60,6 +60,14 @@ fn a_program_that_lies_is_found_out() {
             "grains.csv:2:1",
         ),
         ("no number", table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "broken", "found `nan`"),
+        ("a fraction for an id", table("0,1.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected a whole number from 0"),
+        ("a negative id", table("0,-5.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "found -5.5"),
+        (
+            "leaves a session",
+            "setsid sleep 1235 > /dev/null 2>&1 & sleep 1000".to_owned(),
+            "broken",
+            "not done after 2 s",
+        ),
         ("ends early", table("0,1,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected samples to step"),
         ("hangs", "sleep 1000".to_owned(), "broken", "not done after 2 s"),
         ("leaves a child", "sleep 1234 & exit 0".to_owned(), "broken", "grains.csv"),
@@ -82,6 +90,7 @@ fn a_program_that_lies_is_found_out() {
         }
     }
     assert!(!running().contains("sleep 1234"), "what it started goes with it");
+    assert!(!running().contains("sleep 1235"), "and what it started in a session");
 }
 
 /// A worker with wrong output is detected too, and its child processes end with it.

@@ -16,6 +16,10 @@ use crate::deadline::Deadline;
 pub(crate) const SCREEN: &str = "screen";
 /// What it prints as errors, where that is kept apart.
 pub(crate) const ERRORS: &str = "errors";
+/// Variable of the environment that names the folder of a run.
+const FOLDER: &str = "GRAINBENCH_FOLDER";
+/// How often processes of a run are looked for at most: those that end start new ones.
+const SWEEPS: u32 = 20;
 /// How many of its last lines are told.
 const LAST_LINES: usize = 4;
 /// How much of the end is looked at for them.
@@ -104,9 +108,11 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
         // The guard ends the program; it may have ended by itself in the meantime.
         close(&mut child);
         let _ = child.wait();
+        end_sessions(folder);
         return Err((failure, last_lines(folder)));
     };
     close(&mut child);
+    end_sessions(folder);
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
@@ -131,7 +137,7 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
         .arg(executable)
         .args(arguments)
         .current_dir(folder)
-        .env("GRAINBENCH_FOLDER", folder)
+        .env(FOLDER, folder)
         // Of ours: sums in another order would end in other digits.
         .env("OMP_NUM_THREADS", limits.threads.to_string())
         // Spares each start the daemon that would watch over several processes.
@@ -142,6 +148,28 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command
+}
+
+/// Ends processes that a program started in sessions of their own (`setsid`): the guard ends the process group of the program
+/// alone. They are found by the folder in their environment, where `/proc` shows it.
+pub(crate) fn end_sessions(folder: &Path) {
+    let mut mark = format!("{FOLDER}=").into_bytes();
+    mark.extend(folder.as_os_str().as_encoded_bytes());
+    for _ in 0..SWEEPS {
+        let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
+        let numbers = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+        // A process whose environment is empty has ended.
+        let is_marked = |process: &u32| {
+            let environment = fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
+            environment.split(|byte| *byte == 0).any(|variable| variable == mark)
+        };
+        let found: Vec<String> = numbers.filter(is_marked).map(|process| process.to_string()).collect();
+        if found.is_empty() {
+            return;
+        }
+        let _ = Command::new("kill").arg("-9").args(&found).stdout(Stdio::null()).stderr(Stdio::null()).status();
+        sleep(Duration::from_millis(1));
+    }
 }
 
 /// The failure of a run that left more bytes than it may.
