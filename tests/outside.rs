@@ -93,6 +93,23 @@ fn a_program_that_lies_is_found_out() {
     assert!(!running().contains("sleep 1235"), "and what it started in a session");
 }
 
+/// Grains in a folder that is a link are those of somebody else, as in a file that is one.
+#[test]
+fn grains_in_a_linked_folder_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let script = format!(
+        "mkdir elsewhere; printf '{HEAD}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > elsewhere/grains.csv; \
+         ln -s \"$PWD/elsewhere\" \"$2/sub\""
+    );
+    write(directory.path(), &MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\""), &script);
+    let (answer, results) = judged(directory.path(), &["--no-controls"]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    for row in results["verdicts"].as_array().unwrap() {
+        let detail = row["detail"].as_str().unwrap_or_default();
+        assert!(detail.contains("sub/grains.csv: expected the folder sub, found a link or a file"), "{row}");
+    }
+}
+
 /// A worker with wrong output is detected too, and its child processes end with it.
 #[test]
 fn a_worker_that_lies_is_found_out() {

@@ -171,9 +171,16 @@ pub(crate) fn output(error: ReadError) -> Failure {
 }
 
 /// The path of a file that a run left in a folder. A pipe, which would be waited for without end, is refused, and so is
-/// a link.
+/// a link, also one on the way to the file.
 pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
     let path = folder.join(name);
+    let between = Path::new(name).ancestors().skip(1).filter(|part| !part.as_os_str().is_empty());
+    for part in between {
+        if fs::symlink_metadata(folder.join(part)).is_ok_and(|found| !found.is_dir()) {
+            let part = part.display();
+            return Err(Failure::Output(format!("{name}: expected the folder {part}, found a link or a file")));
+        }
+    }
     match fs::symlink_metadata(&path) {
         Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),
         // That there is nothing is told by whoever opens it.
