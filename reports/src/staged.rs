@@ -1,5 +1,6 @@
 //! Writing a directory of files completely or not at all.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -19,6 +20,8 @@ pub struct StagedDir {
     holder: Option<TempDir>,
     /// Files in the order in which they were written.
     files: Vec<PathBuf>,
+    /// The same names, by which a file is found that was written twice.
+    names: BTreeSet<PathBuf>,
     /// Missing parents of the target that were created, outermost first. They are removed if nothing is committed.
     made: Vec<PathBuf>,
     /// True if a manifest is written with the files.
@@ -32,7 +35,8 @@ impl StagedDir {
     /// When `target` is a file, or when no file can be written next to it.
     pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
         let target = target.into();
-        let mut staged = Self { target, holder: None, files: Vec::new(), made: Vec::new(), manifest: true };
+        let (files, names, made) = (Vec::new(), BTreeSet::new(), Vec::new());
+        let mut staged = Self { target, holder: None, files, names, made, manifest: true };
         staged.prepare().map_err(|source| WriteError::new(&staged.target, source))?;
         Ok(staged)
     }
@@ -106,7 +110,7 @@ impl StagedDir {
             io::Write::flush(&mut out)
         };
         write().map_err(|source| WriteError::new(shown, source))?;
-        if !self.files.iter().any(|known| known == name) {
+        if self.names.insert(name.to_path_buf()) {
             self.files.push(name.to_path_buf());
         }
         Ok(())
@@ -187,7 +191,7 @@ impl StagedDir {
             };
             return Err(error);
         }
-        for left in stood.iter().filter(|name| !self.files.contains(name)) {
+        for left in stood.iter().filter(|name| !self.names.contains(*name)) {
             if keep {
                 manifest.files.push(left.clone());
             } else {
@@ -282,6 +286,22 @@ mod tests {
         staged.commit().unwrap();
         assert_eq!(fs::read_to_string(target.join("figures/b.svg")).unwrap(), "b");
         assert_eq!(fs::read_dir(dir.path().join("deep")).unwrap().count(), 1);
+    }
+
+    /// As many files as a long run has snapshots, twice over the same folder: with a search through all names for each file this
+    /// takes minutes.
+    #[test]
+    fn many_files_are_written_in_proportion() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        for count in [30_000, 10_000] {
+            let mut staged = StagedDir::new(&target).unwrap();
+            (0..count).for_each(|at| staged.write(format!("{at}.txt"), "").unwrap());
+            staged.write("0.txt", "again").unwrap();
+            staged.commit().unwrap();
+            assert_eq!(Manifest::read(&target).unwrap().files.len(), count);
+        }
+        assert_eq!(fs::read_dir(&target).unwrap().count(), 10_001);
     }
 
     #[test]
