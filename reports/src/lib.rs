@@ -40,7 +40,7 @@ pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use scratch::sweep;
-pub use staged::StagedDir;
+pub use staged::{StagedDir, refuse_other_programs};
 pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
 pub use terminal::summary_table;
 pub use write::{Desk, WriteError, write_file};

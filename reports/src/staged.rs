@@ -172,6 +172,7 @@ impl StagedDir {
                 }
             }
         }
+        self.refuse_others()?;
         let _lock = Lock::of(&self.target).map_err(at_target)?;
         after();
         if !self.manifest {
@@ -205,6 +206,24 @@ impl StagedDir {
         Ok(())
     }
 
+    /// Refuses to replace files of other programs, and to follow links inside the directory.
+    fn refuse_others(&self) -> Result<(), WriteError> {
+        if self.manifest {
+            refuse_foreign(&self.target, &[MANIFEST])?;
+        }
+        if self.names.contains(Path::new(PAGE)) {
+            refuse_foreign(&self.target, &[PAGE])?;
+        }
+        let folders: BTreeSet<&Path> = self.names.iter().filter_map(|name| name.parent()).collect();
+        for folder in folders {
+            if let Some(link) = link_on_the_way(&self.target, folder) {
+                let source = io::Error::new(io::ErrorKind::NotADirectory, "expected a folder, found a symbolic link");
+                return Err(WriteError::new(link, source));
+            }
+        }
+        Ok(())
+    }
+
     fn staging(&self) -> io::Result<&Path> {
         self.holder.as_ref().map(TempDir::path).ok_or_else(|| io::Error::other("the output directory was not prepared"))
     }
@@ -232,10 +251,51 @@ impl StagedDir {
     }
 }
 
+/// The page of a report.
+const PAGE: &str = "index.html";
+/// What every page of ours has in its head.
+const TITLE: &str = "<title>grainbench";
+
+/// Refuses a directory in which a page or a manifest of another program would be replaced. Ours are recognised by their content.
+///
+/// # Errors
+/// When there is one.
+pub fn refuse_other_programs(directory: &Path) -> Result<(), WriteError> {
+    refuse_foreign(directory, &[PAGE, MANIFEST])
+}
+
+fn refuse_foreign(directory: &Path, names: &[&str]) -> Result<(), WriteError> {
+    for name in names {
+        let path = directory.join(name);
+        if fs::symlink_metadata(&path).is_err() {
+            continue;
+        }
+        let is_ours = if *name == MANIFEST {
+            Manifest::read(directory).is_some()
+        } else {
+            fs::read(&path).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains(TITLE))
+        };
+        if !is_ours {
+            let message = format!("expected no file, or a `{name}` that grainbench wrote; found another file");
+            return Err(WriteError::new(path, io::Error::new(io::ErrorKind::AlreadyExists, message)));
+        }
+    }
+    Ok(())
+}
+
+/// The first link between a directory and a folder inside it.
+fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
+    let mut parts: Vec<&Path> = folder.ancestors().filter(|part| !part.as_os_str().is_empty()).collect();
+    parts.reverse();
+    let paths = parts.into_iter().map(|part| directory.join(part));
+    paths.into_iter().find(|path| fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink()))
+}
+
 /// Removes a file of an earlier run, and folders that become empty. Names in a manifest that lead out of the directory
 /// are ignored.
 fn remove_within(directory: &Path, name: &Path) {
-    if !name.components().all(|part| matches!(part, Component::Normal(_))) {
+    let is_linked = name.parent().is_some_and(|folder| link_on_the_way(directory, folder).is_some());
+    if is_linked || !name.components().all(|part| matches!(part, Component::Normal(_))) {
         return;
     }
     let _ = fs::remove_file(directory.join(name));
@@ -370,6 +430,52 @@ mod tests {
         fs::write(dir.path().join("file"), "x").unwrap();
         let message = StagedDir::new(dir.path().join("file")).unwrap_err().to_string();
         assert!(message.contains("a file of this name is in the way"), "{message}");
+    }
+
+    /// A link inside the directory is neither written through nor removed through.
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        let dir = tempfile::tempdir().unwrap();
+        let (target, other) = (dir.path().join("out"), dir.path().join("other"));
+        fs::create_dir_all(other.join("sub")).unwrap();
+        fs::create_dir(&target).unwrap();
+        fs::write(other.join("sub/precious.txt"), "keep").unwrap();
+        std::os::unix::fs::symlink(&other, target.join("link")).unwrap();
+        Manifest { whole: true, files: vec!["link/sub/precious.txt".into()] }.write(&target).unwrap();
+        let mut staged = StagedDir::new(&target).unwrap();
+        staged.write("a.txt", "a").unwrap();
+        staged.commit().unwrap();
+        assert_eq!(fs::read_to_string(other.join("sub/precious.txt")).unwrap(), "keep");
+        let mut staged = StagedDir::new(&target).unwrap();
+        staged.write("link/sub/precious.txt", "other").unwrap();
+        let message = staged.commit().unwrap_err().to_string();
+        assert!(message.contains("out/link: expected a folder, found a symbolic link"), "{message}");
+        assert_eq!(fs::read_to_string(other.join("sub/precious.txt")).unwrap(), "keep");
+    }
+
+    #[test]
+    fn pages_and_manifests_of_other_programs_stay() {
+        for (name, foreign, ours) in [
+            ("index.html", "<title>My site</title>", "<title>grainbench · 1 pass</title>"),
+            ("manifest.json", "{\"name\": \"my site\"}", "{\"whole\": true, \"files\": []}"),
+        ] {
+            let dir = tempfile::tempdir().unwrap();
+            let place = dir.path().join(name);
+            let commit = || {
+                let mut staged = StagedDir::new(dir.path()).unwrap();
+                staged.write("index.html", "<title>grainbench · 2 pass</title>").unwrap();
+                staged.commit()
+            };
+            fs::write(&place, foreign).unwrap();
+            assert!(refuse_other_programs(dir.path()).is_err());
+            let message = commit().unwrap_err().to_string();
+            assert!(message.contains(&format!("a `{name}` that grainbench wrote")), "{message}");
+            assert_eq!(fs::read_to_string(&place).unwrap(), foreign);
+            fs::write(&place, ours).unwrap();
+            assert!(refuse_other_programs(dir.path()).is_ok());
+            commit().unwrap();
+        }
     }
 
     /// Returns the files of a run and their contents.

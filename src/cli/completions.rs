@@ -1,6 +1,6 @@
 //! `grainbench completions` and `grainbench man`: what shells and readers of manuals need, made from the commands themselves.
 
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, check_folder, print};
 use grainbench::reports::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -40,7 +40,7 @@ pub(crate) fn man(arguments: &ManArguments, mut command: clap::Command) -> Outco
         print(&String::from_utf8_lossy(&page(command)?))?;
         return Ok(ExitCode::SUCCESS);
     };
-    check_writable(out)?;
+    check_folder(out)?;
     let mut staged = StagedDir::new(out).map_err(Fault::writing)?;
     for of in command.get_subcommands() {
         let name = of.get_display_name().unwrap_or_else(|| of.get_name());

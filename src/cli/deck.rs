@@ -1,6 +1,6 @@
 //! `grainbench deck`: the input of another program for a scene of ours.
 
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, check_folder, print};
 use super::subject;
 use super::value::{path_and_value, positive};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
@@ -59,7 +59,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Unsupported { .. } => Fault::input(format!("unsupported: {error}")),
         DeckError::Resolution(_) => Fault::input(error),
     })?;
-    check_writable(&arguments.out)?;
+    check_folder(&arguments.out)?;
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?.without_manifest();
     for (name, text) in &deck.files {
         out.write(name, text).map_err(Fault::writing)?;

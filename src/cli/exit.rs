@@ -116,8 +116,15 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
     print(&(text + "\n"))
 }
 
-/// Refuses an output directory that cannot be written, before anything is computed for it.
-pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
+/// Refuses an output directory for files beside those of the user that cannot be written.
+pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
     // Made and dropped at once, so that a run that is interrupted leaves nothing beside the directory either.
     grainbench::reports::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
+}
+
+/// Refuses an output directory that cannot be written, or has a page or a manifest of another program, before anything is
+/// computed for it.
+pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
+    check_folder(out)?;
+    grainbench::reports::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))
 }
