@@ -420,6 +420,16 @@ fn what_is_no_plan_is_refused() {
     fs::write(here.join("full/notes"), "").unwrap();
     let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
     assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
+    // A full disk leaves the folders of a plan without its head: they are taken over, as long as they are empty.
+    for (left, code) in [("results", Some(0)), ("running", Some(0)), ("results/a.log", Some(2))] {
+        let place = here.join("left");
+        for folder in ["results", "running", left] {
+            fs::create_dir_all(place.join(folder)).unwrap();
+        }
+        let answer = grainbench(here, &["plan", "sweep.toml", "--out", "left"]);
+        assert_eq!(answer.code, code, "{left}: {}", answer.err);
+        fs::remove_dir_all(place).unwrap();
+    }
     for chunk in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
         assert_eq!(grainbench(here, &["work", "p", "--chunk", chunk]).code, Some(2), "{chunk}");
     }

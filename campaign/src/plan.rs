@@ -211,12 +211,24 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
     let expected = "a new directory, an empty one, or one with a plan";
     match fs::read_dir(path) {
         Ok(mut entries) => {
-            let is_ours = path.join(HEAD).is_file() || entries.next().is_none();
+            // A full disk leaves the folders of a plan, empty, and no head.
+            let is_left = |entry: std::io::Result<fs::DirEntry>| {
+                entry.is_ok_and(|entry| {
+                    [RESULTS, RUNNING].iter().any(|name| entry.file_name() == *name) && is_empty(&entry.path())
+                })
+            };
+            let is_ours = path.join(HEAD).is_file() || entries.all(is_left);
             if is_ours { Ok(()) } else { Err(Fault::in_file(path, expected, "other files")) }
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(Fault::in_file(path, expected, error)),
     }
+}
+
+/// Returns whether a path is a directory without entries; a link is none.
+fn is_empty(path: &Path) -> bool {
+    let is_directory = fs::symlink_metadata(path).is_ok_and(|found| found.is_dir());
+    is_directory && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
 }
 
 /// Returns the hash of a file's content, or `unreadable`, which equals no hash, if the file cannot be read.
