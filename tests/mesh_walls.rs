@@ -133,6 +133,33 @@ fn a_plate_of_triangles_moves_as_a_rectangle() {
     assert!(forces[0].norm() > 1.0 && (forces[0] - forces[1]).norm() < 1e-6 * forces[0].norm());
 }
 
+/// A sphere that is moved over the ridge of two plates at 179° keeps its tangential spring, for the contact goes on from plate to
+/// ridge to plate: its force is k_t v t, but for the slope of the plates, 1 − cos ½° of it.
+#[test]
+fn a_spring_goes_on_over_a_ridge() {
+    let slope = 0.5_f64.to_radians();
+    let at = |x: f64, y: f64| [x, y, -slope.tan() * x.abs()];
+    let [a, b, c] = [-1.0, 0.0, 1.0].map(|x| [at(x, -1.0), at(x, 1.0)]);
+    let triangles = [[a[0], b[0], b[1]], [a[0], b[1], a[1]], [b[0], c[0], c[1]], [b[0], c[1], b[1]]];
+    let text = r#"title = "A roof"
+dimension = 3
+duration = 0.04
+materials.m.density = 1000.0
+contacts.all = { between = ["m", "m"], normal_stiffness = 1e5, tangential_stiffness = 3e4, friction = 10.0 }
+output.every_cycles = 1
+probes.touch = { contact = ["ball", "roof"] }
+grains.ball = { material = "m", radius = 0.1, position = [-2e-3, 0.0, 0.0995] }
+driven.ball = { grains = "ball", velocity = [0.1, 0.0, 0.0] }
+walls.roof = { material = "m", mesh = { file = "wall.stl", unit = "m", open = true } }
+"#;
+    let record = run(&scene(&triangles, text), &mut ());
+    let (rate, time) = (3e4 * 0.1, &record.series.time);
+    let allowed = rate * 0.04 * (1.0 - slope.cos());
+    for (force, time) in record.series.column("touch.shear_force").unwrap().iter().zip(time) {
+        assert!((force - rate * time).abs() < allowed, "{force} N for {} N at {time} s", rate * time);
+    }
+}
+
 /// Watch that keeps the checkpoints of a run.
 struct Keeper(Vec<Checkpoint>);
 

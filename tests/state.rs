@@ -103,6 +103,12 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     let [later, _] = ends(path, "rounded");
     let moved = apart(&uninterrupted, &later);
     assert!(0.0 < moved && moved < 1e-8, "{moved}");
+    // Behind another grain, which is held far above, the springs stay with their own.
+    let held = "[driven.a]\ngrains = 'a'\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 9.5]\n";
+    let behind = taken("").replace("[grains.g]", &format!("{held}[grains.g]"));
+    simulate(path, "behind", &behind, &[]);
+    let [later, _] = ends(path, "behind");
+    assert!(apart(&uninterrupted, &later[1..]) < 1e-10, "{}", apart(&uninterrupted, &later[1..]));
     let [later, _] = ends(path, "without");
     assert!(apart(&uninterrupted, &later) > 1e-5, "{}", apart(&uninterrupted, &later));
     // At rest, the final state is the same again up to residual motion.
@@ -114,6 +120,29 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     // Springs are in the order of the grains, independent of the neighbour lists.
     assert!(first.springs.pairs.is_sorted_by_key(|pair| (pair.0, pair.1)));
     assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
+}
+
+/// A grain that flies and spins goes on from where a run ended: with its spin to the bit, and its velocity v + g t. With friction
+/// grains turn, and without it their spins are known from the start.
+#[test]
+fn a_grain_that_spins_is_taken_over_with_its_spin() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let thrown = "[grains.g]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 5.0]\n\
+        velocity = [0.3, -0.2, 1.0]\nspin = [1.0, -2.0, 0.5]";
+    let taken = "[grains.g]\nmaterial = 'm'\nstate = { path = 'first.state' }";
+    for friction in ["friction = 0.4", "friction = 0.0"] {
+        for (name, time, grains) in [("first", 0.1, thrown), ("then", 0.2, taken)] {
+            let state = format!("{name}.state");
+            simulate(path, name, &scene(0.1, grains).replace("friction = 0.4", friction), &["--state", &state]);
+            let bytes = std::fs::read(path.join(state)).unwrap();
+            let grain = grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap().grains[0];
+            assert_eq!(grain.spin.as_slice(), [1.0, -2.0, 0.5], "{friction}, {name}");
+            let exact = [0.3, time - 0.2, 1.0 - 10.0 * time];
+            let off = grain.velocity.iter().zip(exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-12, "{friction}, {name}: off by {off} m/s");
+        }
+    }
 }
 
 #[test]

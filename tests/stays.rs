@@ -88,26 +88,27 @@ fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     }
 }
 
-/// A grain that is removed beside a bed at rest has no effect on the bed, to the bit.
+/// The removal of a grain beside a sliding bed, whose contacts have tangential springs, changes the bed only by the order of
+/// sums. In two seconds, rounding grows to about 1e-9 in the moving bed.
 #[test]
 fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     let bed = "[grains.bed]\nmaterial = 'm'\nradius = 0.5\n\
-        lattice = { origin = [-2.2, 0.5, 0.499], spacing = [1.01, 0.999, 0.99], count = [3, 4, 3] }\n";
+        lattice = { origin = [-1.4, 0.5, 0.499], spacing = [1.01, 0.999, 0.99], count = [3, 4, 3] }\n";
     let thrown =
-        "[grains.a-thrown]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.0, 1.0]\nvelocity = [4.0, 0.0, 2.0]\n";
-    let removal = "removal = { low = [-3.0, -1.0, -1.0], high = [4.0, 5.0, 50.0], every_cycles = 50 }\n";
-    let alone = run(&format!("{HEAD}{FLOOR}{bed}"), 1);
-    let record = run(&format!("{HEAD}{removal}{FLOOR}{bed}{thrown}"), 1);
+        "[grains.a-thrown]\nmaterial = 'm'\nradius = 0.5\nposition = [-2.5, 0.1, 0.6]\nvelocity = [-4.0, 0.0, 2.0]\n";
+    let removal = "removal = { low = [-4.0, -1.0, -1.0], high = [4.0, 5.0, 50.0], every_cycles = 50 }\n";
+    let head = HEAD.replace("gravity = [0.0, 0.0, -1.0]", "gravity = [0.0, 0.2, -1.0]");
+    let alone = run(&format!("{head}{FLOOR}{bed}"), 1);
+    let record = run(&format!("{head}{removal}{FLOOR}{bed}{thrown}"), 1);
     assert_eq!((record.snapshots[0].grains.len(), end(&record).grains.len()), (37, 36));
     // It leaves the box at (4 − 2.5)/4 s; removal is tested every fiftieth step.
     let left = record.series.column("grains.left").unwrap();
     let when = left.iter().position(|&left| left == 1.0).map(|at| record.series.time[at]);
     assert_eq!(when, Some(0.4));
     for (a, b) in end(&alone).grains.iter().zip(&end(&record).grains) {
-        assert_eq!((a.id, a.position, a.velocity, a.spin), (b.id, b.position, b.velocity, b.spin));
+        let off = (a.position - b.position).norm().max((a.velocity - b.velocity).norm()).max((a.spin - b.spin).norm());
+        assert!(a.id == b.id && off < 1e-6, "{}: off by {off}", a.id);
     }
-    let contacts = |record: &Record| format!("{:?}", end(record).contacts);
-    assert_eq!(contacts(&alone), contacts(&record));
 }
 
 /// A grain on a wall that is removed falls ½g(t − t₀)² afterwards, up to the last spring force.

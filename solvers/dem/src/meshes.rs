@@ -137,3 +137,24 @@ fn remembered(own: &[Held], found: &[Touched], touched: &Touched, radius: f64) -
         if found.iter().any(|other| nearer(&other)) { Default::default() } else { held.memory }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::MEMORY;
+
+    /// A contact goes on at another part of the surface that is at most a tenth of the radius away, and at the nearer of two;
+    /// farther off a new one begins.
+    #[test]
+    fn a_contact_goes_on_where_it_can_have_gone() {
+        let at = |x: f64| Vector3::new(x, 0.0, 0.0);
+        let touched = |group, x| Touched { group, point: at(x), direction: -Vector3::z(), distance: 0.9 };
+        let (gone_on, new) = ([0.3; MEMORY], [0.0; MEMORY]);
+        let own = [Held { slot: 0, group: 1, point: at(0.0), memory: gone_on }];
+        assert_eq!(remembered(&own, &[touched(1, 0.5)], &touched(1, 0.5), 1.0), gone_on);
+        assert_eq!(remembered(&own, &[touched(2, 0.09)], &touched(2, 0.09), 1.0), gone_on);
+        assert_eq!(remembered(&own, &[touched(2, 0.11)], &touched(2, 0.11), 1.0), new);
+        let two = [touched(2, 0.09), touched(3, -0.05)];
+        assert_eq!([0, 1].map(|number| remembered(&own, &two, &two[number], 1.0)), [new, gone_on]);
+    }
+}

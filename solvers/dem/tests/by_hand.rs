@@ -243,6 +243,31 @@ fn spinning_grains_have_their_energy() {
     }
 }
 
+/// Global damping takes the same from a spin as from a velocity, (1 − αΔt/2)/(1 + αΔt/2) in each step. That holds with
+/// friction, where grains turn by their torques, and without.
+#[test]
+fn spins_are_damped_as_velocities_are() {
+    for (dimension, vector, spin, omega) in
+        [(2, "[3.0, 0.0]", "3.0", "g.omega"), (3, "[3.0, 0.0, 0.0]", "[3.0, 0.0, 0.0]", "g.omega_x")]
+    {
+        for friction in ["", ", tangential_stiffness = 5.0e5, friction = 0.5"] {
+            let text = format!(
+                "dimension = {dimension}\nduration_cycles = 40\nglobal_damping = 2.0\nmaterials.n.density = 1000.0\n\
+                 contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6{friction} }}\n\
+                 [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = {}\nvelocity = {vector}\nspin = {spin}\n\
+                 [probes]\ng.grain = 'g'\n",
+                vector.replace("3.0", "0.0")
+            );
+            let record = run_at(&text, Convention::DEFAULT, &Resolution::TimeStep(0.01));
+            let expected = 3.0 * (0.99_f64 / 1.01).powi(40);
+            // What is shown between two half steps is their mean: 1 − (αΔt/2)² of it.
+            for column in ["g.vx", omega] {
+                assert!((last(&record, column) / expected - 1.0).abs() < 1.1e-4, "{dimension}, {column}");
+            }
+        }
+    }
+}
+
 /// At the ends of a segment and the edges and corners of a rectangle, the force acts from the nearest point to the
 /// centre of the grain. It is (3, 4)/5 of k δ, and (2, 3, 6)/7 of k δ, with δ = .01 m.
 #[test]
@@ -320,6 +345,49 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
         close(a, -moment);
         close(b, moment);
         close(last(&record, "all.elastic_energy"), 0.5 * 1.0e6 * 1e-6 + 0.5 * stiffness * 0.02 * 0.02);
+    }
+}
+
+/// A turntable and the sphere on it turn about their normal at Ω = 200 rad/s, and the sphere rolls at ω = 1 rad/s about an axis
+/// that stays: the rolling angle grows by ω Δt along x in each step, and turns with the contact. What it was j steps ago has turned
+/// by jφ, with the step of a rotation tan φ/2 = Ω Δt/2. M = −k_r θ, k_r = 2.25 k μ_r² R², beside the torque R e × F of friction.
+#[test]
+fn a_rolling_spring_turns_with_its_contact() {
+    let text = "materials.h.density = 1.0e20\n\
+        contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3, \
+        rolling_friction = 0.5 }\n\
+        dimension = 3\nduration_cycles = 50\n\
+        [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [0.0, 0.0, 0.095]\nspin = [1.0, 0.0, 200.0]\n\
+        [walls.w]\nmaterial = 'h'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
+        motion = [{ spin = [0.0, 0.0, 200.0], centre = [0.0, 0.0, 0.0] }]\n";
+    let record = run_at(text, Convention::DEFAULT, &Resolution::TimeStep(1e-4));
+    let turn = 2.0 * (0.5 * 200.0 * 1e-4_f64).atan();
+    let turned = (0..50).map(|steps| (f64::from(steps) * turn).sin_cos());
+    let [along, beside] = turned.fold([0.0, 0.0], |[along, beside], (sine, cosine)| [along + cosine, beside + sine]);
+    let grain = &end(&record).grains[0];
+    let (force, torque) = (grain.force.unwrap(), grain.torque.unwrap());
+    let stiffness = 2.25 * 1.0e6 * 0.5 * 0.5 * 0.1 * 0.1;
+    closely(
+        torque - Vector3::new(0.1 * force.y, -0.1 * force.x, 0.0),
+        Vector3::new(along, beside, 0.0) * (-stiffness * 1e-4),
+    );
+}
+
+/// A disc that comes down on a floor and spins: the moment has yielded at μ_r R F_n, and F_n is what the Coulomb limit of the
+/// convention takes, in 1979 that of the spring, k δ, by default that of spring and dashpot, k δ + β k v.
+#[test]
+fn a_rolling_spring_yields_at_the_normal_force_of_the_convention() {
+    for (convention, dashpot) in [(Convention::CUNDALL_STRACK, 0.0), (Convention::DEFAULT, 1.0)] {
+        let text = "materials.h.density = 1.0e20\n\
+            contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 0.2, \
+            stiffness_damping = 0.02, rolling_friction = 0.1 }\n\
+            dimension = 2\nduration_cycles = 9\n\
+            [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [0.0, 0.095]\nvelocity = [0.0, -0.5]\nspin = 1.0e3\n\
+            [walls.w]\nmaterial = 'h'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
+        let record = run_at(text, convention, &Resolution::TimeStep(1e-4));
+        let grain = &end(&record).grains[0];
+        let moment = grain.torque.unwrap().z - 0.1 * grain.force.unwrap().x;
+        close(moment, -0.1 * 0.1 * 1.0e6 * (0.005 + 9.0 * 0.5e-4 + dashpot * 0.02 * 0.5));
     }
 }
 

@@ -270,6 +270,28 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     assert!((found - lost).abs() < 0.0025 * lost, "{found} for {lost}");
 }
 
+/// So is one of a ball on a driven ball, which is as heavy as a wall: the critical step is that of the lighter of the two. With
+/// R* = R/2 and δ = R/25 it is √2 times as stiff as what the critical step of the scene is taken of.
+#[test]
+fn a_contact_is_as_stiff_as_its_lighter_grain_bears() {
+    let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));
+    let (mass, overlap) = (2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3, 0.004_f64);
+    let gravity = 4.0 / 3.0 * modulus * 0.05_f64.sqrt() * overlap.powf(1.5) / mass;
+    let scene = scene(&format!(
+        "dimension = 3\nduration = 0.1\ngravity = [0.0, 0.0, -{gravity}]\n\
+         materials.m = {{ density = 2500.0, young_modulus = 1.0e7, poisson_ratio = 0.3 }}\n\
+         contacts.c = {{ between = ['m', 'm'], law = 'hertz' }}\n\
+         grains.held = {{ material = 'm', radius = 0.1, position = [0.0, 0.0, 0.0] }}\n\
+         grains.b = {{ material = 'm', radius = 0.1, position = [0.0, 0.0, 0.196] }}\ndriven.held = {{ grains = 'held' }}\n"
+    ));
+    let dem = Dem::new(Convention::DEFAULT);
+    for (fraction, is_refused) in [(0.95, true), (0.8, false)] {
+        let end = dem.run(&scene, &Resolution::CriticalFraction(fraction), &mut ());
+        let broke = matches!(&end, Err(RunError::Broken(broken)) if matches!(broken.cause, Cause::StiffContact { .. }));
+        assert_eq!(broke, is_refused, "{fraction}");
+    }
+}
+
 /// If a Hertz contact stiffens until its critical time step is below the time step, the run ends with a typed error.
 /// The error names the time, the grain and a suitable step. The run continues if unstable steps are allowed. The
 /// critical time step of a scene is that of an overlap of R/100; here a ball rests with R/50, where the contact is √2

@@ -191,3 +191,42 @@ pub(crate) fn gather_changes<S: Space, B: Basis>(
         stencil.each::<S, B>(&part.window, |node| changes[at] += nodes[node.slot].change * node.weight);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{Gimp, Quadratic};
+    use grainbench_scene::space::Plane;
+    use nalgebra::{Matrix2, Vector2};
+
+    /// In simple shear x = X + ¾Y the material lines grow along x by √b_xx = √(1 + ¾²) = 5/4, and along y by nothing; a rotation
+    /// before the shear changes neither.
+    #[test]
+    fn a_point_reaches_as_far_as_its_material_lines() {
+        let window = Window::default();
+        let part = Part { points: 0..1, window, runs_in_order: 0, half: 0.24, cell_mass: 1.0 };
+        let shear = Matrix2::new(1.0, 0.75, 0.0, 1.0);
+        for turn in [Matrix2::identity(), Matrix2::new(0.6, -0.8, 0.8, 0.6)] {
+            let [x, y, _] = part.extent::<Plane, Gimp>(shear * turn);
+            assert!((x - 0.3).abs() < 1e-15 && (y - 0.24).abs() < 1e-15, "{x} {y}");
+        }
+    }
+
+    /// Around a point in cells of 1 m × 2 m the change ∂v_y/∂x = g has the angular momentum Σ w x Δv_y = g D_x about it, and
+    /// ∂v_x/∂y = g that of −g D_y, with D = h²/4 along each axis. Over D_x + D_y that is the spin: g/5 and −4g/5.
+    #[test]
+    fn a_spin_has_the_angular_momentum_of_the_nodes() {
+        let (cell, inverse) = ([1.0, 2.0, 1.0], [1.0, 0.5, 1.0]);
+        let lattice = Lattice { cell, inverse, origin: [0.0; 3], period: [None; 3] };
+        let stencil = Stencil::new::<Plane, Quadratic>(&lattice, Vector2::new(3.3, 5.1), [0.25; 3]);
+        for (row, column, spin) in [(1, 0, 0.2), (0, 1, -0.8)] {
+            let mut made = [[0.0; 3]; 3];
+            made[row][column] = 7.0;
+            let carried = Spin::carried::<Plane, f64>([[0.0; 3]; 3], made, &stencil);
+            assert!(
+                (carried[1][0] - 7.0 * spin).abs() < 1e-14 && (carried[0][1] + 7.0 * spin).abs() < 1e-14,
+                "{carried:?}"
+            );
+        }
+    }
+}

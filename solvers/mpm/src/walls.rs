@@ -70,3 +70,30 @@ impl<S: Space> RigidPlane<S> {
         S::restrict(self.velocity + self.spin.cross(&(S::embed(position) - self.centre)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::options::Setting;
+    use crate::trial::prepared;
+    use grainbench_scene::space::Plane;
+    use nalgebra::Vector2;
+
+    /// A plane that turns at .5 rad/s about (2, 1) m, which a ramp to 1 m/s over 2 s carries off along x: over a step from t
+    /// on it has the velocity (t + Δt/2)/2 m/s + ω × r, with r from where the centre is at t, (2 + t²/4, 1) m.
+    #[test]
+    fn a_plane_turns_about_where_its_centre_is() {
+        let text = "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
+            materials.m = { density = 1.0, young_modulus = 1.0, poisson_ratio = 0.0 }\n\
+            contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.0 }\n\
+            [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n\
+            [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -5.0], normal = [0.0, 1.0] }\n\
+            motion = [{ spin = 0.5, centre = [2.0, 1.0] }, { velocity = [1.0, 0.0], ramp = 2.0 }]\n";
+        let (mut simulation, _) = prepared::<Plane>(Setting::BEST, text, 1.0, 2);
+        let (plane, time, step) = (&mut simulation.boundary.walls[0], 1.5, 0.01);
+        plane.move_to(time, step);
+        let place = Vector2::new(0.3, -4.0);
+        let arm = place - Vector2::new(2.0 + 0.25 * time * time, 1.0);
+        let expected = Vector2::new(0.5 * (time + 0.5 * step) - 0.5 * arm.y, 0.5 * arm.x);
+        assert!((plane.velocity(place) - expected).norm() < 1e-13, "{} for {expected}", plane.velocity(place));
+    }
+}

@@ -156,3 +156,15 @@ fn an_incline_in_a_moving_frame_is_an_incline() {
     let (way_faster, _) = way(&moving(1.01 * speed));
     assert!((way_faster - speed * end - way_at_rest).abs() / rigid > 0.03, "{}", (way_faster - way_moving) / rigid);
 }
+
+/// The torque on a disc is that about its own centre, wherever the disc is: eight radii farther along the wall it is the same.
+#[test]
+fn a_torque_does_not_depend_on_the_place() {
+    let torque = |place: &str| {
+        let text = incline(30.0, 0.5, 0.05, false).replace("position = [0.0, 0.5]", &format!("position = {place}"));
+        let record = run("mpm:penalty", &text, 8.0, 2);
+        record.snapshots.last().unwrap().grains[0].torque.unwrap().z
+    };
+    let (here, there) = (torque("[0.0, 0.5]"), torque("[4.0, 0.5]"));
+    assert!(here.abs() > 1.0 && (there / here - 1.0).abs() < 1e-6, "{here} and {there} N m");
+}

@@ -250,3 +250,56 @@ fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) 
     }
     (low, high)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::settings::Settings;
+    use grainbench_scene::source::SceneSource;
+    use std::path::Path;
+
+    /// An engine that reports one contact.
+    struct Reporting(Touch);
+
+    impl Engine for Reporting {
+        fn step(&mut self, _: &[Placement]) {}
+        fn grain(&self, at: usize) -> Moving {
+            let position = Vector3::x() * (0.9 * at as f64);
+            Moving { position, velocity: Vector3::zeros(), spin: Vector3::zeros(), orientation: 0.0 }
+        }
+        fn touches(&self) -> Vec<Touch> {
+            vec![self.0]
+        }
+        fn counts(&self) -> (u64, u64) {
+            (1, 1)
+        }
+    }
+
+    /// Whichever side an engine names first: forces on grains and walls are the same, and opposite on the two sides.
+    #[test]
+    fn a_contact_is_the_same_from_both_sides() {
+        let text = "title = 't'\ndimension = 2\nduration = 1.0\nlargest_initial_overlap = 0.3\nmaterials.m.density = 1.0\n\
+            contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0 }\n\
+            [grains.g]\nmaterial = 'm'\nradius = 0.5\nlattice = { origin = [0.0, 0.0], spacing = [0.9, 1.0], count = [2, 1] }\n\
+            [walls.w]\nmaterial = 'm'\nplane = { point = [-0.4, 0.0], normal = [1.0, 0.0] }\n";
+        let scene = SceneSource::from_text("t", Path::new(""), text).scene(&|_| Err(String::new())).unwrap();
+        let settings = Settings::default();
+        let stepping = Stepping { time_step: 0.1, iterations: 4, length: 1.0, mass: 1.0, settings };
+        for (other, normal) in [(Side::Grain(1), Vector3::x()), (Side::Wall(0), -Vector3::x())] {
+            let shear = Vector3::y() * 0.3;
+            let touch = Touch { sides: [Side::Grain(0), other], normal, push: 2.0, shear, friction: 1.0 };
+            let turned = Touch { sides: [other, Side::Grain(0)], normal: -normal, shear: -shear, ..touch };
+            for touch in [touch, turned] {
+                let mut simulation = Simulation::new(&scene, stepping);
+                simulation.engine = Box::new(Reporting(touch));
+                let snapshot = simulation.look().snapshot;
+                let force = (shear - normal * 2.0) / 0.1;
+                let on_other = if other == Side::Wall(0) { snapshot.walls[0].force } else { snapshot.grains[1].force };
+                let off = [snapshot.grains[0].force.unwrap() - force, on_other.unwrap() + force].map(|off| off.norm());
+                assert!(off.iter().all(|off| *off < 1e-12 * force.norm()), "{touch:?}: off by {off:?} N");
+            }
+        }
+    }
+}

@@ -84,6 +84,12 @@ fn whole_turns_are_counted() {
     let mut scene = scene(GRAIN);
     scene.grains[0].spin.z = -50.0;
     assert!((last(&run(&scene, 16), "g.angle") + 25.0).abs() < 0.02);
+    // More than half a turn in a step: in each of its small steps h rapier turns by atan Ωh, with Ωh = 1.2.
+    let steps = f64::from(Resolution::RIGID_ITERATIONS);
+    let step = run(&scene, 1).provenance.time_step;
+    scene.grains[0].spin.z = -1.2 * steps / step;
+    let turns = -0.5 / step * steps * 1.2_f64.atan();
+    assert!(steps * 1.2_f64.atan() > PI && (last(&run(&scene, 1), "g.angle") / turns - 1.0).abs() < 1e-9);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 use grainbench_scene::record::{BodyState, ContactState, GrainState, Look, Partner, Snapshot};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::source::SceneSource;
+use grainbench_scene::virial;
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -105,4 +106,35 @@ fn mean_stress_and_coordination() {
         let found = series.column(&format!("all.{column}")).unwrap()[0];
         assert!((found - expected).abs() < 1e-12, "{column}: {found} for {expected}");
     }
+}
+
+/// What a contact adds to V σ of its two grains is together the force times the vector from one centre to the other, R₁ + R₂ − δ
+/// long: of spheres of .5 and .3 m that overlap by .1 m, .7 m along x times −10 N and 4 N. Half of the shear is in σ_xy.
+#[test]
+fn both_grains_of_a_contact_share_the_vector_between_them() {
+    let contact = ContactState {
+        grain: 1,
+        partner: Partner::Grain(2),
+        point: Vector3::zeros(),
+        normal: Vector3::x(),
+        overlap: 0.1,
+        normal_force: 10.0,
+        shear_force: Vector3::y() * 4.0,
+        slipping: false,
+    };
+    let mut sum = [0.0; 6];
+    [0.5, 0.3].into_iter().for_each(|radius| virial::add(&mut sum, &contact, radius));
+    for (found, expected) in sum.into_iter().zip([-7.0, 0.0, 0.0, 1.4, 0.0, 0.0]) {
+        assert!((found - expected).abs() < 1e-14, "{found} for {expected}");
+    }
+}
+
+/// A snapshot is taken at the step whose time is nearest to the one that is asked for.
+#[test]
+fn a_snapshot_is_taken_at_the_nearest_step() {
+    let text = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
+                [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\n\
+                [output]\nevery = 0.5\nsnapshots = 0\nsnapshot_times = [0.24, 0.26, 0.5, 0.76]\n";
+    let scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err("no files".to_owned())).unwrap();
+    assert_eq!(Recorder::new(&scene, 0.1, 10).snapshot_steps(), [0, 2, 3, 5, 8, 10]);
 }

@@ -245,6 +245,19 @@ mod tests {
         }
     }
 
+    /// A spring of 200 N/m that is pulled by .03 m from rest holds 2 N, at a stretch of .01 m. Its end slides by .02 m under 1 N in
+    /// the mean. Pulled by .01 m more it slides by all of it under 2 N.
+    #[test]
+    fn what_slides_rubs_off_the_mean_force_times_its_way() {
+        let normal = Vector2::y();
+        for (before, slip, work) in [(0.0, 0.03, 0.02), (0.01, 0.01, 0.02), (0.0, 0.01, 0.0)] {
+            let slip = Vector2::new(slip, 0.0);
+            let overlap = Overlap::<Plane> { depth: 0.01, normal, stiffness: 200.0, slip, friction: 1.0 };
+            let found = Shear::new(Vector2::new(before, 0.0), &overlap).rubbed(&overlap);
+            assert!((found - work).abs() < 1e-15, "{found} J for {work} J");
+        }
+    }
+
     /// A slipping tracer has the force μ k g, independent of the displacement: μ 200 · .01 N. The force is proportional
     /// to μ, so an increase of μ by two thousandths increases the force by the same ratio.
     #[test]
