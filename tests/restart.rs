@@ -250,6 +250,45 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile:
     directory
 }
 
+/// A file whose hash is right may have been written by somebody else: numbers are looked at before the run goes on.
+#[test]
+fn a_checkpoint_with_wrong_numbers_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let scene = LONG.replace("1_000_000", "200").replace("100_000", "50");
+    std::fs::write(path.join("scene.toml"), scene).unwrap();
+    let simulate = ["simulate", "scene.toml", "--solver", "dem"];
+    let keep = ["--checkpoint", "kept", "--checkpoint-every", "100", "--out", "a"];
+    assert_eq!(grainbench(path, &[&simulate[..], &keep].concat()).code, Some(0));
+    let whole = std::fs::read(path.join("kept")).unwrap();
+    let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    let body = &whole[head + 40..];
+    // Length and hash are made anew around other numbers.
+    let resealed = |body: &[u8]| {
+        let hash = blake3::hash(body);
+        [&whole[..head], &(body.len() as u64).to_le_bytes(), hash.as_bytes(), body].concat()
+    };
+    let restarted = |body: &[u8]| {
+        std::fs::write(path.join("other"), resealed(body)).unwrap();
+        grainbench(path, &[&simulate[..], &["--restart", "other", "--out", "b"]].concat())
+    };
+    assert_eq!(restarted(body).code, Some(0));
+    let places = |number: f64| -> Vec<usize> {
+        let bytes = number.to_le_bytes();
+        (0..body.len() - 8).filter(|&at| body[at..at + 8] == bytes).collect()
+    };
+    // The radius of a grain is in the state, and in the snapshots of the record so far.
+    let wrong = |at: usize| [(at, 0.7), (at, -0.1), (at, f64::NAN), (at - 8, f64::INFINITY)];
+    let is_refused = |(at, wrong): (usize, f64)| {
+        let mut other = body.to_vec();
+        other[at..at + 8].copy_from_slice(&wrong.to_le_bytes());
+        let answer = restarted(&other);
+        answer.code != Some(0) && answer.err.contains("the checkpoint is damaged: it has ")
+    };
+    let refused = places(0.1).into_iter().filter(|&at| wrong(at).into_iter().all(is_refused)).count();
+    assert_eq!(refused, 9);
+}
+
 /// A run that crashes leaves its series, its snapshots, the state at the crash, and its reason.
 #[test]
 fn a_run_that_breaks_leaves_what_there_is() {

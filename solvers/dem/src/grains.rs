@@ -56,6 +56,20 @@ impl<S: Geometry> Grains<S> {
             && (placed == slot.len() || !scene.stays.is_always())
             && id.iter().enumerate().all(|(at, &id)| slot.get(id as usize).is_some_and(|&slot| slot as usize == at))
             && material.iter().zip(id).all(|(&material, &id)| material == scene.grains[id as usize].material)
+            && self.has_bodies_of(scene, quads / count.max(1))
+    }
+
+    /// Returns whether radii, masses and moments of inertia are those of the scene; a driven grain may have no inverse mass.
+    fn has_bodies_of(&self, scene: &Scene, quads: usize) -> bool {
+        let is_one = |found: f64, expected: f64| found.to_bits() == expected.to_bits();
+        self.id.iter().enumerate().all(|(slot, &id)| {
+            let grain = &scene.grains[id as usize];
+            let inverse_mass = self.movement[slot * quads].0[3];
+            let inverse_inertia = self.inverse_inertia.get(slot).copied();
+            is_one(self.place[slot].0[3], grain.radius)
+                && (is_one(inverse_mass, 1.0 / grain.mass) || inverse_mass == 0.0)
+                && inverse_inertia.is_none_or(|found| is_one(found, 1.0 / grain.inertia))
+        })
     }
 
     /// Returns the grains that a scene has at the start, in their initial state and without forces.

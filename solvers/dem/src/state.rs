@@ -11,6 +11,7 @@ use crate::neighbours::Neighbours;
 use crate::simulation::Simulated;
 use crate::walls::WallMemory;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::finite::is_finite;
 use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use serde::{Deserialize, Serialize};
@@ -68,7 +69,11 @@ impl<S: Geometry> Simulated<S> {
             && state.walls.len() == self.walls.len()
             && state.walls.iter().zip(&self.walls).all(|(memory, wall)| memory.is_of(count, wall));
         if !same {
-            return Err(CheckpointError::Damaged("it has other grains, pairs or walls".to_owned()));
+            return Err(CheckpointError::Damaged("it has other grains, pairs or walls than the scene".to_owned()));
+        }
+        let finite = is_finite(&(&state.grains, &state.neighbours, &state.walls, &state.mean_virial));
+        if !(finite && state.extent.is_finite() && state.recorder.is_finite()) {
+            return Err(CheckpointError::Damaged("it has a number that is not finite".to_owned()));
         }
         self.grains = state.grains;
         self.neighbours = state.neighbours.in_shares(self.shares());

@@ -10,6 +10,7 @@ use crate::ledger::Tally;
 use crate::points::Points;
 use crate::simulation::Simulation;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_scene::finite::is_finite;
 use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::space::Space;
@@ -72,6 +73,13 @@ impl<S: Space> Simulation<S> {
             && kept.runs_in_order.len() == state.bodies.len();
         if !same {
             return Err(CheckpointError::Damaged("it has another number of points, tracers or bodies".to_owned()));
+        }
+        let Points { mass, reference_volume, volume, .. } = &kept.points;
+        let is_positive = [mass, reference_volume, volume].into_iter().flatten().all(|value| *value > 0.0);
+        let is_finite = is_finite(&(&kept.points, &kept.tracers, &kept.friction, &kept.angles));
+        if !(is_positive && is_finite && kept.recorder.is_finite()) {
+            let reason = "it has a number that is not finite, or a mass or volume that is not positive";
+            return Err(CheckpointError::Damaged(reason.to_owned()));
         }
         state.before.clone_from(&kept.points.velocity);
         state.points = kept.points;

@@ -16,6 +16,7 @@ pub mod effects;
 pub mod end_state;
 pub mod error;
 pub mod file;
+pub mod finite;
 pub mod function;
 pub mod generate;
 pub mod grains;

@@ -37,6 +37,12 @@ impl Recorder {
         Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
+    /// Returns whether all samples are finite, as they are when a run goes on.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.series.time.iter().chain(self.series.values.iter().flatten()).all(|value| value.is_finite())
+    }
+
     /// Returns true if this record belongs to the same run as `begun`: both record the same quantities at the same
     /// steps, and each column has one value per sample.
     #[must_use]

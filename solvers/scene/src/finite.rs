@@ -1,0 +1,183 @@
+//! Finds numbers that are not finite in a state of any type.
+
+use serde::ser::{
+    self, Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
+    SerializeTupleStruct, SerializeTupleVariant, Serializer,
+};
+use std::fmt::{self, Display};
+
+/// Returns whether all numbers of a value are finite.
+#[must_use]
+pub fn is_finite(value: &impl Serialize) -> bool {
+    value.serialize(Search).is_ok()
+}
+
+/// Walks through a value and stops at a number that is not finite.
+struct Search;
+
+/// A number that is not finite.
+#[derive(Debug)]
+struct NotFinite;
+
+impl Display for NotFinite {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a number that is not finite")
+    }
+}
+
+impl std::error::Error for NotFinite {}
+
+impl ser::Error for NotFinite {
+    fn custom<T: Display>(_: T) -> Self {
+        Self
+    }
+}
+
+type Found = Result<(), NotFinite>;
+
+/// Methods for values without a floating-point number.
+macro_rules! passed_over {
+    ($($method:ident($($kind:ty),*);)*) => {
+        $(fn $method(self, $(_: $kind),*) -> Found { Ok(()) })*
+    };
+}
+
+/// Traits of values with parts of their own.
+macro_rules! parts {
+    ($($part:ident: $($method:ident),*;)*) => {
+        $(impl $part for Search {
+            type Ok = ();
+            type Error = NotFinite;
+            $(fn $method<T: ?Sized + Serialize>(&mut self, part: &T) -> Found { part.serialize(Search) })*
+            fn end(self) -> Found { Ok(()) }
+        })*
+    };
+}
+
+/// The same for parts with names.
+macro_rules! named_parts {
+    ($($part:ident),*) => {
+        $(impl $part for Search {
+            type Ok = ();
+            type Error = NotFinite;
+            fn serialize_field<T: ?Sized + Serialize>(&mut self, _: &'static str, part: &T) -> Found {
+                part.serialize(Search)
+            }
+            fn end(self) -> Found { Ok(()) }
+        })*
+    };
+}
+
+parts! {
+    SerializeSeq: serialize_element;
+    SerializeTuple: serialize_element;
+    SerializeTupleStruct: serialize_field;
+    SerializeTupleVariant: serialize_field;
+    SerializeMap: serialize_key, serialize_value;
+}
+named_parts!(SerializeStruct, SerializeStructVariant);
+
+impl Serializer for Search {
+    type Ok = ();
+    type Error = NotFinite;
+    type SerializeSeq = Self;
+    type SerializeTuple = Self;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = Self;
+    type SerializeStruct = Self;
+    type SerializeStructVariant = Self;
+
+    passed_over! {
+        serialize_bool(bool);
+        serialize_i8(i8);
+        serialize_i16(i16);
+        serialize_i32(i32);
+        serialize_i64(i64);
+        serialize_u8(u8);
+        serialize_u16(u16);
+        serialize_u32(u32);
+        serialize_u64(u64);
+        serialize_char(char);
+        serialize_str(&str);
+        serialize_bytes(&[u8]);
+        serialize_none();
+        serialize_unit();
+        serialize_unit_struct(&'static str);
+        serialize_unit_variant(&'static str, u32, &'static str);
+    }
+
+    fn serialize_f32(self, value: f32) -> Found {
+        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+    }
+
+    fn serialize_f64(self, value: f64) -> Found {
+        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+    }
+
+    fn serialize_some<T: ?Sized + Serialize>(self, value: &T) -> Found {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_struct<T: ?Sized + Serialize>(self, _: &'static str, value: &T) -> Found {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: ?Sized + Serialize>(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        value: &T,
+    ) -> Found {
+        value.serialize(self)
+    }
+
+    fn serialize_seq(self, _: Option<usize>) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_tuple(self, _: usize) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_tuple_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_map(self, _: Option<usize>) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+
+    fn serialize_struct_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    enum State {
+        At { place: Option<[f64; 2]>, name: &'static str },
+        Of(Vec<(u8, f32)>),
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_found_wherever_it_is() {
+        let at = |y: f64| State::At { place: Some([0.0, y]), name: "a" };
+        assert!(is_finite(&vec![at(1.0), State::Of(vec![(1, 2.0)]), State::At { place: None, name: "" }]));
+        for wrong in [at(f64::NAN), at(f64::INFINITY), State::Of(vec![(1, 2.0), (2, f32::NEG_INFINITY)])] {
+            assert!(!is_finite(&[at(1.0), wrong]));
+        }
+    }
+}
