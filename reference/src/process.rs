@@ -108,11 +108,11 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
         // The guard ends the program; it may have ended by itself in the meantime.
         close(&mut child);
         let _ = child.wait();
-        end_sessions(folder);
+        end_sessions(folder, child.id());
         return Err((failure, last_lines(folder)));
     };
     close(&mut child);
-    end_sessions(folder);
+    end_sessions(folder, child.id());
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
@@ -151,15 +151,18 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
 }
 
 /// Ends processes that a program started in sessions of their own (`setsid`): the guard ends the process group of the program
-/// alone. They are found by the folder in their environment, where `/proc` shows it.
-pub(crate) fn end_sessions(folder: &Path) {
+/// alone, which `guard` leads. They are found by the folder in their environment, where `/proc` shows it.
+pub(crate) fn end_sessions(folder: &Path, guard: u32) {
     let mut mark = format!("{FOLDER}=").into_bytes();
     mark.extend(folder.as_os_str().as_encoded_bytes());
     for _ in 0..SWEEPS {
         let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
         let numbers = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-        // A process whose environment is empty has ended.
+        // The group is left to the guard, which ends processes with another environment too. One that has ended has none.
         let is_marked = |process: &u32| {
+            if group(*process).is_none_or(|group| group == guard) {
+                return false;
+            }
             let environment = fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
             environment.split(|byte| *byte == 0).any(|variable| variable == mark)
         };
@@ -170,6 +173,13 @@ pub(crate) fn end_sessions(folder: &Path) {
         let _ = Command::new("kill").arg("-9").args(&found).stdout(Stdio::null()).stderr(Stdio::null()).status();
         sleep(Duration::from_millis(1));
     }
+}
+
+/// The process group of a process, as `/proc` shows it.
+fn group(process: u32) -> Option<u32> {
+    let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    // The name of the program, in parentheses, may have blanks: state, parent and group follow.
+    text.rsplit_once(')')?.1.split_ascii_whitespace().nth(2)?.parse().ok()
 }
 
 /// The failure of a run that left more bytes than it may.

@@ -147,7 +147,7 @@ impl Drop for Worker {
     fn drop(&mut self) {
         process::say_alive(&mut self.requests);
         let _ = self.guard.wait();
-        process::end_sessions(self.folder.path());
+        process::end_sessions(self.folder.path(), self.guard.id());
         let _ = fs::remove_dir_all(self.folder.path());
     }
 }
