@@ -101,7 +101,12 @@ fn exact_answers_follow_other_numbers() {
         let allowed = velocity["allowed"].as_f64().unwrap();
         assert!(allowed > overlap / 0.005 && allowed < 1.3 * overlap / 0.005, "{allowed:e} {:e}", overlap / 0.005);
     }
-    for wrong in ["gravity.slope_deg=30.5", "grains.sphere.radius=.0049", "gravity.magnitude=9.7"] {
+    let wrong_radius = ["grains.sphere.radius=.0049", "grains.sphere.position=[0,0,.005]"];
+    let set = NUMBERS.iter().chain(&wrong_radius).flat_map(|set| ["--set", set]);
+    let words = [&["check", "incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump", &dump]].concat();
+    let answer = grainbench(tempfile::tempdir().unwrap().path(), &words);
+    assert!(answer.code == Some(2) && answer.err.contains("expected the radius of grain 1"), "{}", answer.err);
+    for wrong in ["gravity.slope_deg=30.5", "gravity.magnitude=9.7"] {
         let set = [wrong, "grains.sphere.position=[0,0,.005]"];
         let (code, rows) = at_numbers(&[&dump], &set);
         let red = count(&rows, |row| is_exact(row) && row["verdict"] == "fail");

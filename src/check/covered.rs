@@ -52,8 +52,8 @@ pub(super) struct Covered {
     /// Most that the last sample may be short of the end (s).
     slack: f64,
     samples: usize,
-    /// Longest time between samples that results can be judged with (s): the sampling interval of the scene, or a tenth of the run
-    /// where that is longer. None where the time of the run is not known.
+    /// Longest time between samples that results can be judged with (s): the sampling interval of the scene, or a tenth of the
+    /// run where that is longer. None where the time of the run is not known.
     most: Option<f64>,
     /// Longest time between samples.
     gap: Gap,

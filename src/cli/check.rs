@@ -38,8 +38,8 @@ pub(crate) struct Arguments {
     /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
-    /// File that `--all` does not judge, by its name or a pattern in quotes such as `'*.log'`; any other file that is no output is
-    /// red. Repeatable.
+    /// File that `--all` does not judge, by its name or a pattern in quotes such as `'*.log'`. Any other file that is no output
+    /// is red. Repeatable.
     #[arg(long, value_name = "NAME", requires = "all")]
     ignore: Vec<String>,
     /// Log of the run; by default `log.lammps` or `log.liggghts` next to the first dump.
