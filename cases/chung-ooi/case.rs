@@ -316,10 +316,11 @@ fn rigid() -> Vec<Claim> {
             .within(rounding())
             .refuses(more_friction()),
         claim("tangential restitution at 60°", "1")
-            .of(oblique().known(
-                "the friction limit uses the impulse that stops the approach, without the impulse of restitution",
-            )
-            .up_to(0.1))
+            .of(oblique()
+                .known(
+                    "the friction limit uses the impulse that stops the approach, without the impulse of restitution",
+                )
+                .up_to(0.1))
             .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
             .within(judged(2e-5, "what a solver with springs reaches"))
             .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution)),

@@ -161,11 +161,10 @@ fn sooner(variant: &'static str, of: &str) -> Claim {
 /// Claims the arrival for rigid contacts, through which an impulse passes the whole chain in one step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
-        .of(Run::new("line", "rigid", rigid::DEFAULT).known(
-            "contacts are rigid: an impulse passes through all discs in one step, like a wave of infinite speed",
-        )
-        // No arrival is earlier than the impact: −1.
-        .up_to(1.0))
+        .of(Run::new("line", "rigid", rigid::DEFAULT)
+            .known("contacts are rigid: an impulse passes through all discs in one step, like a wave of infinite speed")
+            // No arrival is earlier than the impact: −1.
+            .up_to(1.0))
         .equals(Source::Derived("modes of the assembly (derivation)"), |done| {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();

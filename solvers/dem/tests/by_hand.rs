@@ -349,8 +349,9 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
 }
 
 /// A turntable and the sphere on it turn about their normal at Ω = 200 rad/s, and the sphere rolls at ω = 1 rad/s about an axis
-/// that stays: the rolling angle grows by ω Δt along x in each step, and turns with the contact. What it was j steps ago has turned
-/// by jφ, with the step of a rotation tan φ/2 = Ω Δt/2. M = −k_r θ, k_r = 2.25 k μ_r² R², beside the torque R e × F of friction.
+/// that stays: the rolling angle grows by ω Δt along x in each step, and turns with the contact. What it was j steps ago has
+/// turned by jφ, with the step of a rotation tan φ/2 = Ω Δt/2. M = −k_r θ, k_r = 2.25 k μ_r² R², beside the torque R e × F of
+/// friction.
 #[test]
 fn a_rolling_spring_turns_with_its_contact() {
     let text = "materials.h.density = 1.0e20\n\

@@ -164,7 +164,8 @@ impl Serializer for Search {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::is_finite;
+    use serde::Serialize;
 
     #[derive(Serialize)]
     enum State {

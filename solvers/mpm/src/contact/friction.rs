@@ -245,8 +245,8 @@ mod tests {
         }
     }
 
-    /// A spring of 200 N/m that is pulled by .03 m from rest holds 2 N, at a stretch of .01 m. Its end slides by .02 m under 1 N in
-    /// the mean. Pulled by .01 m more it slides by all of it under 2 N.
+    /// A spring of 200 N/m that is pulled by .03 m from rest holds 2 N, at a stretch of .01 m. Its end slides by .02 m under 1 N
+    /// in the mean. Pulled by .01 m more it slides by all of it under 2 N.
     #[test]
     fn what_slides_rubs_off_the_mean_force_times_its_way() {
         let normal = Vector2::y();
