@@ -167,7 +167,7 @@ mod tests {
     use super::is_finite;
     use serde::Serialize;
 
-    #[derive(Serialize)]
+    #[derive(serde::Serialize)]
     enum State {
         At { place: Option<[f64; 2]>, name: &'static str },
         Of(Vec<(u8, f32)>),
