@@ -165,7 +165,6 @@ impl Serializer for Search {
 #[cfg(test)]
 mod tests {
     use super::is_finite;
-    use serde::Serialize;
 
     #[derive(serde::Serialize)]
     enum State {
