@@ -204,7 +204,9 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
     let table = html! {
         table {
             thead { tr {
-                @for word in ["Report", "Name", "Commit", "Date", "Pass", "Fail or broken", "Amber"] { th scope="col" { (word) } }
+                @for word in ["Report", "Name", "Commit", "Date", "Pass", "Fail, broken or stale", "Amber"] {
+                    th scope="col" { (word) }
+                }
                 @for name in COUNTED { th scope="col" { (name.replace('_', " ")) } }
             } }
             tbody { @for (at, column) in columns.iter().enumerate() { tr {

@@ -112,7 +112,8 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
             p.key {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 of what is allowed" }
                 span { i.k0 {} i.k1 {} i.k2 {} "a published method's known error: ≤ 10, ≤ 1000, more times it" }
-                span { i.f0 {} "fails" } span { i.old {} "stored result of other sources" } span { i.cannot {} "cannot express it" }
+                span { i.f0 {} "fails" } span { i.old {} "stored result of other sources" }
+                span { i.cannot {} "cannot express it" }
             }
             @if !report.judged.is_empty() {
                 p.note {
