@@ -133,8 +133,8 @@ fn a_plate_of_triangles_moves_as_a_rectangle() {
     assert!(forces[0].norm() > 1.0 && (forces[0] - forces[1]).norm() < 1e-6 * forces[0].norm());
 }
 
-/// A sphere that is moved over the ridge of two plates at 179° keeps its tangential spring, for the contact goes on from plate to
-/// ridge to plate: its force is k_t v t, but for the slope of the plates, 1 − cos ½° of it.
+/// A sphere that is moved over the ridge of two plates at 179° keeps its tangential spring, because the contact continues
+/// from plate to ridge to plate. Its force is k_t v t, up to the fraction 1 − cos ½° by the slope of the plates.
 #[test]
 fn a_spring_goes_on_over_a_ridge() {
     let slope = 0.5_f64.to_radians();

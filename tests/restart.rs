@@ -250,7 +250,7 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile:
     directory
 }
 
-/// A file whose hash is right may have been written by somebody else: numbers are looked at before the run goes on.
+/// A checkpoint with a correct hash and wrong numbers is refused before the run continues.
 #[test]
 fn a_checkpoint_with_wrong_numbers_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -263,7 +263,7 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
     let whole = std::fs::read(path.join("kept")).unwrap();
     let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
     let body = &whole[head + 40..];
-    // Length and hash are made anew around other numbers.
+    // Length and hash are computed again for the changed numbers.
     let resealed = |body: &[u8]| {
         let hash = blake3::hash(body);
         [&whole[..head], &(body.len() as u64).to_le_bytes(), hash.as_bytes(), body].concat()

@@ -1,7 +1,7 @@
 //! Folder of the cache of finished runs, outside the tree.
 //!
-//! The key of a run is a plain hash, so whoever can write the folder decides the results. A folder that other users own or can
-//! write is not used.
+//! The key of a run is a plain hash, so a user who can write the folder can change the results. A folder that another user owns,
+//! or that every user can write, is not used.
 
 use super::exit;
 use grainbench::cases::solvers::Registry;
@@ -41,7 +41,7 @@ pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
     }
 }
 
-/// Says which runs of a report come from the cache: their number, its folder, and the folder's owner.
+/// Returns the number of runs from the cache, its folder and the folder's owner, in words.
 pub(crate) fn words(cache: &RunCache) -> Option<String> {
     let taken = cache.taken();
     let about = owner(cache.folder()).map(|owner| format!(", {owner}")).unwrap_or_default();
@@ -50,7 +50,7 @@ pub(crate) fn words(cache: &RunCache) -> Option<String> {
         .then(|| format!("{taken} runs taken from the cache of finished runs, with their times: {folder}{about}"))
 }
 
-/// The reason why a folder cannot be trusted: another user owns it, or every user can write it.
+/// Returns the reason why a folder cannot be trusted: another user owns it, or every user can write it.
 #[cfg(unix)]
 fn distrust(folder: &Path) -> Option<String> {
     let about = fs::metadata(folder).ok()?;
@@ -67,7 +67,7 @@ const fn distrust(_: &Path) -> Option<String> {
     None
 }
 
-/// The owner of a folder, and its group if the group can write it.
+/// Returns the owner of a folder, and its group if the group can write it.
 #[cfg(unix)]
 fn owner(folder: &Path) -> Option<String> {
     let about = fs::metadata(folder).ok()?;

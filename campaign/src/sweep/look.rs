@@ -124,7 +124,7 @@ impl Look {
         let table = source.table().map_err(|error| Fault::Input(error.to_string()))?;
         let numbers = Numbers::of(table, scene).map_err(Fault::Input)?;
         let is_column = |name: &str| numbers.columns.iter().any(|column| column == name);
-        // The columns of bodies that deform are those of the solver.
+        // The solver decides the columns of deformable bodies.
         let knows_columns = scene.needs_deformable().is_none();
         let unknown = |name: &&str| numbers.is_of_record(name) && !is_column(name);
         if let Some(name) = own.value.names().into_iter().find(unknown).filter(|_| knows_columns) {
