@@ -1,4 +1,4 @@
-//! Dashpots as both programs have them: proportional to the effective mass of the contact.
+//! Dashpots in the form that both programs use: proportional to the effective mass of the contact.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
@@ -10,20 +10,20 @@ pub(crate) struct Dashpots {
     pub(crate) tangential: f64,
 }
 
-/// The other side of a contact.
+/// Contact partner of a grain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// Grains of a material.
+    /// Grains of a material, by its index.
     Grains(u16),
     /// A wall.
     Wall,
 }
 
 impl Dashpots {
-    /// The coefficients of a law for contacts of grains of one material with a partner.
+    /// Returns the coefficients of a law for contacts between grains of one material and a partner.
     ///
-    /// Dashpots that are not proportional to the effective mass are so all the same where every contact has the same
-    /// effective mass: c = βk is γ = βk/m_eff, and a coefficient of restitution gives γ = 2ζ√(k/m_eff).
+    /// Other dashpots can be converted if all contacts have the same effective mass. Then c = βk is γ = βk/m_eff, and
+    /// a coefficient of restitution gives γ = 2ζ√(k/m_eff).
     pub(crate) fn of(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<Self, String> {
         let mut dashpots = Self { normal: law.normal_damping, tangential: law.tangential_damping };
         let named = match (law.stiffness_damping != 0.0, law.damping_ratio != 0.0) {
@@ -51,7 +51,7 @@ impl Dashpots {
     }
 }
 
-/// The mass of all grains of a material, if it is one.
+/// Returns the mass (kg) of the grains of a material if it is the same for all of them.
 fn one_mass(scene: &Scene, material: u16) -> Option<f64> {
     let mut masses = scene.grains.iter().filter(|grain| grain.material == material).map(|grain| grain.mass);
     let first = masses.next()?;

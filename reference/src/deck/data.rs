@@ -1,4 +1,4 @@
-//! The data file: the grains at the start.
+//! Data file with the initial state of the grains.
 
 use std::fmt::Write as _;
 
@@ -10,8 +10,10 @@ use nalgebra::Vector3;
 use super::heading;
 use super::outline::is_flat;
 
-/// Lower and upper corner of the box (m): the scene's along periodic axes, wide around its grains along others. It is
-/// never made smaller than that, for neighbour lists need some room; it grows with the grains.
+/// Returns the lower and upper corner of the box (m). Periodic axes have the bounds of the scene. Other axes have
+/// room around the grains.
+///
+/// The box is never smaller, because neighbour lists need some room. It grows with the grains.
 pub(crate) fn box_of(scene: &Scene) -> (Vector3<f64>, Vector3<f64>) {
     let states: Vec<GrainState> = (1..).zip(&scene.grains).map(|(id, grain)| GrainState::start(id, grain)).collect();
     let (mut low, mut high) = bounds(scene, &states);
@@ -31,13 +33,14 @@ fn largest_radius(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max)
 }
 
-/// Which axes are periodic for the programs: z is so in the plane.
+/// Returns for each axis if it is periodic in the programs. In two dimensions, z is periodic.
 fn periodic(scene: &Scene) -> [bool; 3] {
     let [x, y, z] = scene.domain.map_or([false; 3], |domain| domain.periodic);
     [x, y, z || is_flat(scene)]
 }
 
-/// The data file, `types` types of atoms; `density` is what makes a grain's mass there.
+/// Returns the data file with `types` atom types. `density` computes the density (kg/m³) from mass and radius such
+/// that the program obtains the mass of the grain.
 pub(crate) fn data_file(
     scene: &Scene,
     types: usize,
@@ -63,26 +66,26 @@ pub(crate) fn data_file(
     text
 }
 
-/// Density of a sphere (kg/m³).
+/// Returns the density of a sphere (kg/m³).
 pub(crate) fn of_sphere(mass: f64, radius: f64) -> f64 {
     mass / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))
 }
 
-/// Density of a disc one metre deep (kg/m³).
+/// Returns the density of a disc of depth 1 m (kg/m³).
 pub(crate) fn of_disc(mass: f64, radius: f64) -> f64 {
     mass / (std::f64::consts::PI * radius * radius)
 }
 
-/// Skin of the neighbour lists (m): a tenth of the largest diameter.
+/// Returns the skin of the neighbour lists (m), a tenth of the largest diameter.
 pub(crate) fn skin(scene: &Scene) -> f64 {
     0.2 * largest_radius(scene)
 }
 
-/// The boundary of each axis: periodic, or another one.
+/// Returns the `boundary` command. Axes that are not periodic have the style `otherwise`.
 pub(crate) fn boundary(scene: &Scene, otherwise: &str) -> String {
     let words = periodic(scene).map(|periodic| if periodic { "p" } else { otherwise });
     format!("boundary {}", words.join(" "))
 }
 
-/// A boundary that grows with the grains.
+/// Boundary style of a box that grows with the grains.
 pub(crate) const GROWING: &str = "m";

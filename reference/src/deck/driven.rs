@@ -1,11 +1,12 @@
-//! Grains that are moved as walls are: groups of their own, which `fix move` moves.
+//! Grains with a prescribed velocity. They form groups that `fix move` moves.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
 use super::outline::is_flat;
 
-/// The lines that move driven grains of the group of `grains`, and the name of the group of the others.
+/// Returns the lines that move the driven grains of group `grains`, and the name of the group of the remaining
+/// grains.
 pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'static str) {
     if scene.driven.is_empty() {
         return (Vec::new(), grains);
@@ -15,7 +16,7 @@ pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'sta
     for (number, driven) in (1..).zip(&scene.driven) {
         let ids: String = driven.grains.iter().map(|grain| format!(" {}", grain + 1)).collect();
         let velocity = driven.velocity;
-        // In the plane the programs want nothing said of the third axis.
+        // In two dimensions the programs require `NULL` for the third axis.
         let across = if is_flat(scene) { "NULL".to_owned() } else { format!("{:?}", velocity.z) };
         lines.push(format!("group driven{number} id{ids}"));
         lines.push(format!("fix drive{number} driven{number} move linear {:?} {:?} {across}", velocity.x, velocity.y));
@@ -23,7 +24,7 @@ pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'sta
     }
     lines.push(format!("group free subtract {grains}{groups}"));
     if scene.laws.iter().flatten().any(ContactLaw::has_damping) {
-        // What is frozen is as heavy as a wall to dashpots; `fix move` moves it all the same.
+        // To dashpots, a frozen grain is as heavy as a wall. `fix move` moves it nevertheless.
         lines.push(format!("group heavy union{groups}"));
         lines.push("fix heavy heavy freeze".to_owned());
     }

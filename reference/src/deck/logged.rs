@@ -1,4 +1,4 @@
-//! What the log of a run is asked for: sums over all contacts, which no dump of grains tells.
+//! Quantities read from the log of a run: sums over all contacts, which dumps of grains do not contain.
 
 use grainbench_scene::record::Series;
 use grainbench_scene::scene::{ProbeTarget, Scene};
@@ -6,36 +6,37 @@ use grainbench_scene::scene::{ProbeTarget, Scene};
 use super::outline::AXES;
 use crate::read::log::Log;
 
-/// A column of the log that gives one of the series.
+/// Column of the log that is also a column of the series.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Logged {
-    /// Column of the series, such as `floor.force_x`.
+    /// Column of the series, for example `floor.force_x`.
     pub(crate) column: String,
-    /// Name of the variable. Short and plain, for LIGGGHTS cuts the names of columns.
+    /// Name of the variable. It is short and plain, because LIGGGHTS truncates the names of columns.
     pub(crate) name: String,
-    /// Its formula in the program.
+    /// Formula in the language of the program.
     pub(crate) formula: String,
 }
 
-/// Components of the virial, in the order of both programs.
+/// Components of the virial in the order of both programs.
 const VIRIAL: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
-/// What a program calls its sums.
+/// Names that a program uses in its sums.
 pub(crate) struct Sums<'a> {
-    /// The temperature that its pressure leaves out.
+    /// Temperature that the program excludes from its pressure.
     pub(crate) temperature: &'a str,
-    /// The group of the grains.
+    /// Group of the grains.
     pub(crate) grains: &'a str,
-    /// The command and the components of the force of a wall on the grains, by the wall's number from 1.
+    /// Returns the command and the components of the force of a wall on the grains, by the number of the wall from 1.
     pub(crate) force: &'a dyn Fn(usize) -> (String, [String; 3]),
-    /// How far a piston has gone, by the wall's number; none where it has none.
+    /// Returns the displacement of a piston by the number of its wall from 1, or `None` if the program has no piston
+    /// there.
     pub(crate) advance: &'a dyn Fn(usize) -> Option<String>,
 }
 
-/// The commands that make the columns, and the columns.
+/// Returns the commands that define the columns, and the columns.
 ///
-/// The pressure of the programs counts forces between grains at the time of the step, as they moved the grains. It is
-/// per volume of a box that grows with the grains, so that it is brought to the volume of the scene's domain.
+/// The pressure of the programs contains the forces between grains at the time of the step. It is divided by the
+/// volume of a box that grows with the grains. The formula converts it to the volume of the scene's domain.
 pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<Logged>), String> {
     let Sums { temperature, grains, force, advance } = program;
     let (mut commands, mut all) = (String::new(), Vec::new());
@@ -48,7 +49,7 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
             ProbeTarget::Wall(wall) => {
                 let (command, components) = force(wall + 1);
                 commands.push_str(&command);
-                // Theirs is the force on the grains.
+                // The programs sum the force on the grains; the probe is the force on the wall.
                 for (component, axis) in components.iter().zip(AXES).take(scene.dimension.count()) {
                     take(format!("{}.force_{axis}", probe.name), format!("-{component}"));
                 }
@@ -86,7 +87,7 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
     Ok((commands.trim_end().to_owned(), all))
 }
 
-/// What the log of the run says at the steps of a series, a column each.
+/// Returns the values of the log at the steps of a series, one column per quantity.
 pub(crate) fn read(logged: &[Logged], log: &Log, series: &Series) -> Vec<(String, Vec<f64>)> {
     let mut columns = Vec::new();
     for Logged { column, name, .. } in logged {
@@ -99,8 +100,8 @@ pub(crate) fn read(logged: &[Logged], log: &Log, series: &Series) -> Vec<(String
                 continue;
             };
             for (step, value) in run.thermo.values(step).zip(run.thermo.values(at)) {
-                // The step at which a run ends is printed once more by the one after it, before its lists of neighbours
-                // are made: what was printed first holds.
+                // The next run prints the last step of a run again before it builds neighbour lists. The value
+                // printed first is valid.
                 if let Some(first) = series.step.binary_search(&(step as u64)).ok().filter(|&at| values[at].is_nan()) {
                     values[first] = value;
                 }

@@ -1,7 +1,7 @@
 //! Input decks for LAMMPS and LIGGGHTS, written from the scene that our own solvers run.
 //!
-//! Each deck is in a convention that the program truly has. What a program cannot express is refused with the reason,
-//! never approximated.
+//! Each deck uses a convention that the program implements. A scene that a program cannot express is refused with the
+//! reason and never approximated.
 
 mod dashpots;
 mod data;
@@ -21,84 +21,84 @@ use grainbench_scene::solver::Resolution;
 
 use crate::observer::Names;
 
-/// Why a program has no deck for a scene.
+/// Reason why there is no deck of a scene for a program.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeckError {
     /// The program cannot express the scene.
     #[error("{program} cannot express this scene: {reason}")]
     Unsupported {
-        /// Which program.
+        /// Program that the deck was requested for.
         program: Program,
-        /// What it lacks.
+        /// Feature that the program lacks.
         reason: String,
     },
-    /// The resolution makes no sense.
+    /// The resolution is not valid.
     #[error("{0}")]
     Resolution(String),
 }
 
-/// The files of a deck, and what its run leaves.
+/// Files of a deck, and the names of its outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deck {
-    /// Name and text of each file; the input script is the first.
+    /// Name and text of each file. The first file is the input script.
     pub files: Vec<(String, String)>,
-    /// How it is run.
+    /// Time steps and samples of the run.
     pub stepping: Stepping,
-    /// What its log tells.
+    /// Columns of the log.
     pub(crate) logged: Vec<logged::Logged>,
-    /// What its dumps call forces.
+    /// Names of force columns in the dumps.
     pub(crate) names: Names,
 }
 
-/// The dump of the samples that a deck's run leaves.
+/// Name of the dump with the samples.
 pub const SAMPLES: &str = "dump.grains";
-/// The dump of the end, where that is no sample.
+/// Name of the dump at the end, which is written if the last step is not a sample.
 pub const END: &str = "dump.end";
-/// The dump of contacts at the samples, where probes ask for some between grains.
+/// Name of the dump with contacts at the samples, which is written if a probe requests pairs of grains.
 pub(crate) const CONTACTS: &str = "dump.contacts";
-/// The same of the end.
+/// Name of the dump with contacts at the end.
 pub(crate) const END_CONTACTS: &str = "dump.end-contacts";
-/// The columns of both dumps of grains.
+/// Columns of both dumps of grains.
 const COLUMNS: [&str; 19] = [
     "id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "fx", "fy", "fz",
     "tqx", "tqy", "tqz",
 ];
 
-/// The steps of a run.
+/// Steps of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stepping {
     /// Time step (s).
     pub time_step: f64,
-    /// How many steps.
+    /// Number of steps.
     pub steps: u64,
-    /// Steps between samples.
+    /// Number of steps between samples.
     pub interval: u64,
 }
 
 impl Eq for Stepping {}
 
 impl Stepping {
-    /// Of a scene at a resolution.
+    /// Returns the steps of a scene at a resolution.
     ///
     /// # Errors
-    /// When the resolution is no time step for this scene.
+    /// If the resolution is no time step for this scene.
     pub fn of(scene: &Scene, resolution: &Resolution) -> Result<Self, String> {
         Ok(Self::every(resolution.steps(scene)?, scene))
     }
 
-    /// So many steps of a length (s), and the samples of a scene.
+    /// Returns the steps for a time step (s), a number of steps and the samples of a scene.
     pub(crate) fn every((time_step, steps): (f64, u64), scene: &Scene) -> Self {
         let interval = Recorder::new(scene, time_step, steps).interval().min(steps.max(1));
         Self { time_step, steps, interval }
     }
 
-    /// The steps at which there is a sample.
+    /// Returns the steps with a sample.
     pub(crate) fn samples(&self) -> impl Iterator<Item = u64> + use<> {
         let Self { steps, interval, .. } = *self;
         (0..=steps / interval).map(move |sample| sample * interval).chain((!self.ends_on_a_sample()).then_some(steps))
     }
 
-    /// Whether the last step is a sample anyway.
+    /// Returns true if the last step is a regular sample.
     #[must_use]
     pub fn ends_on_a_sample(&self) -> bool {
         self.steps.is_multiple_of(self.interval)
@@ -108,7 +108,7 @@ impl Stepping {
 /// Writes the deck of a scene for a program.
 ///
 /// # Errors
-/// When the program cannot express the scene, with the reason, or the resolution is no time step.
+/// If the program cannot express the scene, with the reason, or if the resolution is no time step.
 pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> Result<Deck, DeckError> {
     let stepping = Stepping::of(scene, resolution).map_err(DeckError::Resolution)?;
     let unsupported = |reason: String| DeckError::Unsupported { program, reason };
@@ -117,35 +117,35 @@ pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> R
     Ok(Deck { files, stepping, logged, names })
 }
 
-/// Files of a deck, what its log is asked for, and what its dumps call forces.
+/// Files of a deck, columns of its log, and names of force columns in its dumps.
 pub(crate) struct Written {
     pub(crate) files: Vec<(String, String)>,
     pub(crate) logged: Vec<logged::Logged>,
     pub(crate) names: Names,
 }
 
-/// Whether a probe asks for the force on a wall, or at one of its contacts; walls are counted from 1.
+/// Returns true if a probe requests the force on a wall or at one of its contacts. Walls are counted from 1.
 fn asks_for_wall(scene: &Scene, number: usize) -> bool {
     asks_for_contacts_at(scene, number) || asks_for_force(scene, number)
 }
 
-/// Whether a probe asks for the force on a wall.
+/// Returns true if a probe requests the force on a wall.
 fn asks_for_force(scene: &Scene, number: usize) -> bool {
     scene.probes.iter().any(|probe| probe.target == ProbeTarget::Wall(number - 1))
 }
 
-/// Whether a probe asks for a contact of a wall.
+/// Returns true if a probe requests a contact of a wall.
 fn asks_for_contacts_at(scene: &Scene, number: usize) -> bool {
     let is_at = |target: ProbeTarget| matches!(target, ProbeTarget::GrainWall(_, wall) if wall + 1 == number);
     scene.probes.iter().any(|probe| is_at(probe.target))
 }
 
-/// Whether a probe asks for a contact between grains, or snapshots are to hold them.
+/// Returns true if a probe requests a contact between grains or snapshots contain contacts.
 fn asks_for_pairs(scene: &Scene) -> bool {
     scene.snapshot_contacts || scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Pair(..)))
 }
 
-/// The lines that say what is printed: nothing but the end of the run, or sums at every sample.
+/// Returns the lines that select the output of the log. It is the end of the run only, or sums at every sample.
 fn thermo(commands: &str, logged: &[logged::Logged], stepping: &Stepping) -> String {
     if logged.is_empty() {
         return format!("thermo_style custom step time ke atoms\nthermo {}", stepping.steps.max(1));
@@ -158,8 +158,8 @@ fn thermo(commands: &str, logged: &[logged::Logged], stepping: &Stepping) -> Str
     )
 }
 
-/// A comment on the first line: what the deck is of. Only letters, digits and some marks, for scripts give others a
-/// meaning even in comments.
+/// Returns the title of the scene for a comment on the first line. Only letters, digits and some marks are kept,
+/// because other characters have a meaning in scripts even within comments.
 fn heading(scene: &Scene) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() || " .,:-()".contains(letter) { letter } else { '_' };
     scene.title.chars().take(100).map(plain).collect::<String>().trim().to_owned()

@@ -1,4 +1,4 @@
-//! What both decks ask of a scene.
+//! Requirements of both decks on a scene.
 
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
 use grainbench_scene::file::GrainShape;
@@ -6,10 +6,10 @@ use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::{Dimension, Driven, Scene, Wall, WallShape};
 use nalgebra::Vector3;
 
-/// The laws that decks are written for; another is refused, and not taken for one of them.
+/// Contact laws that decks can express. Any other law is refused and never replaced by one of these.
 const WRITTEN: [SpringsKind; 3] = [SpringsKind::Coulomb, SpringsKind::Linear, SpringsKind::HertzMindlin];
 
-/// Refuses physics that neither program has, or has in another form than the scene.
+/// Returns an error if the scene has physics that both programs lack or define differently.
 pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     let laws = || scene.laws.iter().flatten();
     if scene.grains.is_empty() {
@@ -56,7 +56,7 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
-/// The inertia factor I/(mR²) that all grains have; refused where a grain has another.
+/// Returns an error if a grain has an inertia factor I/(mR²) other than `factor`.
 pub(crate) fn one_inertia(scene: &Scene, factor: f64) -> Result<(), String> {
     let other = scene.grains.iter().position(|grain| {
         let moment = factor * grain.mass * grain.radius * grain.radius;
@@ -72,22 +72,21 @@ pub(crate) fn one_inertia(scene: &Scene, factor: f64) -> Result<(), String> {
     }
 }
 
-/// Whether the scene's grains move in the plane.
+/// Returns true if the scene is two-dimensional.
 pub(crate) fn is_flat(scene: &Scene) -> bool {
     scene.dimension == Dimension::Two
 }
 
-/// I/(mR²) of the scene's grains.
+/// Returns I/(mR²) of the grains of the scene.
 pub(crate) fn inertia_factor(scene: &Scene) -> f64 {
     scene.grain_shape.inertia_factor()
 }
 
-/// Whether the grains are discs.
 pub(crate) fn has_discs(scene: &Scene) -> bool {
     scene.grain_shape == GrainShape::Disc
 }
 
-/// The materials that grains have, in order.
+/// Returns the materials of the grains, sorted.
 pub(crate) fn grain_materials(scene: &Scene) -> Vec<u16> {
     let mut materials: Vec<u16> = scene.grains.iter().map(|grain| grain.material).collect();
     materials.sort_unstable();
@@ -95,21 +94,21 @@ pub(crate) fn grain_materials(scene: &Scene) -> Vec<u16> {
     materials
 }
 
-/// A plane along an axis: which, where (m), and whether it is the lower side of the grains' space.
+/// Plane normal to an axis, with its position `at` (m). `is_low` is true for the lower boundary of the grains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AxisPlane {
     pub(crate) axis: usize,
     pub(crate) at: f64,
     pub(crate) is_low: bool,
-    /// The axis that it is sheared along and its velocity (m/s).
+    /// Axis and velocity (m/s) of a tangential motion.
     pub(crate) shear: Option<(usize, f64)>,
 }
 
-/// The names of the axes.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl AxisPlane {
-    /// The wall as such a plane: at rest, or moving within itself along one axis at one velocity for the whole run.
+    /// Returns a wall as such a plane. The wall must be at rest, or move tangentially along one axis at one velocity
+    /// for the whole run.
     pub(crate) fn of(wall: &Wall) -> Option<Self> {
         let WallShape::Plane { point, normal } = wall.shape else { return None };
         let axis = (0..3).find(|&axis| normal[axis].abs() == 1.0)?;
@@ -128,7 +127,7 @@ impl AxisPlane {
     }
 }
 
-/// (4/3)E* and 8G* (Pa).
+/// Returns (4/3)E* and 8G* (Pa).
 pub(crate) fn hertz(law: &ContactLaw) -> (f64, f64) {
     (4.0 / 3.0 * law.effective_modulus(), 8.0 * law.effective_shear_modulus())
 }

@@ -1,4 +1,4 @@
-//! The programs that this crate writes input for, runs and reads, each a module of its own.
+//! Programs that this crate writes input for, runs and reads. Each program is one module.
 
 use std::fmt;
 
@@ -8,63 +8,63 @@ use super::lammps::Lammps;
 use super::liggghts::Liggghts;
 use super::{Stepping, Written};
 
-/// What a program is here. It is run as `executable -in in.name -log file` in the folder of its deck, and leaves dumps
-/// and a log as LAMMPS does.
+/// Interface of a program. The command `executable -in in.name -log file` runs it in the folder of its deck. The
+/// program writes dumps and a log in the format of LAMMPS.
 pub(crate) trait Peer: Sync {
-    /// Its name, as that of its solver, in lower case.
+    /// Returns the name in lower case. The solver has the same name.
     fn name(&self) -> &'static str;
-    /// Its name as its authors write it.
+    /// Returns the name in the spelling of the authors.
     fn title(&self) -> &'static str;
-    /// What it is called on `PATH`.
+    /// Returns the name of the executable on `PATH`.
     fn executable(&self) -> &'static str;
-    /// The files of its deck, the input script first.
+    /// Returns the files of the deck. The first file is the input script.
     ///
     /// # Errors
-    /// When it cannot express the scene, with the reason.
+    /// If the program cannot express the scene, with the reason.
     fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String>;
 }
 
-/// Whose input a deck is.
+/// Program that decks are written for.
 #[derive(Clone, Copy)]
 pub struct Program(&'static dyn Peer);
 
 impl Program {
-    /// LAMMPS, `pair_style gran/hooke/history` and its like.
+    /// LAMMPS, `pair_style gran/hooke/history` and related styles.
     pub const LAMMPS: Self = Self(&Lammps);
-    /// LIGGGHTS, `model hooke/stiffness tangential history` and its like.
+    /// LIGGGHTS, `model hooke/stiffness tangential history` and related models.
     pub const LIGGGHTS: Self = Self(&Liggghts);
-    /// All of them.
+    /// All programs.
     pub const ALL: [Self; 2] = [Self::LAMMPS, Self::LIGGGHTS];
 
     pub(crate) const fn peer(self) -> &'static dyn Peer {
         self.0
     }
 
-    /// Its name, as that of its solver.
+    /// Returns the name in lower case. The solver has the same name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.0.name()
     }
 
-    /// The program of a name.
+    /// Returns the program with a name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|program| program.name() == name)
     }
 
-    /// What it is called on `PATH`.
+    /// Returns the name of the executable on `PATH`.
     #[must_use]
     pub fn executable(self) -> &'static str {
         self.0.executable()
     }
 
-    /// The variable of the environment that names another executable.
+    /// Returns the environment variable that names another executable.
     #[must_use]
     pub fn variable(self) -> String {
         format!("GRAINBENCH_{}", self.name().to_uppercase())
     }
 
-    /// What to type, in the folder of the deck.
+    /// Returns the shell command that runs a deck in its folder.
     #[must_use]
     pub fn command(self) -> String {
         format!("{} -in in.{}", self.executable(), self.name())

@@ -1,11 +1,11 @@
-//! When walls change their velocity, in steps.
+//! Steps at which walls change their velocity.
 
 use grainbench_scene::motion::{Moment, Motion};
 use nalgebra::Vector3;
 
 use super::Stepping;
 
-/// A moment as a step; none where it lies behind the end. A moment between two steps is refused.
+/// Returns the step of a moment, or `None` if the moment is after the end. A moment between two steps is an error.
 fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
     let step = match moment {
         Moment::Never => return Ok(None),
@@ -21,12 +21,12 @@ fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
     Ok((step < stepping.steps).then_some(step))
 }
 
-/// The first step at which a wall is not there any more that stands until a time (s).
+/// Returns the first step without a wall that is present until a time (s).
 pub(crate) fn gone_at(until: f64, stepping: &Stepping) -> u64 {
     (until * (1.0 - 1e-9) / stepping.time_step).ceil() as u64
 }
 
-/// The steps at which some wall changes its velocity, in order, 0 among them and the end last.
+/// Returns the steps at which any wall changes its velocity, sorted. The first entry is 0, the last entry is the end.
 pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &Stepping) -> Result<Vec<u64>, String> {
     let mut steps = vec![0, stepping.steps];
     for phase in motions.flat_map(|motion| &motion.phases) {
@@ -39,7 +39,7 @@ pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &
     Ok(steps)
 }
 
-/// How a wall moves over a stretch.
+/// Velocities of a wall between two changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rates {
     /// Velocity (m/s).
@@ -48,7 +48,7 @@ pub(crate) struct Rates {
     pub(crate) spin: Vector3<f64>,
 }
 
-/// Velocity and spin from a step on, to the next change.
+/// Returns the velocities from a step to the next change.
 pub(crate) fn rates_from(motion: &Motion, step: u64, stepping: &Stepping) -> Result<Rates, String> {
     let mut rates = Rates::default();
     for phase in &motion.phases {

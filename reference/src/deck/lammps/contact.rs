@@ -1,5 +1,5 @@
-//! Contacts as LAMMPS has them: `gran/hooke/history` and `gran/hertz/history`, and `granular` where its law is the
-//! scene's.
+//! Contact models of LAMMPS: `gran/hooke/history` and `gran/hertz/history`, and `granular` if its law equals the law
+//! of the scene.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
@@ -7,14 +7,14 @@ use grainbench_scene::scene::Scene;
 use crate::deck::dashpots::{Dashpots, Side};
 use crate::deck::outline::{grain_materials, hertz};
 
-/// The lines that give the one law that LAMMPS has between grains.
+/// Returns the lines with the contact law between grains. LAMMPS has one law for all pairs.
 pub(crate) fn between_grains(scene: &Scene) -> Result<String, String> {
     let materials = grain_materials(scene);
     let mut found: Option<String> = None;
     for &a in &materials {
         for &b in materials.iter().filter(|&&b| b >= a) {
             let Some(law) = scene.law(a, b) else { continue };
-            // A lone grain touches no other, whatever masses its law would need.
+            // A single grain has no grain contacts, so the masses do not matter.
             let lines = if scene.grains.len() == 1 {
                 pair_style(&history(scene, law, a, Side::Wall)?)
             } else {
@@ -23,7 +23,7 @@ pub(crate) fn between_grains(scene: &Scene) -> Result<String, String> {
             same(&mut found, lines, "LAMMPS is given one law for all pairs of grains")?;
         }
     }
-    // No two grains can touch.
+    // If there is no law, no two grains can come into contact.
     Ok(found.unwrap_or_else(|| pair_style("hooke/history 1.0 0.0 0.0 0.0 0.0 0")))
 }
 
@@ -45,7 +45,7 @@ fn pair(scene: &Scene, law: &ContactLaw, a: u16, b: u16) -> Result<String, Strin
     Ok(format!("pair_style granular\npair_coeff * * {}", tsuji(law)?))
 }
 
-/// The one law of a wall with all grains, style and numbers; none where no grain can touch it.
+/// Returns the contact law of a wall with all grains as style and numbers, or `None` if no grain can touch the wall.
 pub(crate) fn at_wall(scene: &Scene, material: u16, name: &str) -> Result<Option<String>, String> {
     let mut found: Option<String> = None;
     for grains in grain_materials(scene) {
@@ -62,7 +62,7 @@ pub(crate) fn at_wall(scene: &Scene, material: u16, name: &str) -> Result<Option
     Ok(found)
 }
 
-/// Takes a law, or refuses a second one.
+/// Stores a law. Returns an error if a different one is stored already.
 fn same(found: &mut Option<String>, law: String, reason: &str) -> Result<(), String> {
     match found {
         Some(before) if *before != law => Err(format!("{reason}, and the scene has several")),
@@ -73,8 +73,10 @@ fn same(found: &mut Option<String>, law: String, reason: &str) -> Result<(), Str
     }
 }
 
-/// `hooke/history` or `hertz/history` with `K_n K_t γ_n γ_t μ 1`: at Hertz contacts F_n = √(R_eff δ) K_n δ and
-/// F_t = √(R_eff δ) K_t s, hence K_n = (4/3)E* and K_t = 8G*, without dashpots.
+/// Returns `hooke/history` or `hertz/history` with `K_n K_t γ_n γ_t μ 1`.
+///
+/// Hertz contacts have F_n = √(R_eff δ) K_n δ and F_t = √(R_eff δ) K_t s. Hence K_n = (4/3)E* and K_t = 8G*, without
+/// dashpots.
 fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<String, String> {
     let friction = law.friction;
     if law.is_hertz() {
@@ -86,8 +88,9 @@ fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result
     Ok(format!("hooke/history {k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
 }
 
-/// `granular` with Tsuji's dashpot, c = α √(k_n a m_eff) with k_n = (4/3)E* and a = √(R_eff δ): the scene's
-/// 2√(5/6) ζ √(S m_eff), S = 2E*a, where α = √5 ζ.
+/// Returns `granular` with Tsuji's dashpot, c = α √(k_n a m_eff) with k_n = (4/3)E* and a = √(R_eff δ).
+///
+/// With α = √5 ζ it equals the dashpot of the scene, 2√(5/6) ζ √(S m_eff) with S = 2E*a.
 fn tsuji(law: &ContactLaw) -> Result<String, String> {
     let alpha = 5.0_f64.sqrt() * law.damping_ratio;
     let coefficient = coefficient_for(alpha).ok_or_else(|| {
@@ -99,8 +102,10 @@ fn tsuji(law: &ContactLaw) -> Result<String, String> {
     Ok(format!("hertz {normal:?} {coefficient:?} tangential mindlin {tangential:?} 0.0 {friction:?} damping tsuji"))
 }
 
-/// The coefficient of restitution that LAMMPS' polynomial turns into α. It is fitted to restitution to some
-/// thousandths; with this coefficient the dashpot is the scene's to rounding.
+/// Returns the coefficient of restitution for which the polynomial of LAMMPS gives α.
+///
+/// The polynomial is a fit with an error of some thousandths in restitution. With this coefficient, the dashpot
+/// equals that of the scene up to rounding.
 fn coefficient_for(alpha: f64) -> Option<f64> {
     const FIT: [f64; 7] = [1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218];
     let fitted = |coefficient: f64| FIT.iter().rev().fold(0.0, |sum, factor| sum * coefficient + factor);
@@ -108,7 +113,7 @@ fn coefficient_for(alpha: f64) -> Option<f64> {
     if alpha > fitted(low) || alpha < fitted(high) {
         return None;
     }
-    // It falls from 0 to 1, and halving ends where no number lies between.
+    // The polynomial decreases from 0 to 1. Bisection ends when no number lies between the bounds.
     while (low + high) / 2.0 > low && (low + high) / 2.0 < high {
         let middle = (low + high) / 2.0;
         if fitted(middle) > alpha { low = middle } else { high = middle }
@@ -116,8 +121,8 @@ fn coefficient_for(alpha: f64) -> Option<f64> {
     Some(low)
 }
 
-/// `granular hooke` with `rolling sds`: a spring k against the rolling displacement R_eff θ, k = 2.25 k_n μ_r², limited
-/// by μ_r F_n.
+/// Returns `granular hooke` with `rolling sds`. A spring k acts against the rolling displacement R_eff θ, with k =
+/// 2.25 k_n μ_r². Its limit is μ_r F_n.
 fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, String> {
     if law.rolling_damping != 0.0 {
         return Err(
@@ -144,7 +149,8 @@ fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, Str
 mod tests {
     use super::*;
 
-    /// c of both at e = .5: 2√(5/6) ζ √(2E*a m) = √5 ζ √((4/3)E*a m).
+    /// The factors are those of the polynomial in LAMMPS. Both dashpots are equal because 2√(5/6) ζ √(2E*a m) = √5 ζ
+    /// √((4/3)E*a m).
     #[test]
     fn the_polynomial_is_inverted() {
         for alpha in [0.001, 0.014, 0.48, 1.27] {

@@ -1,4 +1,4 @@
-//! LAMMPS: contacts of `gran/hooke/history` and its like between grains and at walls.
+//! Decks for LAMMPS. Contacts between grains and at walls use `gran/hooke/history` and related styles.
 
 mod contact;
 mod passing;
@@ -20,7 +20,7 @@ use crate::observer::Names;
 use contact::{at_wall, between_grains};
 use region::region;
 
-/// LAMMPS, `pair_style gran/hooke/history` and its like.
+/// LAMMPS, `pair_style gran/hooke/history` and related styles.
 pub(crate) struct Lammps;
 
 impl Peer for Lammps {
@@ -47,7 +47,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     if let Some(what) = scene.round_wall().filter(|_| scene.laws.iter().flatten().any(|law| law.is_hertz())) {
         return Err(format!("{what}, and LAMMPS puts its curvature into Hertz' law, where it is a plane here"));
     }
-    // LAMMPS reads the density of a data file as a sphere's, in two dimensions too.
+    // LAMMPS takes the density in a data file as that of a sphere, even in two dimensions.
     let data = data_file(scene, scene.materials.len() + passing::more_types(scene), box_of(scene), of_sphere);
     let advance = |wall: usize| passing::advance(scene, wall);
     let grains = passing::grains(scene);
@@ -59,8 +59,8 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     Ok(Written { files: vec![("in.lammps".to_owned(), input), ("data.grains".to_owned(), data)], logged, names })
 }
 
-/// What the dumps call the forces that probes ask for: `fix wall/gran … contacts` has that of a wall behind a flag, and
-/// `pair/local` that along the normal and that along the tangent apart.
+/// Returns the names of the columns with the forces that probes request. In `fix wall/gran … contacts`, the force
+/// follows a flag. `pair/local` has separate columns for the normal and the tangential force.
 fn names(scene: &Scene) -> Names {
     let mut names = Vec::new();
     for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
@@ -79,14 +79,14 @@ fn names(scene: &Scene) -> Names {
     Names(names)
 }
 
-/// The command that adds up the forces of a wall on the grains, and the components of the sum.
+/// Returns the command that sums the forces of a wall on the grains, and the components of the sum.
 fn forces_of_wall(number: usize) -> (String, [String; 3]) {
     let fix = format!("f_wall{number}");
     let command = format!("compute wall{number} all reduce sum {fix}[2] {fix}[3] {fix}[4]\n");
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
 }
 
-/// What lets a wall tell its forces, where a probe asks for them.
+/// Returns the keyword that makes a wall write its forces, if they are needed.
 fn tells(scene: &Scene, number: u32) -> &'static str {
     let is_pressed = scene.walls[number as usize - 1].piston.is_some();
     if asks_for_wall(scene, number as usize) || is_pressed { " contacts" } else { "" }

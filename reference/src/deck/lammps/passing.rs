@@ -1,10 +1,12 @@
-//! What is there for a while, and what is pressed: grains that leave, walls that are taken away, pistons.
+//! Removal of grains, temporary walls, and pistons.
 //!
-//! A grain that leaves is deleted by `fix evaporate` in the region outside the box of `removal`, at the same steps. A wall
-//! that is taken away goes so far behind itself that nothing meets it. A piston is a plane that follows an atom, which meets no
-//! grain and is as heavy as the piston; on it act the force that presses, that of the grains on the plane, and a drag. With
-//! velocities half a step before the forces, v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2) is a force of
-//! (F − F_n − M c v)/(1 + c Δt/2).
+//! `fix evaporate` deletes grains outside the box of `removal` at the same steps as our solvers. A wall that is
+//! removed moves so far backwards that it has no more contacts.
+//!
+//! A piston is a plane that follows an atom. The atom has the mass of the piston and no contacts. The forces on it
+//! are the applied force F, the force of the grains −F_n, and a drag. LAMMPS computes forces with velocities of half
+//! a step before. The velocity v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2) needs the force (F − F_n − M c
+//! v)/(1 + c Δt/2).
 
 use grainbench_scene::scene::{Piston, Scene, Wall, WallShape};
 use nalgebra::Vector3;
@@ -14,7 +16,7 @@ use crate::deck::data::box_of;
 use crate::deck::outline::{AXES, is_flat};
 use crate::deck::schedule::gone_at;
 
-/// Refuses what LAMMPS does not do as the scene says it.
+/// Returns an error if the scene has inserted grains or initial springs, which LAMMPS cannot reproduce.
 pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     if !scene.stays.entries.is_empty() {
         return Err(
@@ -32,40 +34,40 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
-/// Walls that are pressed, each with its number from 1 and what presses it.
+/// Returns the walls that are pistons, with their numbers from 1.
 pub(super) fn pistons(scene: &Scene) -> impl Iterator<Item = (usize, &Wall, Piston)> {
     (1..).zip(&scene.walls).filter_map(|(number, wall)| Some((number, wall, wall.piston?)))
 }
 
-/// The group of the grains of the scene: atoms that pistons follow are none.
+/// Returns the group of the scene's grains. Atoms that pistons follow are not part of it.
 pub(super) fn grains(scene: &Scene) -> &'static str {
     if pistons(scene).next().is_some() { "grains" } else { "all" }
 }
 
-/// Types of atoms beside those of the materials.
+/// Returns the number of atom types in addition to those of the materials.
 pub(super) fn more_types(scene: &Scene) -> usize {
     usize::from(pistons(scene).next().is_some())
 }
 
-/// The atom that a piston follows, by its id; they are counted after the grains.
+/// Returns the id of the atom that a piston follows. The ids come after those of the grains.
 fn atom(scene: &Scene, number: usize) -> usize {
     let before = pistons(scene).filter(|(other, ..)| *other <= number).count();
     scene.grains.len() + before
 }
 
-/// Where the atoms start (m), and the axis that they go along: one without a period.
+/// Returns the initial position of the atoms (m) and the axis along which they move. This axis is not periodic.
 fn start(scene: &Scene) -> Result<(Vector3<f64>, usize), String> {
     let (low, high) = box_of(scene);
     let periodic = scene.domain.map_or([false; 3], |domain| domain.periodic);
     let axis = (0..scene.dimension.count()).find(|&axis| !periodic[axis]);
     let axis =
         axis.ok_or("a piston in a box that is periodic along every axis, which has no plane to press".to_owned())?;
-    // Near zero a small way is told with the most digits.
+    // Near zero, a small displacement is printed with the most digits.
     let start = low.zip_map(&high, |low, high| 0.0_f64.clamp(low, high));
     Ok((start, axis))
 }
 
-/// The lines that make the atoms that pistons follow.
+/// Returns the lines that create the atoms of the pistons.
 pub(super) fn atoms(scene: &Scene) -> Result<Vec<String>, String> {
     let grains = scene.grains.len();
     if pistons(scene).next().is_none() {
@@ -86,7 +88,7 @@ pub(super) fn atoms(scene: &Scene) -> Result<Vec<String>, String> {
     Ok(lines)
 }
 
-/// The lines that press the pistons, after those of the walls.
+/// Returns the lines with the forces on the pistons. They come after those of the walls.
 pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, String> {
     let mut lines = Vec::new();
     for (number, wall, piston) in pistons(scene) {
@@ -96,7 +98,7 @@ pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, S
         let along = AXES[axis];
         lines.push(format!("group piston{number} id {id}"));
         lines.push(format!("compute press{number} grains reduce sum {fix}[2] {fix}[3] {fix}[4]"));
-        // Theirs is the force on the grains.
+        // LAMMPS sums the force on the grains.
         let on_grains: Vec<String> = (0..3)
             .filter(|&at| normal[at] != 0.0)
             .map(|at| format!("({:?})*c_press{number}[{}]", normal[at], at + 1))
@@ -118,15 +120,15 @@ pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, S
     Ok(lines)
 }
 
-/// How far a piston has gone along its normal, as a formula; none of a wall that is none.
+/// Returns the displacement of a piston along its normal as a formula, or `None` if the wall is not a piston.
 pub(super) fn advance(scene: &Scene, number: usize) -> Option<String> {
     pistons(scene).find(|(other, ..)| *other == number)?;
     let (place, axis) = start(scene).ok()?;
     Some(format!("({}[{}]-({:?}))", AXES[axis], atom(scene, number), place[axis]))
 }
 
-/// What moves a wall along each axis beside its prescribed motion, as formulas: the way of a piston along its normal, and far
-/// behind itself when it is taken away.
+/// Returns the displacement of a wall along each axis in addition to its prescribed motion, as formulas. It contains
+/// the displacement of a piston along its normal, and the motion far backwards when the wall is removed.
 pub(super) fn ways(scene: &Scene, wall: &Wall, number: usize, stepping: &Stepping) -> [String; 3] {
     let mut ways = [const { String::new() }; 3];
     let mut add = |axis: usize, term: String| {
@@ -152,7 +154,7 @@ pub(super) fn ways(scene: &Scene, wall: &Wall, number: usize, stepping: &Steppin
     ways
 }
 
-/// The lines that take grains out.
+/// Returns the lines that remove grains.
 pub(super) fn removal(scene: &Scene) -> Vec<String> {
     let Some(removal) = scene.stays.removal else { return Vec::new() };
     let (low, high) = (removal.low, removal.high);

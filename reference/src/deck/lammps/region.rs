@@ -1,5 +1,5 @@
-//! Walls that are no primitive ones as regions of LAMMPS: planes in any direction, and rectangles as blocks without
-//! thickness; all may move and turn.
+//! Walls as regions of LAMMPS. Planes can have any direction, rectangles are blocks without thickness, and round
+//! walls are cylinders or cones. All regions can move and rotate.
 
 use std::fmt::Write as _;
 
@@ -11,16 +11,17 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use crate::deck::Stepping;
 use crate::deck::outline::AXES;
 
-/// What a region is before it turns, and how far it turns before the run begins.
+/// Region before its rotation, and its rotation at the start of the run.
 struct Placed {
     shape: String,
-    /// Where the axis of rotation passes at the start (m).
+    /// Point on the axis of rotation at the start (m).
     centre: Vector3<f64>,
     /// Rotation vector at the start (rad).
     rotation: Vector3<f64>,
 }
 
-/// The commands that define the region `wallN` and its motion, to which other `ways` along the axes add up.
+/// Returns the commands that define the region `wallN` and its motion. The displacements `ways` along the axes are
+/// added to the motion.
 pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[String; 3]) -> Result<String, String> {
     let motion = &wall.motion;
     let Placed { shape, centre, rotation } = placed(wall)?;
@@ -43,7 +44,7 @@ pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[Stri
     }
     let spin = motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
     if let Some(axis) = Unit::try_new(spin.unwrap_or(rotation), 0.0) {
-        // Of a wall that both lies turned and turns, the axis is one.
+        // If a wall has both an initial rotation and a spin, they have the same axis.
         let start = rotation.dot(&axis);
         let turned = course(motion, |phase| phase.spin.dot(&axis), stepping);
         let angle = [format!("{start:?}"), turned].into_iter().filter(|part| !part.is_empty() && part != "0.0");
@@ -79,7 +80,8 @@ fn placed(wall: &Wall) -> Result<Placed, String> {
     }
 }
 
-/// A cylinder or a cone about an axis of the box, open at both ends, so that grains meet its side from within and without.
+/// Returns a cylinder or a cone about an axis of the box. Both ends are open, so grains touch the side from inside
+/// and outside.
 fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
     let along = (0..3).find(|&along| (0..3).all(|axis| axis == along || from[axis] == to[axis]))?;
     let across: Vec<f64> = (0..3).filter(|&axis| axis != along).map(|axis| from[axis]).collect();
@@ -92,7 +94,7 @@ fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
     Some(format!("{name} {axis} {:?} {:?} {radii} {low:?} {high:?} open 1 open 2", across[0], across[1]))
 }
 
-/// A block along the axes, turned about the centre of rotation so that it lies as the rectangle does.
+/// Returns a block along the axes and its rotation about the centre of rotation, which give the rectangle.
 fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Result<Placed, String> {
     let along_axes = |edge: Vector3<f64>| edge.iter().filter(|part| **part != 0.0).count() == 1;
     let spin = wall.motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
@@ -100,7 +102,7 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     if along_axes(u) && along_axes(v) {
         return Ok(Placed { shape: block(corner, corner + u + v), centre, rotation: Vector3::zeros() });
     }
-    // A segment's second edge is along z, and stays there.
+    // The second edge of a segment is along z and stays there.
     let axes = if along_axes(v) && v.z != 0.0 {
         Matrix3::from_columns(&[u.normalize(), Vector3::z().cross(&u).normalize(), Vector3::z()])
     } else {
@@ -115,21 +117,23 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     }
     let upright = |point: Vector3<f64>| centre + axes.transpose() * (point - centre);
     let (mut low, mut high) = (upright(corner), upright(corner + u + v));
-    // Rounding must not leave it a thickness: it lies in the plane that its second edge, or the axis left, says.
+    // Rounding must not give the block a thickness. It is flat along the second axis if the second edge is along z,
+    // and else along the third.
     let flat = if along_axes(v) && v.z != 0.0 { 1 } else { 2 };
     high[flat] = low[flat];
     (low, high) = (low.inf(&high), low.sup(&high));
     Ok(Placed { shape: block(low, high), centre, rotation })
 }
 
-/// A block between two corners; a grain outside sees its nearest point.
+/// Returns a block between two corners. A grain outside touches its nearest point.
 fn block(a: Vector3<f64>, b: Vector3<f64>) -> String {
     let (low, high) = (a.inf(&b), a.sup(&b));
     let sides: Vec<String> = (0..3).map(|axis| format!("{:?} {:?}", low[axis], high[axis])).collect();
     format!("block {} side out", sides.join(" "))
 }
 
-/// The ways of functions along an axis, as a formula of step and time step; empty where there is none.
+/// Returns the displacement by functions along an axis, as a formula of step and time step. It is empty without
+/// functions.
 fn functions(motion: &Motion, axis: usize) -> String {
     let mut terms = Vec::new();
     for Function { kind, start, stop } in &motion.functions {
@@ -156,7 +160,7 @@ fn functions(motion: &Motion, axis: usize) -> String {
     terms.join("+")
 }
 
-/// What a rate of the phases has summed up to, as a formula of step and time step; empty where there is none.
+/// Returns the time integral of a rate of the phases, as a formula of step and time step. It is empty without rates.
 fn course(motion: &Motion, rate: impl Fn(&Phase) -> f64, stepping: &Stepping) -> String {
     let time = |moment: Moment| match moment {
         Moment::Seconds(time) => format!("{time:?}"),

@@ -1,4 +1,4 @@
-//! Contacts as LIGGGHTS has them: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`, and
+//! Contact models of LIGGGHTS: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`, and
 //! `rolling_friction epsd`.
 
 use grainbench_scene::contact_law::ContactLaw;
@@ -9,7 +9,7 @@ use super::moduli::moduli;
 use crate::deck::dashpots::{Dashpots, Side};
 use crate::deck::outline::{grain_materials, hertz};
 
-/// The model of all contacts.
+/// Contact model of a scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Model {
     effects: Effects,
@@ -20,13 +20,13 @@ impl Model {
         Self { effects: Effects::of(scene) }
     }
 
-    /// Hertz contacts whose dashpots give a coefficient of restitution: LIGGGHTS has them with moduli, others with
-    /// stiffnesses.
+    /// Returns true for Hertz contacts whose dashpots give a coefficient of restitution. LIGGGHTS defines these by
+    /// moduli and all other contacts by stiffnesses.
     fn has_moduli(self) -> bool {
         self.effects.hertz && self.effects.restitution
     }
 
-    /// Its name.
+    /// Returns the name of the model.
     pub(crate) fn words(self) -> String {
         let normal = match (self.effects.hertz, self.has_moduli()) {
             (false, _) => "hooke/stiffness",
@@ -37,17 +37,18 @@ impl Model {
         format!("{normal} tangential history{rolling}")
     }
 
-    /// Its switches, which come last on a line.
+    /// Returns the switches of the model. They come last on a line.
     pub(crate) fn switches(self) -> &'static str {
         if self.has_moduli() { " tangential_damping off" } else { "" }
     }
 
-    /// Young's moduli above 1 GPa are refused without it.
+    /// Returns the command that must come first. Without it, LIGGGHTS refuses Young's moduli above 1 GPa.
     pub(crate) fn preparation(self) -> Option<&'static str> {
         self.has_moduli().then_some("hard_particles yes")
     }
 
-    /// The properties of every type and pair of types: those of grains, then those of walls, one of each a material.
+    /// Returns the properties of all types and pairs of types. There is one type per material for grains, followed by
+    /// one per material for walls.
     pub(crate) fn properties(self, scene: &Scene) -> Result<String, String> {
         let types = 2 * scene.materials.len();
         let grains = grain_materials(scene);
@@ -70,7 +71,7 @@ impl Model {
             picks.push(("gammat", |(_, dashpots)| dashpots.tangential));
         }
         picks.push(("coefficientFriction", |(law, _)| law.friction));
-        // Asked for, and not used with stiffnesses.
+        // LIGGGHTS requires this property but does not use it with stiffnesses.
         let coefficient: Pick = if self.has_moduli() { |(law, _)| restitution(law) } else { |_| 0.5 };
         picks.push(("coefficientRestitution", coefficient));
         if self.effects.rolling_resistance {
@@ -92,7 +93,7 @@ impl Model {
         Ok(lines.join("\n"))
     }
 
-    /// Law and dashpots between two types; none where they never meet.
+    /// Returns the law and the dashpots between two types, or `None` if the types never come into contact.
     fn entry(
         self,
         scene: &Scene,
@@ -116,12 +117,13 @@ impl Model {
     }
 }
 
-/// Walls have types of their own, behind those of the grains, for dashpots may differ there.
+/// Returns the type of walls of a material. Walls have separate types after those of the grains, because their
+/// dashpots may differ.
 pub(crate) fn type_of_wall(scene: &Scene, material: u16) -> usize {
     scene.materials.len() + usize::from(material) + 1
 }
 
-/// e of a damping ratio, exp(−πζ/√(1 − ζ²)).
+/// Returns the coefficient of restitution of a damping ratio ζ, e = exp(−πζ/√(1 − ζ²)).
 fn restitution(law: &ContactLaw) -> f64 {
     let ratio = law.damping_ratio;
     (-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()

@@ -1,17 +1,17 @@
-//! Walls as triangles, in STL.
+//! Walls as triangles in STL files.
 
 use std::fmt::Write as _;
 
 use grainbench_scene::scene::WallShape;
 use nalgebra::Vector3;
 
-/// Corners of one triangle (m).
+/// Corners of a triangle (m).
 pub(crate) type Triangle = [Vector3<f64>; 3];
 
-/// The triangles of a wall among grains around `centre` within `reach` (m) of it.
+/// Returns the triangles of a wall within `reach` (m) of `centre`.
 ///
-/// A plane is one triangle, so that no grain ever crosses an edge between two; in two dimensions a segment becomes a
-/// rectangle across the layer.
+/// A plane becomes one triangle, so no grain ever crosses an edge between two triangles. In two dimensions a segment
+/// becomes a rectangle across the layer.
 pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> Vec<Triangle> {
     match *shape {
         WallShape::Mesh(ref mesh) => mesh.triangles().collect(),
@@ -25,7 +25,7 @@ pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> 
             rectangle(a - depth, [b - a, depth * 2.0])
         }
         WallShape::Rectangle { corner, edges } => rectangle(corner, edges),
-        // Refused before: triangles are flat.
+        // Such walls are refused before, because triangles are flat.
         WallShape::Round { .. } => Vec::new(),
     }
 }
@@ -34,7 +34,8 @@ fn rectangle(corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Vec<Triangle> {
     vec![[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]
 }
 
-/// Two unit vectors across a normal; axes where the normal is one, so that coordinates stay exact.
+/// Returns two unit vectors orthogonal to a normal. If the normal is along an axis, so are they, which keeps
+/// coordinates exact.
 fn tangents(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let away = (0..3).min_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
     let axis = Vector3::ith(away, 1.0);
@@ -42,7 +43,7 @@ fn tangents(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (u, normal.cross(&u))
 }
 
-/// The STL file of some triangles.
+/// Returns an STL file.
 pub(crate) fn stl(triangles: &[Triangle]) -> String {
     let mut text = "solid wall\n".to_owned();
     for triangle in triangles {

@@ -1,7 +1,8 @@
-//! LIGGGHTS: contacts of `hooke/stiffness tangential history` and its like between grains and at walls.
+//! Decks for LIGGGHTS. Contacts between grains and at walls use `hooke/stiffness tangential history` and related
+//! models.
 //!
-//! Scenes in the plane are run in two dimensions where every wall is a primitive one. Meshes, which all other walls
-//! need, work in three dimensions only: there the grains are one layer of spheres.
+//! Two-dimensional scenes are run in two dimensions if every wall is a primitive. All other walls need meshes, which
+//! LIGGGHTS has in three dimensions only. The grains are then one layer of spheres.
 
 mod contact;
 mod mesh;
@@ -29,14 +30,14 @@ use crate::observer::Names;
 use contact::{Model, type_of_wall};
 use mesh::{Triangle, stl, triangles};
 
-/// A wall that needs a mesh.
+/// Wall that needs a mesh.
 struct Mesh<'s> {
     number: usize,
     wall: &'s Wall,
     triangles: Vec<Triangle>,
 }
 
-/// LIGGGHTS, `model hooke/stiffness tangential history` and its like.
+/// LIGGGHTS, `model hooke/stiffness tangential history` and related models.
 pub(crate) struct Liggghts;
 
 impl Peer for Liggghts {
@@ -71,7 +72,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));
     for (number, wall) in (1..).zip(&scene.walls) {
         if AxisPlane::of(wall).is_none() {
-            // A plane that turns meets grains with other parts of itself.
+            // A rotating plane comes into contact with grains at a part that is far from the grains at the start.
             let aside = if turns(&wall.motion) { 2.0 * (wall.motion.centre - centre).norm() } else { 0.0 };
             meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach + aside) });
         }
@@ -80,7 +81,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     if flat {
         one_inertia(scene, 0.5)?;
     } else if Effects::of(scene).friction || !is_flat(scene) {
-        // Without friction nothing turns, and discs may be spheres.
+        // Without friction nothing rotates, and spheres can replace discs.
         one_inertia(scene, 0.4).map_err(|reason| match (is_flat(scene), meshes.is_empty()) {
             (true, false) => format!("this needs meshes for walls, which work in three dimensions only: {reason}"),
             _ => reason,
@@ -104,7 +105,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     Ok(Written { files, logged, names })
 }
 
-/// What the dumps call the forces that probes ask for. Meshes do not tell their forces grain by grain.
+/// Returns the names of the columns with the forces that probes request. Meshes do not write forces per grain.
 fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
     let mut names = Vec::new();
     for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
@@ -116,7 +117,7 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
         }
     }
     if asks_for_pairs(scene) {
-        // Behind the two ids stands whether a pair is one across a periodic face.
+        // Column 3 is a flag for pairs across a periodic boundary.
         names.extend([("id1".to_owned(), "c_pairs[1]".to_owned()), ("id2".to_owned(), "c_pairs[2]".to_owned())]);
         for (axis, column) in AXES.into_iter().zip(4..) {
             names.push((format!("force_{axis}"), format!("c_pairs[{column}]")));
@@ -125,8 +126,9 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
     Names(names)
 }
 
-/// The command that adds up the forces of a wall on the grains, and the components of the sum. A mesh does so by
-/// itself, and its force is that of the grains; at the start it has added up nothing yet, and says zero.
+/// Returns the command that sums the forces of a wall on the grains, and the components of the sum. A mesh needs no
+/// command. The force that it reports acts on the mesh, so the sign changes. At the start it is zero, because nothing
+/// has been summed yet.
 fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     if meshes.iter().any(|mesh| mesh.number == number) {
         return (String::new(), [1, 2, 3].map(|at| format!("(-f_mesh{number}[{at}])")));
@@ -136,14 +138,15 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
 }
 
-/// How far a grain may go that meets nothing (m), so that it stays above planes that are meshes.
+/// Returns an upper bound on the displacement of a grain without contacts (m). Planes that are meshes must extend
+/// this far.
 fn way(scene: &Scene, stepping: &Stepping) -> f64 {
     let time = stepping.steps as f64 * stepping.time_step;
     let speed = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
     time * (speed + 0.5 * scene.gravity.norm() * time)
 }
 
-/// A box around the grains and all meshes, wherever these go.
+/// Returns the corners of a box around the grains and all meshes during the run (m).
 fn around(
     (low, high): (Vector3<f64>, Vector3<f64>),
     meshes: &[Mesh<'_>],
@@ -156,7 +159,7 @@ fn around(
         let motion = &mesh.wall.motion;
         let moved = motion.displacement(end, stepping.time_step).translation;
         for corner in mesh.triangles.iter().flatten() {
-            // Whatever the angle, it stays as far from the centre.
+            // A rotation by any angle keeps the distance to the centre.
             let (centre, room) =
                 if turns(motion) { (motion.centre, (corner - motion.centre).norm()) } else { (*corner, 0.0) };
             for place in [centre, centre + moved] {
@@ -168,7 +171,7 @@ fn around(
     (least - margin, most + margin)
 }
 
-/// Whether a wall ever turns.
+/// Returns true if the motion has a rotation in any phase.
 fn turns(motion: &Motion) -> bool {
     motion.phases.iter().any(|phase| phase.spin != Vector3::zeros())
 }
@@ -190,11 +193,11 @@ fn input(
     if flat {
         say("dimension 2");
     }
-    // A mesh must lie within the box, which then cannot be fitted to the grains.
+    // A mesh must lie within the box, so the box cannot be fitted to the grains.
     let open = if meshes.is_empty() { GROWING } else { "f" };
     let mut boundary = boundary(scene, open);
     if is_flat(scene) && !flat {
-        // One layer in space has room above and below.
+        // A single layer in three dimensions has room above and below.
         boundary.truncate(boundary.len() - 1);
         boundary.push_str(open);
     }
@@ -246,7 +249,7 @@ fn input(
         say("fix plane all enforce2d");
     }
     say(printed);
-    // One format serves the whole row.
+    // LIGGGHTS takes one format for the whole line.
     let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
     let columns: Vec<&str> = COLUMNS.into_iter().chain(of_walls).collect();
     let of_pairs: Vec<&str> =
@@ -277,7 +280,7 @@ fn input(
     Ok(text)
 }
 
-/// The runs, one for each stretch in which no mesh changes its velocity or its spin and no wall is taken away.
+/// Returns the `run` commands. A new run begins when a mesh changes its velocity or spin and when a wall is removed.
 fn runs(scene: &Scene, stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<String, String> {
     let gone = passing::gone(scene, stepping);
     let mut changes = changes(meshes.iter().map(|mesh| &mesh.wall.motion), stepping)?;

@@ -1,14 +1,14 @@
-//! Young's moduli and Poisson's ratios of single types that give the effective moduli of pairs.
+//! Young's moduli and Poisson's ratios of types that give the effective moduli of pairs.
 
 use grainbench_scene::contact_law::ContactLaw;
 
-/// Young's modulus (Pa) of what does not deform beside any real material.
+/// Young's modulus of a rigid type (Pa), far above that of any real material.
 const RIGID: f64 = 1e40;
-/// What of a compliance is taken for rounding.
+/// Fraction of a compliance that is attributed to rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Shares of one type in the compliances of its pairs (1/Pa): 1/E* = a₁ + a₂ with a = (1 − ν²)/E, and 1/G* = b₁ + b₂
-/// with b = 2(2 − ν)(1 + ν)/E.
+/// Contributions of one type to the compliances of its pairs (1/Pa). For the normal modulus, 1/E* = a₁ + a₂ with a =
+/// (1 − ν²)/E. For the shear modulus, 1/G* = b₁ + b₂ with b = 2(2 − ν)(1 + ν)/E.
 #[derive(Clone, Copy)]
 struct Shares {
     normal: f64,
@@ -20,7 +20,7 @@ impl Shares {
         Self { normal: 1.0 / law.effective_modulus(), tangential: 1.0 / law.effective_shear_modulus() }
     }
 
-    /// E and ν: b/a = 2(2 − ν)/(1 − ν).
+    /// Returns E (Pa) and ν from b/a = 2(2 − ν)/(1 − ν).
     fn moduli(self) -> Option<(f64, f64)> {
         let quotient = self.tangential / self.normal;
         let poisson = (quotient - 4.0) / (quotient - 2.0);
@@ -30,11 +30,11 @@ impl Shares {
     }
 }
 
-/// Young's modulus and Poisson's ratio of every type, from the laws of all pairs, `types` a row; rigid where a type
-/// meets none.
+/// Returns Young's modulus (Pa) and Poisson's ratio of every type from the laws of all pairs. `laws` is a table with
+/// `types` entries per row. A type without partners is rigid.
 ///
-/// Types that meet themselves have half of what two of them have together. The others have what their partners leave,
-/// or all of it if their partners are left to be chosen too.
+/// A type in contact with itself contributes half of the compliance of that pair. Any other type contributes the rest
+/// that its partners leave. If the contribution of the partner is not known yet, the rest is the whole compliance.
 pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
     let pair = |a: usize, b: usize| laws[a * types + b].as_ref().map(Shares::of_pair);
     let mut shares: Vec<Option<Shares>> = (0..types)
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use grainbench_scene::contact_law::Springs;
 
-    /// 1/E* and 1/G* as two materials have them.
+    /// Returns the law of two materials with 1/E* and 1/G* as sums. The second material can be rigid.
     fn law(first: (f64, f64), second: Option<(f64, f64)>) -> Option<ContactLaw> {
         let of =
             |(young, ratio): (f64, f64)| ((1.0 - ratio * ratio) / young, 2.0 * (2.0 - ratio) * (1.0 + ratio) / young);

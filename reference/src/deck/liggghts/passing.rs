@@ -1,4 +1,4 @@
-//! What is there for a while, and what is pressed.
+//! Temporary walls, insertion and removal of grains, and pistons.
 
 use grainbench_scene::scene::Scene;
 
@@ -7,7 +7,8 @@ use crate::deck::asks_for_wall;
 use crate::deck::outline::AxisPlane;
 use crate::deck::schedule::gone_at;
 
-/// Refuses what LIGGGHTS does not do as the scene says it.
+/// Returns an error if the scene inserts or removes grains, has pistons or initial springs, or removes a wall that
+/// LIGGGHTS must keep.
 pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     if !scene.stays.entries.is_empty() {
         return Err(
@@ -50,8 +51,10 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
-/// The walls that are taken away, by number from 1, and the steps at which a run without them begins: there LIGGGHTS finds all
-/// forces anew, so that their half of that step's push is left out, and not the whole as here.
+/// Returns the walls that are removed, by number from 1, and the steps at which a run without them begins.
+///
+/// LIGGGHTS recomputes all forces at the start of that run. It therefore omits half of the impulse of the wall in
+/// that step, while our solvers omit all of it.
 pub(super) fn gone(scene: &Scene, stepping: &Stepping) -> Vec<(usize, u64)> {
     (1..).zip(&scene.walls).filter_map(|(number, wall)| Some((number, gone_at(wall.until?, stepping)))).collect()
 }
