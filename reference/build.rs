@@ -1,5 +1,5 @@
-//! Tells crates that are built on this one where its files are, and lists the formats that it reads, so that adding one touches
-//! one file.
+//! Publishes the folder of this crate to dependent crates, and lists the file formats. A new format needs only one
+//! new file.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The modules in a folder, and the list of their formats.
+/// Returns the code with the modules in a folder and the list of their formats.
 fn list(folder: &Path) -> Result<String, Failure> {
     let mut files = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     files.retain(|path| path.extension().is_some_and(|end| end == "rs"));

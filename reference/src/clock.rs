@@ -1,18 +1,18 @@
-//! Times of the steps of a run whose time step may change from one `run` of its log to the next.
+//! Times of the steps of a run. The time step may change from one `run` command of the log to the next.
 
 use crate::read::log::{Log, LoggedRun};
 
-/// Relative difference above which two time steps are not one.
+/// Relative difference below which two time steps are equal.
 const ONE_STEP: f64 = 1e-6;
 
-/// The time step from a step on.
+/// Time step (s) that applies from a step on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Part {
     from: u64,
     time_step: f64,
 }
 
-/// The time steps of a run (s).
+/// Time steps of a run (s).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Clock(Vec<Part>);
 
@@ -22,13 +22,13 @@ impl Clock {
         Self(vec![Part { from: 0, time_step }])
     }
 
-    /// Reads the time steps of the runs of a log; none where one of its runs does not say it.
+    /// Reads the time steps of all runs in a log. Returns `None` if they cannot be determined for one of the runs.
     pub(crate) fn of_log(log: &Log) -> Option<Self> {
         let mut parts: Vec<Part> = Vec::new();
         for run in &log.runs {
             let Some(from) = run.first_step() else { continue };
             let next = of_run(run, from)?;
-            // A run that begins at an earlier step has set its steps back: what was before has no steps any more.
+            // A run that begins at an earlier step has reset the step counter. It replaces the later steps before it.
             parts.retain(|part| part.from < from);
             parts.extend(next);
         }
@@ -36,7 +36,8 @@ impl Clock {
         (!parts.is_empty()).then_some(Self(parts))
     }
 
-    /// Returns the clock of samples with steps and times (s), in their order; none where steps do not grow with times.
+    /// Returns the clock of samples with steps and times (s), in their order. Returns `None` if the steps do not
+    /// increase with time.
     pub(crate) fn of_samples(samples: &[(u64, f64)]) -> Option<Self> {
         let ends = samples.first().zip(samples.last()).filter(|(first, last)| last.0 > first.0)?;
         let mean = (ends.1.1 - ends.0.1) / (ends.1.0 - ends.0.0) as f64;
@@ -45,7 +46,7 @@ impl Clock {
             let time_step = rounded((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0) as f64);
             parts.push(Part { from: pair[0].0, time_step });
         }
-        // Times are printed with few digits: steps that differ by less than a thousandth are one.
+        // Times are printed with few digits. If all time steps agree within a thousandth, they are one.
         parts.dedup_by(|next, before| next.time_step.total_cmp(&before.time_step).is_eq());
         if parts.iter().all(|part| (part.time_step - mean).abs() <= 1e-3 * mean) {
             parts = vec![Part { from: 0, time_step: mean }];
@@ -53,13 +54,13 @@ impl Clock {
         parts.iter().all(|part| part.time_step > 0.0).then_some(Self(parts))
     }
 
-    /// Time from one step to a later one (s).
+    /// Returns the time from one step to a later one (s).
     pub(crate) fn between(&self, first: u64, last: u64) -> f64 {
         let parts = self.parts(first, last);
         parts.map(|(steps, time_step)| steps as f64 * time_step).sum()
     }
 
-    /// The shortest and the longest time step between two steps (s).
+    /// Returns the shortest and longest time step between two steps (s).
     pub(crate) fn range(&self, first: u64, last: u64) -> [f64; 2] {
         let steps = self.parts(first, last).filter(|(steps, _)| *steps > 0).map(|(_, time_step)| time_step);
         let [shortest, longest] =
@@ -68,13 +69,14 @@ impl Clock {
         if longest > 0.0 { [shortest, longest] } else { [first; 2] }
     }
 
-    /// Returns whether the time step is this one (s) from one step to another.
+    /// Returns true if the time step equals `time_step` (s) from one step to another.
     pub(crate) fn is_constant(&self, time_step: f64, first: u64, last: u64, tolerance: f64) -> bool {
         let tolerance = tolerance.max(ONE_STEP) * time_step;
         self.range(first, last).into_iter().all(|step| (step - time_step).abs() <= tolerance)
     }
 
-    /// Steps of each part between two steps, and its time step; the first part holds before it begins too.
+    /// Returns the number of steps and the time step (s) of each part between two steps. The first part also applies
+    /// before it begins.
     fn parts(&self, first: u64, last: u64) -> impl Iterator<Item = (u64, f64)> {
         self.0.iter().enumerate().map(move |(at, part)| {
             let from = if at == 0 { 0 } else { part.from };
@@ -84,12 +86,12 @@ impl Clock {
     }
 }
 
-/// A time step from a difference of printed times, to ten digits: the rest is rounding.
+/// Rounds a time step to ten digits. It is a difference of printed times, so further digits are rounding.
 fn rounded(time_step: f64) -> f64 {
     format!("{time_step:.9e}").parse().unwrap_or(time_step)
 }
 
-/// The time steps of one run: of its command, of the column `Dt`, or of the columns `Time` and `Step`.
+/// Returns the time steps of one run from its `timestep` command, its column `Dt`, or its columns `Time` and `Step`.
 fn of_run(run: &LoggedRun, from: u64) -> Option<Vec<Part>> {
     let thermo = &run.thermo;
     let column = |name: &str| -> Option<Vec<f64>> { Some(thermo.values(thermo.column(name)?).collect()) };
@@ -100,7 +102,7 @@ fn of_run(run: &LoggedRun, from: u64) -> Option<Vec<Part>> {
     let timed = samples.as_deref().and_then(Clock::of_samples).map(|clock| clock.0);
     let last_dt = || column("Dt").and_then(|steps| steps.last().copied()).filter(is_step);
     match (run.time_step.filter(is_step), timed) {
-        // A step that changes during the run follows from its times alone.
+        // Only the times show a time step that changes during the run.
         (_, Some(timed)) if timed.len() > 1 => Some(timed),
         (Some(time_step), _) => Some(vec![Part { from, time_step }]),
         (None, timed) => last_dt().map(|time_step| vec![Part { from, time_step }]).or_else(|| {
@@ -131,12 +133,12 @@ mod tests {
         assert_eq!(clock.range(4000, 7000), [2e-5, 2e-5]);
     }
 
-    /// The column `Time` alone tells the step, and how it changes.
+    /// The column `Time` is enough to determine the time step and its changes.
     #[test]
     fn times_of_the_log_tell_the_time_step() {
         let changing = clock("Step Time\n0 0\n100 0.1\n200 0.3\n");
         assert_eq!(changing.range(0, 200), [0.001, 0.2 / 100.0]);
-        // The steps were set back: the first run is of another time.
+        // The step counter was reset, so the first run does not count.
         let set_back = clock(
             "timestep 1\nStep KinEng\n0 0\n900 0\nLoop time of 1 on 1 procs for 9 steps with 1 atoms\n\
                               timestep 2\nStep KinEng\n0 0\n100 0\n",

@@ -1,10 +1,10 @@
-//! The time that a run of a program and the reading of what it left may take together.
+//! Common time limit for a run of a program and the reading of its output.
 
 use std::time::{Duration, Instant};
 
 use grainbench_scene::solver::Failure;
 
-/// When a limit of time is over.
+/// Time at which a limit expires.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
     start: Instant,
@@ -12,12 +12,12 @@ pub(crate) struct Deadline {
 }
 
 impl Deadline {
-    /// A limit that counts from now on.
+    /// Returns a limit that starts now.
     pub(crate) fn after(limit: Duration) -> Self {
         Self { start: Instant::now(), limit }
     }
 
-    /// A failure where the time is over.
+    /// Returns an error if the limit has expired.
     pub(crate) fn check(self) -> Result<(), Failure> {
         if self.start.elapsed() >= self.limit { Err(Failure::TimeOut(self.limit.as_secs())) } else { Ok(()) }
     }

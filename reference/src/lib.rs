@@ -1,9 +1,9 @@
-//! What other programs left behind: readers for the files of LAMMPS and LIGGGHTS, and the stored reference runs.
+//! Readers for files of LAMMPS and LIGGGHTS, and the stored reference runs.
 //!
-//! Everything a file can hold is either read or refused with an error that names the file, the place, what was
-//! expected there and what was found. Nothing here panics on an input, however damaged.
+//! Every content of a file is either read or refused. The error names the file and the position, and states the
+//! expected and the actual content. No input causes a panic, however damaged it is.
 
-/// The folder of this crate: literature, prototypes, stored runs and estimated uncertainties lie in it.
+/// Folder of this crate. It contains literature values, prototypes, stored runs and estimated uncertainties.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
 mod clock;

@@ -1,5 +1,5 @@
-//! Forces between grains from dumps of local entries: rows of two ids and a force, whatever a program calls the
-//! columns.
+//! Forces between grains from dumps of local entries. A row has two ids and a force, and the names of the columns
+//! depend on the program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,31 +11,31 @@ use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 
-/// A force on the first of two grains (N), and how far the printed digits may have moved any of its components.
+/// Force on the first of two grains (N), and the uncertainty of its components by printed digits (N).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct PairForce {
     pub(crate) force: Vector3<f64>,
     pub(crate) open: f64,
 }
 
-/// What entries tell of the contacts that the probes of a scene ask for; all others are passed over, so that memory
+/// Forces of the contacts that the probes of a scene request. All other contacts are skipped, so the required memory
 /// does not grow with their number.
 ///
-/// Their columns are `id1`, `id2` and the force on the first, `force_x`, `force_y`, `force_z`; what is called
-/// `tangential_x` and so on is added to it, for some programs print the two parts apart.
+/// The columns are `id1`, `id2` and the force on the first grain, `force_x`, `force_y`, `force_z`. Columns such as
+/// `tangential_x` are added to the force, because some programs print the two components separately.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PairForces {
-    /// The pairs that are asked for, by id, the smaller one first.
+    /// Requested pairs of ids. The smaller id comes first.
     asked: BTreeSet<(u64, u64)>,
-    /// By step and pair; on the smaller id.
+    /// Force on the grain with the smaller id, by step and pair.
     by_step: BTreeMap<u64, BTreeMap<(u64, u64), PairForce>>,
 }
 
-/// Names of the components of the force, and of the part that may stand apart.
+/// Names of the components of the force, and of a separate tangential force.
 const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
 const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
 
-/// Where a dump of contacts has the ids of two grains, and the parts of the force on the first.
+/// Columns of a dump of contacts with the ids of two grains and the parts of the force on the first.
 pub(crate) struct PairColumns {
     pub(crate) ids: [usize; 2],
     pub(crate) parts: [[Option<usize>; 3]; 2],
@@ -61,7 +61,7 @@ impl PairColumns {
 }
 
 impl PairForces {
-    /// Those of a scene whose grains have these ids in the dump, in the order of the scene.
+    /// Returns a collection for a scene whose grains have these ids in the dump, in the order of the scene.
     pub(crate) fn of(scene: &Scene, ids: &[u64]) -> Self {
         let asked = scene.probes.iter().filter_map(|probe| match probe.target {
             ProbeTarget::Pair(a, b) => {
@@ -73,22 +73,22 @@ impl PairForces {
         Self { asked: asked.collect(), by_step: BTreeMap::new() }
     }
 
-    /// Whether no step has been taken.
+    /// Returns true if no step has been added.
     pub(crate) fn is_empty(&self) -> bool {
         self.by_step.is_empty()
     }
 
-    /// Whether any pair is asked for.
+    /// Returns true if any pair is requested.
     pub(crate) fn is_asked(&self) -> bool {
         !self.asked.is_empty()
     }
 
-    /// Whether a step has been taken.
+    /// Returns true if a step has been added.
     pub(crate) fn has(&self, step: u64) -> bool {
         self.by_step.contains_key(&step)
     }
 
-    /// Takes the entries of a step.
+    /// Adds the entries of a step.
     pub(crate) fn take(
         &mut self,
         file: &str,
@@ -117,13 +117,14 @@ impl PairForces {
                     }
                 }
             }
-            // A list may have a pair twice, once from either side: that is one contact.
+            // A list can contain a pair twice, once from each side. This is one contact.
             forces.insert(pair, found);
         }
         Ok(())
     }
 
-    /// The force of grain `b` on grain `a` at a step, nothing where they are not listed; none where the step is not.
+    /// Returns the force of grain `b` on grain `a` at a step. It is zero if the pair is not listed. Returns `None` if
+    /// the step is missing.
     pub(crate) fn on(&self, step: u64, a: u64, b: u64) -> Option<PairForce> {
         let found = self.by_step.get(&step)?.get(&(a.min(b), a.max(b))).copied().unwrap_or_default();
         Some(if a < b { found } else { PairForce { force: -found.force, ..found } })

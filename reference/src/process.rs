@@ -1,4 +1,4 @@
-//! Running a program in a scratch folder, with a limit of time.
+//! Execution of a program in a scratch folder within a time limit.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -12,20 +12,20 @@ use tempfile::TempDir;
 
 use crate::deadline::Deadline;
 
-/// What a program prints.
+/// File with the standard output of a program.
 pub(crate) const SCREEN: &str = "screen";
-/// What it prints as errors, where that is kept apart.
+/// File with the standard error of a program if the two are separate.
 pub(crate) const ERRORS: &str = "errors";
-/// Variable of the environment that names the folder of a run.
+/// Environment variable with the folder of a run.
 const FOLDER: &str = "GRAINBENCH_FOLDER";
-/// How often processes of a run are looked for at most: those that end start new ones.
+/// Maximum number of searches for processes of a run. Processes that end can start new ones.
 const SWEEPS: u32 = 20;
-/// How many of its last lines are told.
+/// Number of last lines in a report.
 const LAST_LINES: usize = 4;
-/// How much of the end is looked at for them.
+/// Number of bytes at the end of a file that are searched for last lines (B).
 const END: u64 = 4096;
 
-/// A folder with files of these names and texts, which goes when it is dropped.
+/// Creates a folder with files of these names and texts. The folder is deleted when it is dropped.
 pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -> io::Result<TempDir> {
     let folder = tempfile::Builder::new().prefix("grainbench-").tempdir()?;
     for (name, text) in files {
@@ -34,52 +34,54 @@ pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -
     Ok(folder)
 }
 
-/// How a program is started.
+/// Program to start.
 pub(crate) struct Started<'s> {
-    /// The program.
+    /// Path of the program.
     pub(crate) executable: &'s Path,
-    /// Its words.
+    /// Command-line arguments.
     pub(crate) arguments: &'s [String],
-    /// The folder in which it leaves its files, and what it prints.
+    /// Folder of the output files, including standard output.
     pub(crate) folder: &'s Path,
-    /// Where it is started, if not there.
+    /// Working directory, if it is not the folder.
     pub(crate) at: Option<&'s Path>,
-    /// Whether errors that it prints go to [`ERRORS`] and not to [`SCREEN`].
+    /// If true, standard error is written to [`ERRORS`] and not to [`SCREEN`].
     pub(crate) errors_apart: bool,
 }
 
-/// How a program ended that no signal ended.
+/// End of a program that was not ended by a signal.
 pub(crate) struct Ended {
-    /// The code that it gave back.
+    /// Exit code.
     pub(crate) code: i32,
-    /// The last lines that it printed, errors where it printed any apart.
+    /// Last lines of standard error, or of standard output if there are none.
     pub(crate) last_lines: Vec<String>,
 }
 
-/// What a program may take.
+/// Limits of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// When it must have ended.
+    /// Time at which the program must have ended.
     pub(crate) deadline: Deadline,
-    /// All that it may leave in its folder (B).
+    /// Maximum size of all files in the folder (B).
     pub(crate) bytes: u64,
-    /// Address space of each of its processes (KiB); any where none is named.
+    /// Maximum address space of each process (KiB). Without a value there is no limit.
     pub(crate) memory: Option<u64>,
-    /// Threads.
+    /// Number of threads.
     pub(crate) threads: u16,
 }
 
-/// Runs a program, and ends it with all that it has started when its own standard input closes: when we close it, and
-/// when we end, however that comes about. Where nothing was said before it closed we are no more, and the folder goes too.
-/// Its process group is that of the shell, which keeps its number in use.
+/// Shell script that runs a program. It ends the program and all child processes when its own standard input closes.
+/// This happens when we close it and when our process ends for any reason.
+///
+/// If standard input closes without a message, our process has ended, and the script deletes the folder. The shell
+/// leads the process group, so the number of the group stays in use.
 const GUARD: &str = "exec 3<&0 </dev/null
 \"$0\" \"$@\" 3<&- & program=$!
 (read -r _ <&3 || rm -rf \"$GRAINBENCH_FOLDER\"; kill -9 -$$) &
 wait $program";
-/// What the guard is told before its standard input closes and we go on.
+/// Message to the guard before its standard input closes while our process continues.
 const WE_ARE_ALIVE: &[u8] = b"alive\n";
 
-/// Runs a program to its end.
+/// Runs a program until it ends or exceeds a limit.
 pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failure, Vec<String>)> {
     let Started { executable, arguments, folder, at, errors_apart } = *started;
     let not_run = |error: io::Error| (Failure::NotRun(format!("{}: {error}", executable.display())), Vec::new());
@@ -99,13 +101,13 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
             Ok(None) => match limits.deadline.check() {
                 Err(time_out) => time_out,
                 Ok(()) => {
-                    // What is lost by looking late is a twentieth of what it takes.
+                    // The pause is at most a twentieth of the elapsed time, so late detection costs at most 5 %.
                     sleep((start.elapsed() / 20).clamp(Duration::from_micros(500), Duration::from_millis(20)));
                     continue;
                 }
             },
         };
-        // The guard ends the program; it may have ended by itself in the meantime.
+        // The guard ends the program. The program may have ended already.
         close(&mut child);
         let _ = child.wait();
         end_sessions(folder, child.id());
@@ -116,16 +118,17 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
-        // What a shell says of a program that it could not start.
+        // Exit codes of a shell that could not start a program.
         Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
-        // And of one that a signal ended.
+        // Exit codes of a shell whose program was ended by a signal.
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
         Some(code) => Ok(Ended { code, last_lines }),
         None => Err((Failure::Crash(status.to_string()), last_lines)),
     }
 }
 
-/// A shell that guards a program by a script, in the folder and within what it may take.
+/// Returns the command for a shell that runs a script as the guard of a program. It applies the limits and uses the
+/// folder as working directory.
 pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folder: &Path, limits: Limits) -> Command {
     let guarded = match limits.memory {
         Some(most) => format!("ulimit -v {most} || exit 126\n{script}"),
@@ -138,11 +141,11 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
         .args(arguments)
         .current_dir(folder)
         .env(FOLDER, folder)
-        // Of ours: sums in another order would end in other digits.
+        // The number of threads is ours, because another order of summation changes the last digits.
         .env("OMP_NUM_THREADS", limits.threads.to_string())
-        // Spares each start the daemon that would watch over several processes.
+        // Avoids one daemon per start, which would monitor several processes.
         .env("OMPI_MCA_ess_singleton_isolated", "1")
-        // And the search for fabrics between machines, three quarters of the time of a start.
+        // Avoids the search for networks between machines, which takes three quarters of the start time.
         .env("OMPI_MCA_pml", "ob1")
         .stdin(Stdio::piped());
     #[cfg(unix)]
@@ -150,15 +153,18 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
     command
 }
 
-/// Ends processes that a program started in sessions of their own (`setsid`): the guard ends the process group of the program
-/// alone, which `guard` leads. They are found by the folder in their environment, where `/proc` shows it.
+/// Ends processes that a program started in separate sessions (`setsid`). The guard itself ends only the process
+/// group that it leads.
+///
+/// These processes are identified by the folder in their environment. This needs `/proc`.
 pub(crate) fn end_sessions(folder: &Path, guard: u32) {
     let mut mark = format!("{FOLDER}=").into_bytes();
     mark.extend(folder.as_os_str().as_encoded_bytes());
     for _ in 0..SWEEPS {
         let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
         let numbers = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-        // The group is left to the guard, which ends processes with another environment too. One that has ended has none.
+        // The guard ends its own group, including processes with another environment. A process that has ended has no
+        // group.
         let is_marked = |process: &u32| {
             if group(*process).is_none_or(|group| group == guard) {
                 return false;
@@ -175,31 +181,32 @@ pub(crate) fn end_sessions(folder: &Path, guard: u32) {
     }
 }
 
-/// The process group of a process, as `/proc` shows it.
+/// Returns the process group of a process from `/proc`.
 fn group(process: u32) -> Option<u32> {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name of the program, in parentheses, may have blanks: state, parent and group follow.
+    // The program name in parentheses may contain blanks. State, parent and group follow it.
     text.rsplit_once(')')?.1.split_ascii_whitespace().nth(2)?.parse().ok()
 }
 
-/// The failure of a run that left more bytes than it may.
+/// Returns the failure of a run whose files are larger than the limit `most` (B).
 pub(crate) fn too_much(most: u64) -> Failure {
     Failure::Output(format!("expected at most {} MB for the samples of this scene, found more", most / 1_000_000))
 }
 
-/// Closes the standard input of the guard, which is told that the folder is still looked at. It may have ended.
+/// Closes the standard input of the guard. A message is sent before, so that the guard keeps the folder. The guard
+/// may have ended.
 fn close(child: &mut Child) {
     if let Some(mut input) = child.stdin.take() {
         say_alive(&mut input);
     }
 }
 
-/// Tells a guard that we are still there. It may have ended.
+/// Sends the guard the message that our process is alive. The guard may have ended.
 pub(crate) fn say_alive(input: &mut ChildStdin) {
     let _ = input.write_all(WE_ARE_ALIVE);
 }
 
-/// All that is in a folder, and in those inside it (B); links are not followed.
+/// Returns the size of all files in a folder and its subfolders (B). Links are not followed.
 pub(crate) fn size(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let of = |entry: fs::DirEntry| match entry.metadata() {
@@ -210,13 +217,13 @@ pub(crate) fn size(folder: &Path) -> u64 {
     entries.map(of).sum()
 }
 
-/// The last lines of what was printed: errors where there are some apart.
+/// Returns the last lines of standard error, or of standard output if there are none.
 pub(crate) fn last_lines(folder: &Path) -> Vec<String> {
     let of_errors = last_lines_of(&folder.join(ERRORS));
     if of_errors.is_empty() { last_lines_of(&folder.join(SCREEN)) } else { of_errors }
 }
 
-/// The last lines of a file; LIGGGHTS prints bytes that are not UTF-8.
+/// Returns the last lines of a file. LIGGGHTS prints bytes that are not UTF-8.
 fn last_lines_of(path: &Path) -> Vec<String> {
     let read = || -> io::Result<Vec<u8>> {
         let mut file = File::open(path)?;

@@ -1,4 +1,4 @@
-//! The files that a run left, snapshot by snapshot, whatever their format.
+//! Output files of a run, read snapshot by snapshot in any format.
 
 use crate::read::decoding::{Decoded, decoded};
 use crate::read::format::{Beginning, FORMATS, Format, Holds, Moments, ToldBy, dump};
@@ -11,20 +11,19 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
-/// How many bytes of a file tell what it is.
+/// Number of bytes at the beginning of a file that identify its kind.
 const HEAD: u64 = 512;
 
-/// What a file is.
+/// Kind of a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
-    /// A table.
     Table,
-    /// Grains at moments, in a format.
+    /// Snapshots of grains in a format.
     Grains(&'static Format),
 }
 
 impl Kind {
-    /// In words.
+    /// Returns the name of the kind as text.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Table => "a table",
@@ -32,13 +31,12 @@ impl Kind {
         }
     }
 
-    /// Whether it is a table.
     pub(crate) const fn is_table(self) -> bool {
         matches!(self, Self::Table)
     }
 }
 
-/// What a file is by its beginning; an empty one does not say, and the reader of dumps then will.
+/// Returns the kind of a file from its beginning. An empty file counts as a dump, so the reader of dumps reports it.
 pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
     let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
@@ -48,7 +46,7 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     if bytes.starts_with(parquet::MARK) {
         return Ok(Kind::Table);
     }
-    // What is not packed begins with the same bytes; archives and boxes that are known by them are not unpacked.
+    // Without compression, both are the same bytes. Archives and containers are identified before decompression.
     let told = |unpacked: &[u8]| {
         let beginning = Beginning { path, bytes: &bytes, unpacked };
         let is_it = |format: &&&Format| matches!(format.told_by, ToldBy::Beginning(is_it) if is_it(&beginning));
@@ -77,7 +75,7 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
                 has_comments = true;
                 continue;
             }
-            // The reader of dumps says why an .xyz file, which begins with a count, is not read.
+            // The reader of dumps explains why an .xyz file, which begins with a count, is not supported.
             if line.text.trim().parse::<u64>().is_ok() {
                 return Ok(Kind::Grains(&dump::FORMAT));
             }
@@ -87,11 +85,11 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     Ok(if has_comments { Kind::Table } else { Kind::Grains(&dump::FORMAT) })
 }
 
-/// Checks that the content of a file is that of a run: grains at moments, entries of a dump, or a table of numbers. Names do not
-/// matter.
+/// Checks that a file contains output of a run: snapshots of grains, entries of a dump, or a table of numbers. Its
+/// name does not matter.
 ///
 /// # Errors
-/// The content is another one, or cannot be read that far.
+/// If the content is anything else, or cannot be read that far.
 pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     let length = std::fs::metadata(path).map_err(|error| ReadError::opening(&shown(path), error))?.len();
     if length == 0 {
@@ -103,37 +101,37 @@ pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     }
 }
 
-/// A file, and which moment it is of where it holds one only.
+/// File of a run, and its moment if it contains one snapshot only.
 #[derive(Clone, Debug)]
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
     format: &'static Format,
     moment: Option<Moment>,
-    /// The first step of a course, where it can be read.
+    /// First step of a file with several snapshots, if it can be read.
     begins: Option<u64>,
 }
 
-/// A moment.
+/// Step and time of a file with one snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Moment {
     step: u64,
-    /// The time (s), where a list tells it.
+    /// Time (s), if a list of files contains it.
     time: Option<f64>,
 }
 
 impl RunFile {
-    /// Whether it holds one moment alone.
+    /// Returns true if the file contains one snapshot only.
     pub(crate) const fn is_of_a_moment(&self) -> bool {
         self.moment.is_some()
     }
 }
 
-/// The files that were named: lists as what they list, and all in the order of their steps, which is seldom that of their
-/// names.
+/// Returns files sorted by step, because the order of their names is often different. A list is replaced by the files
+/// that it names.
 pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
-        // Whoever looks for grains in a table is told by the reader of dumps.
+        // A table is passed to the reader of dumps, whose error names the problem.
         let format = format(path)?;
         match (format.holds)(path)? {
             Holds::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
@@ -149,7 +147,7 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     Ok(files)
 }
 
-/// The format of a file of grains.
+/// Returns the format of a file of grains.
 fn format(path: &Path) -> Result<&'static Format, ReadError> {
     Ok(match kind(path)? {
         Kind::Grains(format) => format,
@@ -157,12 +155,13 @@ fn format(path: &Path) -> Result<&'static Format, ReadError> {
     })
 }
 
-/// LIGGGHTS leaves the box beside each file of grains, under a name that a pattern of theirs catches too.
+/// Returns true for the box that LIGGGHTS writes beside each file of grains. Patterns for grain files match its name
+/// as well.
 fn is_box(path: &Path) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("boundingBox"))
 }
 
-/// A file whose name tells the step: its last whole number.
+/// Returns a file whose name contains the step as its last whole number.
 fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let last = stem.trim_end_matches(|letter: char| !letter.is_ascii_digit());
@@ -174,24 +173,24 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     Ok(RunFile { path: path.to_owned(), format: format(path)?, moment: Some(Moment { step, time }), begins: None })
 }
 
-/// Snapshot after snapshot of a file.
+/// Reader of the snapshots of a file.
 pub(crate) struct Snapshots {
     moments: Box<dyn Moments>,
-    /// The moment that the file is of and its name, where it holds one only.
+    /// Moment and name of a file with one snapshot only.
     only: Option<(Moment, String)>,
     numbering: Numbering,
     read: usize,
 }
 
 impl Snapshots {
-    /// Of a file, whose snapshots may have so many rows.
+    /// Opens a file whose snapshots have at most `most_rows` rows.
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
         let only = file.moment.map(|moment| (moment, shown(&file.path)));
         let numbering = file.format.numbering;
         Ok(Self { moments: (file.format.open)(&file.path, most_rows)?, only, numbering, read: 0 })
     }
 
-    /// Reads the next snapshot in the place of the last; false at the end of the file.
+    /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let Some((moment, name)) = &self.only else {
             let is_there = self.moments.read(snapshot)?;
@@ -224,7 +223,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// Names in the order of letters are those of a pattern: `dump.end` stands in front of `dump.grains`.
+    /// A file pattern yields names in alphabetical order, in which `dump.end` precedes `dump.grains`.
     #[test]
     fn dumps_are_in_the_order_of_their_steps() {
         let folder = tempfile::tempdir().unwrap();

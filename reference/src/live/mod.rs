@@ -1,4 +1,4 @@
-//! LAMMPS and LIGGGHTS as solvers, where they are installed: deck, run, dump, record.
+//! LAMMPS and LIGGGHTS as solvers, if they are installed. A run consists of deck, execution, dump and record.
 
 use std::env;
 use std::fs;
@@ -22,15 +22,15 @@ use crate::read::numbers::NotFinite;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 
-/// How long a program may take, unless it is given another time.
+/// Time limit of a run, if no other limit is given.
 const TIME_LIMIT: Duration = Duration::from_secs(600);
-/// The variable of the environment that gives another time (s).
+/// Environment variable with another time limit (s).
 const OTHER_LIMIT: &str = "GRAINBENCH_TIME_LIMIT";
 
-/// The log that a run leaves in its folder.
+/// Log file in the folder of a run.
 const LOG: &str = "log.run";
 
-/// A program that is run as a solver.
+/// Program that is run as a solver.
 #[derive(Debug, Clone)]
 pub struct Live {
     program: Program,
@@ -39,8 +39,8 @@ pub struct Live {
 }
 
 impl Live {
-    /// The program as `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names it, or else `lmp` or `liggghts` on `PATH`. A
-    /// run of it may take ten minutes, or as many seconds as `GRAINBENCH_TIME_LIMIT` says.
+    /// Finds the program that `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names, or else `lmp` or `liggghts` on
+    /// `PATH`. The time limit of a run is ten minutes, or the number of seconds in `GRAINBENCH_TIME_LIMIT`.
     #[must_use]
     pub fn find(program: Program) -> Self {
         let (variable, usual) = (program.variable(), program.executable());
@@ -62,13 +62,13 @@ impl Live {
         }
     }
 
-    /// The program at a path.
+    /// Returns the program at a path.
     #[must_use]
     pub fn at(program: Program, executable: &Path) -> Self {
         Self { program, executable: Ok(executable.to_owned()), time_limit: TIME_LIMIT }
     }
 
-    /// The same with another limit of the time that the run and the reading of its files may take together.
+    /// Sets the common time limit for the run and the reading of its files.
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
@@ -136,14 +136,16 @@ impl Solver for Live {
     }
 }
 
-/// Most that a run may leave (B): room for a start, and for every sample 4 kB a grain, which is four times what its
-/// columns and a dozen contacts take.
+/// Returns the maximum size of the files of a run (B).
+///
+/// It contains 64 MiB for the start and 4 KiB per sample and grain. This is four times the size of its columns and a
+/// dozen contacts.
 pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
     let samples = stepping.steps / stepping.interval + 2;
     (64 << 20) + samples.saturating_mul(4096).saturating_mul(scene.grains.len() as u64)
 }
 
-/// Refuses a series that lacks a sample that its deck asks for, and one with a value that is not finite.
+/// Returns an error if a series lacks a sample of its deck or has a value that is not finite.
 pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
     let mut found = series.step.iter().copied();
     for step in stepping.samples() {
@@ -165,13 +167,13 @@ pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String
     Ok(())
 }
 
-/// What a file that cannot be read makes of a run.
+/// Returns the failure of a run whose file cannot be read.
 pub(crate) fn output(error: ReadError) -> Failure {
     Failure::Output(error.to_string())
 }
 
-/// The path of a file that a run left in a folder. A pipe, which would be waited for without end, is refused, and so is
-/// a link, also one on the way to the file.
+/// Returns the path of a file that a run wrote in a folder. Links are refused, including those to parent folders.
+/// Pipes are refused, because reading them could block forever.
 pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
     let path = folder.join(name);
     let between = Path::new(name).ancestors().skip(1).filter(|part| !part.as_os_str().is_empty());
@@ -183,13 +185,13 @@ pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> 
     }
     match fs::symlink_metadata(&path) {
         Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),
-        // That there is nothing is told by whoever opens it.
+        // A missing file is reported when it is opened.
         _ => Ok(path),
     }
 }
 
-/// Reads what a deck's run left in a folder, until its time is over. Values that are not finite are kept: they are told
-/// of by name and step.
+/// Reads the files of a deck's run in a folder until the deadline. Values that are not finite are kept, and errors
+/// later name their column and step.
 fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<Observed, Failure> {
     let stepping = deck.stepping;
     let mut snapshot = DumpSnapshot::default();
@@ -207,7 +209,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         }
     }
     let mut observer = Observer::new(scene).with_pairs(pairs);
-    // Snapshots are taken at the samples next to where they are due.
+    // Snapshots are taken at the samples closest to their requested times.
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
     let mut due = recorder.snapshot_steps();
     for name in [SAMPLES, END] {
