@@ -1,4 +1,4 @@
-//! Snapshots from dumps of grains of which there is no scene: what the columns say, and what must be said beside them.
+//! Snapshots from dumps of grains without a scene. Data that the columns lack is supplied separately.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,24 +14,24 @@ use crate::read::ids::Ids;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
-/// What a dump may leave open.
+/// Data and options in addition to a dump.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Beside {
-    /// What the files call their columns.
+    /// Names of the columns in the files.
     pub names: Names,
-    /// Radius of every grain (m), where there is neither a column `radius` nor `diameter`.
+    /// Radius of every grain (m), needed if there is neither a column `radius` nor `diameter`.
     pub radius: Option<f64>,
-    /// Density of every grain (kg/m³; kg/m² of discs), where there is neither a column `mass` nor `density`.
+    /// Density of every grain (kg/m³; kg/m² for discs), needed if there is neither a column `mass` nor `density`.
     pub density: Option<f64>,
-    /// Time of a step (s), where the file does not tell the time.
+    /// Time step (s), needed if the file does not contain the time.
     pub time_step: Option<f64>,
-    /// Whether grains are discs in the plane.
+    /// If true, grains are discs in the plane.
     pub plane: bool,
-    /// Takes the whole frames of a file that is cut off.
+    /// If true, complete frames of a truncated file are read.
     pub partial: bool,
 }
 
-/// Dumps of grains, one after the other, with dumps of their contacts beside them.
+/// Reader of a dump of grains, and optionally of a dump of their contacts.
 pub struct GrainDump {
     grains: DumpReader<'static>,
     contacts: Option<(DumpReader<'static>, String)>,
@@ -43,23 +43,23 @@ pub struct GrainDump {
     entries: DumpSnapshot,
 }
 
-/// Where the columns of a dump are.
+/// Positions of the columns in a dump.
 struct Columns {
     id: usize,
     kind: Option<usize>,
     position: [Coordinate; 3],
     velocity: Option<[Option<usize>; 3]>,
-    /// Radius, and what it is multiplied by.
+    /// Column of the radius, and factor of its values.
     radius: Option<(usize, f64)>,
     mass: Option<usize>,
     density: Option<usize>,
 }
 
 impl GrainDump {
-    /// Opens a dump of grains, and a dump of their contacts, at the same steps, where there is one.
+    /// Opens a dump of grains, and optionally a dump of their contacts at the same steps.
     ///
     /// # Errors
-    /// When one of them cannot be opened.
+    /// If a file cannot be opened.
     pub fn open(path: &Path, contacts: Option<&Path>, beside: Beside) -> Result<Self, ReadError> {
         let open = |path: &Path| DumpReader::open(path);
         let named = |path: &Path| Ok((open(path)?, path.to_string_lossy().into_owned()));
@@ -75,10 +75,11 @@ impl GrainDump {
         })
     }
 
-    /// The next snapshot; none at the end of the dump of grains.
+    /// Reads the next snapshot. Returns `None` at the end of the dump of grains.
     ///
     /// # Errors
-    /// When a file breaks off or holds something else, lacks what is needed, or contacts are of other steps or grains.
+    /// If a file is truncated, has unexpected content or lacks required data, or if contacts belong to other steps or
+    /// grains.
     pub fn read(&mut self) -> Result<Option<Snapshot>, ReadError> {
         match self.grains.read(&mut self.rows) {
             Ok(true) => {}
@@ -122,13 +123,13 @@ impl GrainDump {
         Ok(Some(snapshot))
     }
 
-    /// Where the dump is cut off, if that was allowed.
+    /// Returns the position where the dump is truncated, if that is allowed.
     #[must_use]
     pub fn cut(&self) -> Option<&str> {
         self.cut.as_deref()
     }
 
-    /// Refuses lengths that are not metres, and not without dimension.
+    /// Returns an error if the unit of length is neither metre nor dimensionless.
     fn check_units(&self) -> Result<(), ReadError> {
         match self.rows.units.as_deref() {
             None | Some("si" | "lj") => Ok(()),
@@ -136,7 +137,8 @@ impl GrainDump {
         }
     }
 
-    /// Which axes are periodic. Along those that a tilt couples, images are not one box length away along one axis.
+    /// Returns for each axis if it is periodic. Axes coupled by a tilt are not, because their images are not shifted
+    /// by one box length along one axis.
     fn periodic(&self) -> Result<[bool; 3], ReadError> {
         let [xy, xz, yz] = self.rows.tilt.map(|tilt| tilt != 0.0);
         let tilted = [xy || xz, xy || yz, xz || yz];
@@ -210,7 +212,7 @@ impl GrainDump {
             id: id as u32,
             material: columns.kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
             radius,
-            // What is not told is no number.
+            // A value that the file does not contain is NaN.
             mass: mass.unwrap_or(f64::NAN),
             position,
             velocity,
@@ -225,7 +227,8 @@ impl GrainDump {
     }
 }
 
-/// The contacts between the grains of a snapshot, from a dump of them; `entries` are those that were read last.
+/// Returns the contacts between the grains of a snapshot from a dump of contacts. `entries` holds the entries that
+/// were read last.
 pub(crate) fn contacts_of(
     snapshot: &Snapshot,
     reader: &mut DumpReader,
@@ -234,7 +237,7 @@ pub(crate) fn contacts_of(
     names: &Names,
 ) -> Result<Vec<ContactState>, ReadError> {
     let step = snapshot.step;
-    // Contacts may be told at more steps than grains are.
+    // Contacts can be written at more steps than grains.
     while entries.columns.is_empty() || entries.step < step {
         if !reader.read(entries)? {
             let expected = format!("the contacts of step {step}");
@@ -258,7 +261,7 @@ pub(crate) fn contacts_of(
             })
         };
         let (one, other) = (find(first)?, find(second)?);
-        // A list may have a pair twice, once from either side: that is one contact.
+        // A list can contain a pair twice, once from each side. This is one contact.
         if one == other || !seen.insert((one.min(other), one.max(other))) {
             continue;
         }
@@ -274,7 +277,7 @@ pub(crate) fn contacts_of(
     Ok(contacts)
 }
 
-/// The contact of two grains, by place, with the force on the first (N).
+/// Returns the contact of two grains, given by their indices and the force on the first (N).
 fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -> ContactState {
     let (first, second) = (&snapshot.grains[one], &snapshot.grains[other]);
     let length = snapshot.bounds.1 - snapshot.bounds.0;
@@ -294,7 +297,7 @@ fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -
         overlap,
         normal_force,
         shear_force: force + normal * normal_force,
-        // Nobody prints it.
+        // Dumps do not contain this.
         slipping: false,
     }
 }

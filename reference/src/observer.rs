@@ -1,4 +1,4 @@
-//! A record from what another program wrote down: the scene's probes, as far as a dump of its grains can tell them.
+//! Record of a run of another program, with those probes of the scene that a dump of its grains contains.
 
 use grainbench_scene::record::{GrainState, Look, Series, Snapshot};
 use grainbench_scene::recorder::Recorder;
@@ -13,67 +13,70 @@ use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
-/// What a file calls its columns, where that is not what LAMMPS calls them: pairs of `x`, `vx`, `omegaz`, … and the
-/// file's own name.
+/// Names of columns in a file that differ from those in LAMMPS. Each entry is a pair of our name, such as `x`, `vx`
+/// or `omegaz`, and the name in the file.
 ///
-/// LAMMPS has no names for these: `angle`, of a disc (rad); `WALL.force_x`, the force of the scene's wall `WALL` on a
-/// grain; and in dumps of contacts `id1`, `id2`, `force_x` (the force on the first) and, where it stands apart,
-/// `tangential_x`.
+/// LAMMPS has no names for some columns. `angle` is the rotation angle of a disc (rad). `WALL.force_x` is the force
+/// of the scene's wall `WALL` on a grain.
+///
+/// Dumps of contacts have `id1`, `id2` and `force_x` (the force on the first grain). `tangential_x` is the tangential
+/// force if it has separate columns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<(String, String)>);
 
 impl Names {
-    /// The file's name of a column.
+    /// Returns the name of a column in the file.
     #[must_use]
     pub fn of<'n>(&'n self, name: &'n str) -> &'n str {
         self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
     }
 }
 
-/// What a dump tells of the grains of a scene.
+/// Quantities of a scene that a dump contains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
-    /// The probes' columns that can be told from it.
+    /// Columns of the probes that follow from the dump.
     pub series: Series,
-    /// For each column and sample, how far the printed digits may have moved it.
+    /// Uncertainty by printed digits, for each column and sample.
     pub uncertainty: Vec<Vec<f64>>,
-    /// Every snapshot that was to be kept; the last one always.
+    /// Every requested snapshot, and always the last one.
     pub snapshots: Vec<Snapshot>,
 }
 
-/// Takes the snapshots of a dump, one after the other.
+/// Builds a record from the snapshots of a dump, one after the other.
 pub struct Observer<'s> {
     scene: &'s Scene,
-    /// The scene with a sample at whatever step comes.
+    /// Scene with a sample at every step that is passed to the recorder.
     sampled: Scene,
-    /// Samples as printed, and with all numbers larger by what the digits leave open: along the axes, and outwards.
+    /// Recorders of three variants. Numbers are as printed, increased by their uncertainty, and shifted away from
+    /// zero by it.
     recorders: [Recorder; 3],
     known: Known,
-    /// Forces between grains, where a dump of contacts tells them.
+    /// Forces between grains, if there is a dump of contacts.
     pairs: PairForces,
     snapshots: Vec<Snapshot>,
     last: Option<Snapshot>,
 }
 
-/// What all snapshots so far have told.
+/// Quantities that all snapshots so far contain.
 #[derive(Debug, Clone)]
 struct Known {
     velocity: bool,
     spin: bool,
     angle: bool,
     pairs: bool,
-    /// The forces of each wall on the grains.
+    /// True for each wall whose forces on the grains are known.
     walls: Vec<bool>,
 }
 
-/// The columns of a snapshot that tell of grains.
+/// Columns of a snapshot with data of grains.
 struct Columns {
     id: Option<usize>,
     position: [Option<Coordinate>; 3],
     velocity: [Option<usize>; 3],
     spin: [Option<usize>; 3],
     angle: Option<usize>,
-    /// Radius, and the factor of the column.
+    /// Column of the radius, and factor of its values.
     radius: Option<(usize, f64)>,
     mass: Option<usize>,
     /// Forces of each wall on the grains.
@@ -83,7 +86,7 @@ struct Columns {
 /// Relative error of a radius or mass that a program computes from another quantity.
 const COMPUTED: f64 = 1e-9;
 
-/// How digits that were not printed are taken.
+/// Direction in which numbers are shifted by the uncertainty of their printed digits.
 #[derive(Clone, Copy)]
 enum Shift {
     None,
@@ -92,7 +95,7 @@ enum Shift {
 }
 
 impl<'s> Observer<'s> {
-    /// Of a scene.
+    /// Returns an observer of a scene.
     #[must_use]
     pub fn new(scene: &'s Scene) -> Self {
         let sampled =
@@ -105,20 +108,20 @@ impl<'s> Observer<'s> {
         Self { scene, sampled, recorders, known, pairs, snapshots: Vec::new(), last: None }
     }
 
-    /// The same, with forces between grains.
+    /// Adds forces between grains.
     pub(crate) fn with_pairs(mut self, pairs: PairForces) -> Self {
         self.known.pairs = !pairs.is_empty();
         self.pairs = pairs;
         self
     }
 
-    /// Takes a snapshot of the file `file`, at a time (s). `digits` are what its columns show to the end of the file,
-    /// in the order of its columns; without them printed numbers are taken as exact.
+    /// Adds a snapshot of the file `file` at a time (s). `digits` are the digits of each column in the whole file.
+    /// Without them, printed numbers are taken as exact.
     ///
     /// # Errors
-    /// When it lacks the id or the position of a grain, or has another number of grains than the scene (or more, where grains
-    /// leave it), or the contacts
-    /// of its step are missing where those of others are told.
+    /// If the id or the position of a grain is missing. If the number of grains differs from that of the scene; it
+    /// may be smaller if the scene removes grains. If the contacts of this step are missing and those of other steps
+    /// are not.
     pub fn take(
         &mut self,
         file: &str,
@@ -166,7 +169,7 @@ impl<'s> Observer<'s> {
                 let (id, grain) = (place as u32 + 1, &self.scene.grains[place]);
                 let row = snapshot.row(row);
                 let told = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
-                // What is not told is no number; along an axis that the scene does not have it is zero.
+                // A value that the file does not contain is NaN. Along an axis that the scene lacks it is zero.
                 let vector = |columns: &[Option<usize>; 3], axes: [bool; 3]| {
                     Vector3::from_fn(|axis, _| told(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 }))
                 };
@@ -200,7 +203,7 @@ impl<'s> Observer<'s> {
             let told = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
             for (number, wall) in seen.walls.iter_mut().enumerate() {
                 let on_grains = (0..order.len()).map(|grain| of_wall(number, grain));
-                // What the digits leave open adds up along every axis.
+                // Along every axis, the uncertainties of all digits are added.
                 let open = |of: PairForce| of.force.add_scalar(times * of.open);
                 let sum: Option<Vector3<f64>> = on_grains.map(|of| of.map(open)).sum();
                 wall.force = sum.map(|sum| -sum);
@@ -211,14 +214,14 @@ impl<'s> Observer<'s> {
                     self.snapshots.push(seen.clone());
                 }
             }
-            // The contacts that probes ask for are not all that there are: snapshots do not have them.
+            // Only contacts requested by probes are known, so snapshots do not contain them.
             seen.contacts = Some(told);
             recorder.take(&self.sampled, Look::of_rigid(seen, 0.0));
         }
         Ok(())
     }
 
-    /// Where the snapshot has what; the id and the positions it must have.
+    /// Finds the columns of a snapshot. The id and the positions are required.
     fn columns(&self, file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Columns, ReadError> {
         let missing = |what: &str| {
             let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
@@ -256,7 +259,8 @@ impl<'s> Observer<'s> {
         })
     }
 
-    /// Refuses grains whose radius or mass is not the one of the scene, to the printed digits.
+    /// Returns an error if the radius or mass of a grain differs from the scene by more than the uncertainty of its
+    /// digits.
     fn check_grains(
         &self,
         file: &str,
@@ -292,8 +296,8 @@ impl<'s> Observer<'s> {
         Ok(())
     }
 
-    /// The grains that are there, by their place in the scene, each with its row: ids in their order are the grains in that of
-    /// the scene. Of a scene that grains leave, an id is the place itself, from 1.
+    /// Returns the grains that are present as pairs of index in the scene and row. Rows sorted by id are in the order
+    /// of the scene. If grains were removed, the id is the index in the scene, counted from 1.
     fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<(usize, usize)>, ReadError> {
         let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
         let wrong = |expected: String, found: String| Err(ReadError::at(file, snapshot.first_line, expected, found));
@@ -325,7 +329,7 @@ impl<'s> Observer<'s> {
         Ok(there)
     }
 
-    /// What was observed.
+    /// Returns the record.
     #[must_use]
     pub fn finish(mut self) -> Observed {
         let last = self.last.take().filter(|last| self.snapshots.last().is_none_or(|kept| kept.step != last.step));
@@ -345,7 +349,7 @@ impl<'s> Observer<'s> {
                 continue;
             }
             let (along, outwards) = (shifted(&along, at, &values), shifted(&outwards, at, &values));
-            // Without digits nothing was shifted, and nothing is left open.
+            // Without digits, nothing was shifted and the uncertainty is zero.
             observed.uncertainty.push(along.iter().zip(&outwards).map(|(a, b)| a.max(*b).max(0.0)).collect());
             observed.series.columns.push(column);
             observed.series.values.push(values);
@@ -355,7 +359,7 @@ impl<'s> Observer<'s> {
 }
 
 impl Observed {
-    /// Of a scene without grains: the samples, and nothing told yet.
+    /// Returns the samples of a scene without grains. There are no columns yet.
     pub(crate) fn without_grains(stepping: &Stepping) -> Self {
         let step: Vec<u64> = stepping.samples().collect();
         let time = step.iter().map(|step| *step as f64 * stepping.time_step).collect();
@@ -363,7 +367,7 @@ impl Observed {
         Self { series, uncertainty: Vec::new(), snapshots: Vec::new() }
     }
 
-    /// Keeps the first samples, and the snapshots up to them.
+    /// Keeps the first `samples` samples and the snapshots up to the last of them.
     pub fn keep(&mut self, samples: usize) {
         let series = &mut self.series;
         if samples >= series.step.len() {
@@ -376,7 +380,7 @@ impl Observed {
         self.snapshots.retain(|snapshot| snapshot.step <= last);
     }
 
-    /// Adds a column of a scene's series that was learnt otherwise, taken as exact.
+    /// Adds a column of the scene's series from another source. It is taken as exact.
     pub(crate) fn add(&mut self, scene: &Scene, name: &str, values: Vec<f64>) {
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
         let known = columns.into_iter().find(|column| column.name == name);
@@ -388,7 +392,7 @@ impl Observed {
     }
 }
 
-/// Whether a dump of grains tells a column of the series.
+/// Returns true if a dump of grains contains a column of the series.
 fn is_known(scene: &Scene, name: &str, known: &Known) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
     match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
@@ -412,7 +416,7 @@ fn is_known(scene: &Scene, name: &str, known: &Known) -> bool {
     }
 }
 
-/// Overlaps follow from where grains are; whether a contact slips nobody prints.
+/// Overlaps follow from the positions of the grains. No program prints if a contact slips.
 fn is_known_of_contact(quantity: &str, forces: bool) -> bool {
     quantity == "overlap" || forces && quantity.ends_with("_force")
 }

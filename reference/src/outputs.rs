@@ -1,4 +1,4 @@
-//! What some program left of a run, in dumps or in one table, read twice: once for what the files are, once for a
+//! Outputs of a run as dumps or as one table. The files are read twice, first for their properties and then for a
 //! record.
 
 use std::path::{Path, PathBuf};
@@ -19,70 +19,70 @@ use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
 
 pub use crate::run_files::is_of_a_run;
 
-/// Most files that are named one by one.
+/// Maximum number of files that are named individually.
 const MOST_NAMED: usize = 3;
 
-/// Which files, and what they do not say themselves.
+/// Files of a run, and data that they lack.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Dumps that follow one another, files of a moment each (VTK, tables of grains) or a collection of them, or one table.
+    /// Consecutive dumps, files with one moment each (VTK, grain tables), a collection of such files, or one table.
     pub files: Vec<PathBuf>,
-    /// The log of the run.
+    /// Log of the run.
     pub log: Option<PathBuf>,
-    /// What the columns are called there.
+    /// Names of the columns in the files.
     pub names: Names,
-    /// Time step (s), where no file says it.
+    /// Time step (s), needed if no file contains it.
     pub time_step: Option<f64>,
-    /// Time between frames (s) of files that are numbered by frames and tell no times.
+    /// Time between frames (s), needed if files are numbered by frames and contain no times.
     pub frame_interval: Option<f64>,
-    /// Most rows that a snapshot of the scene can have; any number where none is said.
+    /// Maximum number of rows in a snapshot of the scene. Without a value there is no limit.
     pub most_rows: Option<u64>,
-    /// Takes the whole frames of a file that is cut off.
+    /// If true, complete frames of a truncated file are read.
     pub partial: bool,
-    /// Counts steps and times from the first sample.
+    /// If true, steps and times are counted from the first sample.
     pub from_first: bool,
 }
 
-/// Why outputs cannot be taken for a run.
+/// Reason why outputs cannot be read as a run.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// A file is damaged, or lacks something.
+    /// A file is damaged or incomplete.
     #[error(transparent)]
     Read(ReadError),
-    /// A file is cut off, as a killed job leaves it.
+    /// A file is truncated, for example because a job was killed.
     #[error("{0} (--partial judges the whole frames in front of it)")]
     Cut(ReadError),
-    /// Files are numbered by frames, and no file says their times.
+    /// Files are numbered by frames, and no file contains their times.
     #[error("{}: expected a column `Time` (s) in the file, or --frame-interval, found numbers of frames only", one_line(.0))]
     NoFrameTime(String),
-    /// The time step that was given is not that of the files.
+    /// The given time step differs from that of the files.
     #[error("--dt: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]
     OtherTimeStep {
-        /// The shortest and the longest of the files (s).
+        /// Shortest and longest time step of the files (s).
         told: [f64; 2],
-        /// What was given (s).
+        /// Given time step (s).
         given: f64,
     },
-    /// No file says how long a step is.
+    /// No file contains the time step.
     #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --dt, found none", one_line(.0))]
     NoTime(String),
-    /// Units that scenes are not in.
+    /// The units are not supported by scenes.
     #[error("{}: expected the units `si`, or `lj` for a scene without dimensions, found {}", one_line(.0), quoted(.1))]
     Units(String, String),
-    /// A dump and its log do not belong together.
+    /// A dump and its log have different units.
     #[error("{}: expected the units {} of the dump, found {}", one_line(.log), quoted(.of_dump), quoted(.of_log))]
     MixedUnits {
-        /// The log.
+        /// Name of the log.
         log: String,
-        /// The units of the dump.
+        /// Units of the dump.
         of_dump: String,
-        /// Those of the log.
+        /// Units of the log.
         of_log: String,
     },
-    /// Files of different kinds together.
+    /// The files are of different kinds.
     #[error("{}: expected one table alone, or dumps alone", one_line(.0))]
     MixedFiles(String),
-    /// Nothing of the run's grains.
+    /// The files contain no grains.
     #[error("{}: expected a dump of grains, found one of other entries only", one_line(.0))]
     NoGrains(String),
 }
@@ -93,61 +93,61 @@ impl From<ReadError> for OutputError {
     }
 }
 
-/// Time steps in words: one, or the shortest and the longest (s).
+/// Returns time steps (s) as text, either one value or the shortest and the longest.
 #[must_use]
 pub fn steps_in_words([shortest, longest]: [f64; 2]) -> String {
     if shortest == longest { format!("{shortest} s") } else { format!("{shortest} s to {longest} s") }
 }
 
-/// The sample that counts as time 0 where it is not at step 0 and time 0.
+/// Sample that is taken as time 0 if it is not at step 0 and time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
-    /// Its step or number.
+    /// Step or frame number.
     pub step: u64,
-    /// Its time (s), where it is known.
+    /// Time (s), if it is known.
     pub time: Option<f64>,
 }
 
-/// What the files are.
+/// Properties of the outputs of a run.
 #[derive(Debug, Clone)]
 pub struct Outputs {
     sources: Sources,
-    /// The dumps and files of a moment, in their order.
+    /// Dumps and files of one moment, sorted by step.
     files: Vec<RunFile>,
-    /// Of the columns of each, to its end.
+    /// Digits of the columns of each file, from the whole file.
     digits: Vec<Vec<Digits>>,
     table: Option<Table>,
-    /// Times of the steps, where they are known.
+    /// Times of the steps, if they are known.
     clock: Option<Clock>,
-    /// The first and the last step.
+    /// First and last step.
     ends: [u64; 2],
-    /// The first sample, which counts as time 0.
+    /// First sample, which is taken as time 0.
     origin: Origin,
-    /// Errors of the files that are cut off.
+    /// Errors of truncated files.
     cuts: Vec<String>,
-    /// Most significant digits of any number.
+    /// Largest number of significant digits of any number.
     significant: u32,
-    /// Ids of the grains, in their order.
+    /// Ids of the grains, sorted.
     ids: Vec<u64>,
 }
 
-/// What the snapshots of all files show.
+/// Properties of the snapshots in all files.
 #[derive(Default)]
 struct Survey {
-    /// Steps and times (s) of snapshots that tell both.
+    /// Steps and times (s) of snapshots that contain both.
     timed: Vec<(u64, f64)>,
     units: Option<String>,
-    /// The first snapshot of grains: its number and its time (s).
+    /// Number and time (s) of the first snapshot of grains.
     first: Option<Origin>,
-    /// The first and the last step.
+    /// First and last step.
     ends: Option<[u64; 2]>,
 }
 
 impl Outputs {
-    /// Reads the files to their end and keeps what they show.
+    /// Reads the files to the end and stores their properties.
     ///
     /// # Errors
-    /// A file is damaged, or they do not fit together.
+    /// If a file is damaged, or if the files are not consistent.
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
         let log = sources.log.as_deref().map(read_log).transpose()?;
         if let (Some(log), Some(path)) = (&log, &sources.log) {
@@ -206,7 +206,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Reads a file to its end: what its snapshots show, and the digits of its columns.
+    /// Reads a file to the end. Adds its snapshots to `survey` and returns the digits of its columns.
     fn look(&mut self, file: &RunFile, survey: &mut Survey) -> Result<Vec<Digits>, OutputError> {
         let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX))?;
         let mut snapshot = DumpSnapshot::default();
@@ -244,7 +244,8 @@ impl Outputs {
         Ok(snapshot.columns.iter().map(|column| column.digits).collect())
     }
 
-    /// Takes the time steps of the log, of the files, or those given, which must not differ from what files say.
+    /// Sets the time steps from the options, the log or the files. A given time step must agree with that of the
+    /// files.
     fn set_clock(&mut self, of_log: Option<Clock>, of_files: Option<Clock>) -> Result<(), OutputError> {
         let [first, last] = self.ends;
         let given = self.sources.time_step;
@@ -259,38 +260,38 @@ impl Outputs {
         Ok(())
     }
 
-    /// The longest time step (s), where it is known.
+    /// Returns the longest time step (s), if it is known.
     #[must_use]
     pub fn time_step(&self) -> Option<f64> {
         self.time_steps().map(|[_, longest]| longest)
     }
 
-    /// The shortest and the longest time step (s), where they are known.
+    /// Returns the shortest and the longest time step (s), if they are known.
     #[must_use]
     pub fn time_steps(&self) -> Option<[f64; 2]> {
         self.clock.as_ref().map(|clock| clock.range(self.ends[0], self.ends[1]))
     }
 
-    /// The sample that counts as time 0, where it is not at step 0 and time 0.
+    /// Returns the sample that is taken as time 0 if it is not at step 0 and time 0.
     #[must_use]
     pub fn origin(&self) -> Option<Origin> {
         let is_late = self.origin.time.map_or(self.origin.step > 0, |time| time.abs() > 0.0);
         is_late.then_some(self.origin)
     }
 
-    /// Where files are cut off; their whole frames alone were read.
+    /// Returns the positions where files are truncated. Only their complete frames were read.
     #[must_use]
     pub fn cuts(&self) -> &[String] {
         &self.cuts
     }
 
-    /// Most significant digits of any number: the precision that the files were printed with.
+    /// Returns the largest number of significant digits of any number, which is the printed precision of the files.
     #[must_use]
     pub fn significant_digits(&self) -> u32 {
         self.significant
     }
 
-    /// What a page calls them.
+    /// Returns the name of the outputs for pages.
     #[must_use]
     pub fn name(&self) -> String {
         let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -304,16 +305,17 @@ impl Outputs {
         }
     }
 
-    /// What they tell of a scene.
+    /// Returns the quantities of a scene that the files contain.
     ///
     /// # Errors
-    /// They lack a column that the scene's grains need, have another number of grains, or do not say the time.
+    /// If a required column is missing, if the number of grains differs from that of the scene, or if the time is
+    /// unknown.
     pub fn observe(&self, scene: &Scene) -> Result<Observed, OutputError> {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
         let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
-        // The number and the time (s) of the last snapshot of grains; the last snapshot of the last file.
+        // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
         let mut before = DumpSnapshot::default();
@@ -328,7 +330,7 @@ impl Outputs {
                 }
                 let is_first = number.is_none();
                 let number = *number.insert(snapshot.step);
-                // Where one dump continues another, its first snapshot is the last of that.
+                // If one dump continues another, its first snapshot repeats the last one of the other.
                 if last == Some(number) {
                     if is_first {
                         snapshot.check_repeated(&name, &before)?;
@@ -358,7 +360,7 @@ impl Outputs {
         if last.is_some() { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
     }
 
-    /// Reads the next snapshot; false at the end of the file, or where it is cut off and that was reported.
+    /// Reads the next snapshot. Returns false at the end of the file, or where it is truncated if that is allowed.
     fn next(&self, reader: &mut Snapshots, snapshot: &mut DumpSnapshot) -> Result<bool, OutputError> {
         match reader.read(snapshot) {
             Err(error) if error.is_cut() && self.sources.partial => Ok(false),
@@ -366,7 +368,7 @@ impl Outputs {
         }
     }
 
-    /// The time of a snapshot (s) as its file tells it.
+    /// Returns the time of a snapshot (s) if it follows from the file or the frame interval.
     fn told_time(&self, snapshot: &DumpSnapshot) -> Option<f64> {
         let of_frames = || {
             let interval = self.sources.frame_interval.filter(|_| snapshot.numbering != Numbering::Steps)?;
@@ -375,7 +377,7 @@ impl Outputs {
         snapshot.time.or_else(of_frames)
     }
 
-    /// The time of a snapshot (s) since the first one.
+    /// Returns the time of a snapshot (s) since the first one.
     fn time(&self, name: &str, snapshot: &DumpSnapshot) -> Result<f64, OutputError> {
         match (self.told_time(snapshot), &self.clock) {
             (Some(time), _) => Ok(time - self.origin.time.unwrap_or_default()),
@@ -385,7 +387,8 @@ impl Outputs {
         }
     }
 
-    /// The step of a snapshot since the first one; where its number may be that of a frame, from its time (s).
+    /// Returns the step of a snapshot since the first one. If the number of the snapshot can be a frame number, the
+    /// step is computed from its time (s).
     fn step(&self, snapshot: &DumpSnapshot, time: f64) -> u64 {
         let is_told = snapshot.numbering != Numbering::Steps && self.told_time(snapshot).is_some();
         match self.time_step().filter(|_| is_told) {
@@ -394,7 +397,7 @@ impl Outputs {
         }
     }
 
-    /// What dumps of contacts tell of the pairs that the scene asks for.
+    /// Returns the forces between the pairs that the scene requests, from dumps of contacts.
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
         let mut pairs = PairForces::of(scene, &self.ids);
         for (file, digits) in self.files.iter().zip(&self.digits) {
@@ -411,8 +414,8 @@ impl Outputs {
         Ok(pairs)
     }
 
-    /// A table has a column `time` (or `t`), and columns called as the scene's probes are; the probe's name may be left
-    /// out where only one column of the scene ends so.
+    /// Reads a table with a column `time` (or `t`) and columns named like those of the scene's probes. The name of
+    /// the probe can be omitted if only one column of the scene has this ending.
     fn observe_table(&self, scene: &Scene, table: &Table) -> Result<Observed, OutputError> {
         let name = shown(&self.sources.files[0]);
         let names = &self.sources.names;
@@ -472,12 +475,12 @@ impl Outputs {
     }
 }
 
-/// The column of a table with the times.
+/// Returns the column of a table with the times.
 fn time_column(table: &Table, names: &Names) -> Option<usize> {
     ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.of(name)))
 }
 
-/// The time step that a table with steps and times tells.
+/// Returns the time step (s) of a table with steps and times.
 fn table_step(table: &Table, names: &Names) -> Option<f64> {
     let ends = |column: usize| {
         let mut values = table.values(column);
@@ -487,13 +490,13 @@ fn table_step(table: &Table, names: &Names) -> Option<f64> {
     (length.is_finite() && length > 0.0).then_some(length)
 }
 
-/// The first and the last step of a table.
+/// Returns the first and the last step of a table.
 fn steps_of(table: &Table, names: &Names) -> [u64; 2] {
     let step = table.column(names.of("step")).map(|at| table.values(at).map(|step| step as u64).collect::<Vec<_>>());
     step.and_then(|steps| Some([*steps.first()?, *steps.last()?])).unwrap_or_default()
 }
 
-/// Files of one moment each show together how their columns were printed.
+/// Merges the digits of files with one moment each, because their columns have the same format.
 fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     let Some((first, rest)) = digits.split_first().filter(|_| are_of_a_moment) else { return };
     if rest.iter().any(|of_file| of_file.len() != first.len()) {
@@ -503,7 +506,7 @@ fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     digits.fill(all);
 }
 
-/// The ids of a snapshot, in their order.
+/// Returns the ids of a snapshot, sorted.
 fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
     let mut ids: Vec<u64> = match snapshot.column(names.of("id")) {
         Some(column) => snapshot.values(column).map(|id| id as u64).collect(),
@@ -513,7 +516,7 @@ fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
     ids
 }
 
-/// The first table among several files.
+/// Returns the first table among several files.
 fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
     for file in files {
         if kind(file)?.is_table() {

@@ -1,48 +1,51 @@
-//! One column of two outputs in the making of its difference.
+//! Accumulated difference of one column between two outputs.
 
 use crate::read::digits::Digits;
 
-/// How one column of the second output differs from that of the first.
+/// Difference of one column between the second output and the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// The column.
+    /// Name of the column.
     pub name: String,
-    /// Value of the first where they differ most beyond their printed digits.
+    /// Value of the first output at the largest difference. Differences are compared after subtraction of the
+    /// uncertainty of printed digits.
     pub first: f64,
-    /// Value of the second there.
+    /// Value of the second output at the same point.
     pub second: f64,
-    /// The largest change of a coordinate, the largest magnitude of anything else: of the first output, or of the second
-    /// where the first is zero throughout. One where both are.
+    /// Reference magnitude. It is the largest change for a coordinate and the largest magnitude for any other column.
+    ///
+    /// It is taken from the first output, or from the second if the first is zero throughout. It is 1 if both are
+    /// zero.
     pub scale: f64,
-    /// How far the printed digits of both there, and interpolation between samples of the second, may have moved the
-    /// difference.
+    /// Uncertainty of the difference at the same point. It results from the printed digits of both outputs and from
+    /// interpolation of the second.
     pub open: f64,
-    /// Sample by sample.
+    /// Difference at each sample.
     pub course: Vec<Sample>,
 }
 
-/// The difference of a column at one sample.
+/// Difference of a column at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Step, time (s) or row.
     pub at: f64,
-    /// The largest difference of a row.
+    /// Largest difference of a row.
     pub off: f64,
-    /// The largest part of a difference that printed digits do not explain.
+    /// Largest difference that remains after subtraction of the uncertainty of printed digits.
     pub beyond_digits: f64,
 }
 
-/// With which digits a file prints a column.
+/// Printed digits of a column in a file.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Printed {
     pub(super) digits: Digits,
     pub(super) of_file: Digits,
-    /// The box length that a scaled coordinate is multiplied by.
+    /// Box length by which a scaled coordinate is multiplied.
     pub(super) scale: Option<f64>,
 }
 
 impl Printed {
-    /// Half a unit of the last printed place of a value.
+    /// Returns half a unit of the last printed digit of a value.
     fn half_unit(&self, value: f64) -> f64 {
         match self.scale {
             Some(scale) => scale * self.digits.half_unit(1.0, &self.of_file),
@@ -51,13 +54,13 @@ impl Printed {
     }
 }
 
-/// A column in the making.
+/// Column whose difference is accumulated.
 pub(super) struct Column {
     difference: Difference,
     printed: [Printed; 2],
     is_coordinate: bool,
     starts: [Vec<f64>; 2],
-    /// The largest magnitude in each.
+    /// Largest magnitude in each output.
     magnitudes: [f64; 2],
     changes: [f64; 2],
     worst: f64,
@@ -72,7 +75,7 @@ impl Column {
         Self { difference, printed, is_coordinate, starts: Default::default(), magnitudes, changes, worst }
     }
 
-    /// Takes all rows at one place: a step, a time (s) or a row.
+    /// Adds all rows at one step, time (s) or row.
     pub(super) fn take(&mut self, at: f64, values: [&[f64]; 2]) {
         for (which, values) in values.into_iter().enumerate() {
             if self.starts[which].is_empty() {
@@ -98,14 +101,14 @@ impl Column {
         self.difference.course.push(sample);
     }
 
-    /// The difference, with what interpolation leaves open beside the digits.
+    /// Returns the difference. `interpolated` is the interpolation error, which is added to the uncertainty.
     pub(super) fn finish(mut self, interpolated: f64) -> Difference {
         let of = |which: usize| {
             let change = self.changes[which];
             if self.is_coordinate && change > 0.0 { change } else { self.magnitudes[which] }
         };
         let extents = [of(0), of(1)];
-        // Zeros throughout are the same, however few digits they have.
+        // Columns that are zero throughout are equal, however few digits they have.
         let extent = extents.into_iter().find(|extent| *extent > 0.0);
         self.difference.scale = extent.unwrap_or(1.0);
         self.difference.open = extent.map_or(0.0, |_| self.difference.open + interpolated);

@@ -1,5 +1,5 @@
-//! An output as a sequence of frames, whether it is a dump or a table: at each step, time or row, the numbers of some
-//! columns.
+//! Outputs as sequences of frames. A frame of a dump or table contains the values of some columns at one step, time
+//! or row.
 
 use std::path::Path;
 use std::vec;
@@ -15,42 +15,42 @@ use crate::run_files::{RunFile, Snapshots, in_order};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Where a frame stands.
+/// Position of a frame in the sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// The step, where the file tells it.
+    /// Step, if the file contains it.
     pub(super) step: Option<u64>,
-    /// The time (s), where the file or its time step tells it.
+    /// Time (s), if it follows from the file or its time step.
     pub(super) time: Option<f64>,
-    /// The number of the frame, from 0.
+    /// Number of the frame, from 0.
     pub(super) number: u64,
-    /// The line that errors name.
+    /// Line number for error messages.
     pub(super) line: u64,
 }
 
-/// The numbers at one place.
+/// Values at one position.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) place: Place,
-    /// Ids of the rows in their order, where the file tells them.
+    /// Ids of the rows in their order, if the file contains them.
     pub(super) ids: Option<Vec<f64>>,
-    /// For each column all rows in the order of their ids.
+    /// For each column, all rows sorted by id.
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Frame after frame of a file.
+/// Reader of the frames of a file.
 pub(super) struct Frames {
     pub(super) file: String,
     time_step: Option<f64>,
     names: Names,
-    /// The columns that are told, by our names.
+    /// Requested columns, by our names.
     wanted: Vec<String>,
     number: u64,
     ids: Ids,
-    /// Place and numbers of the last frame; those of a snapshot without its numbers.
+    /// Position and numbers of the last frame. The numbers of a snapshot are omitted.
     last: Option<(Place, Vec<f64>)>,
     partial: bool,
-    /// Where the file is cut off, if that was allowed.
+    /// Position where the file is truncated, if that is allowed.
     pub(super) cut: Option<String>,
     from: From,
 }
@@ -59,7 +59,7 @@ enum From {
     Grains {
         files: vec::IntoIter<RunFile>,
         reader: Option<Snapshots>,
-        /// Whether nothing was read of the open file.
+        /// True if no snapshot of the open file has been read.
         is_new: bool,
         snapshot: DumpSnapshot,
     },
@@ -72,7 +72,7 @@ enum From {
 }
 
 impl Frames {
-    /// Of a file: of the first (0) or the second (1) of two.
+    /// Opens a file. `which` is 0 for the first and 1 for the second of two files.
     pub(super) fn open(path: &Path, is_grains: bool, which: usize, options: &Options) -> Result<Self, ReadError> {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
@@ -89,13 +89,13 @@ impl Frames {
         Ok(Self { file, time_step, names, wanted, number: 0, ids, last: None, partial, cut: None, from })
     }
 
-    /// Asks for these columns from now on, by our names.
+    /// Selects columns for the following frames, by our names.
     pub(super) fn want(&mut self, columns: &[String]) {
         columns.clone_into(&mut self.wanted);
     }
 
-    /// The columns that the file has, by our names: coordinates, then others, without ids and words. Of a dump once its
-    /// first frame was read.
+    /// Returns the columns of the file by our names. Coordinates come first, ids and text columns are omitted. For a
+    /// dump, the columns are available after the first frame.
     pub(super) fn columns(&self) -> Vec<String> {
         let ours = |theirs: &str| {
             let renamed = self.names.0.iter().find(|(_, known)| known == theirs);
@@ -126,7 +126,7 @@ impl Frames {
         }
     }
 
-    /// The next frame; none at the end of the file. A frame that repeats the one before is passed over.
+    /// Reads the next frame. Returns `None` at the end of the file. A repetition of the previous frame is skipped.
     pub(super) fn next(&mut self) -> Result<Option<Frame>, ReadError> {
         loop {
             let Some((frame, numbers)) = self.frame()? else { return Ok(None) };
@@ -143,10 +143,10 @@ impl Frames {
         }
     }
 
-    /// Returns whether a frame repeats the one before.
+    /// Returns true if a frame repeats the previous one.
     ///
     /// # Errors
-    /// The frame has the step or the time of the one before and other numbers, or goes back.
+    /// If the step or time of the frame decreases, or equals that of the previous frame while the numbers differ.
     fn is_repeated(&self, before: &Place, of_before: &[f64], at: &Place, numbers: &[f64]) -> Result<bool, ReadError> {
         let steps = before.step.zip(at.step);
         let times = before.time.zip(at.time);
@@ -164,7 +164,7 @@ impl Frames {
         }
     }
 
-    /// Reads the next frame, with all numbers of the row of a table.
+    /// Reads the next frame. For a table, all numbers of the row are returned with it.
     fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
         match &mut self.from {
@@ -189,11 +189,11 @@ impl Frames {
         if let Some(id) = snapshot.column(self.names.of("id")) {
             self.ids.check(&self.file, snapshot, id)?;
         }
-        // A snapshot that repeats a step was compared with the one before when it was read.
+        // The reader has already compared a snapshot that repeats a step with the previous one.
         Ok(Some((self.of_snapshot(snapshot, number), Vec::new())))
     }
 
-    /// Reads the next snapshot; false behind the last, or where the file is cut off and that is allowed.
+    /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if that is allowed.
     fn next_snapshot(&mut self) -> Result<bool, ReadError> {
         let From::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
         loop {
@@ -226,7 +226,7 @@ impl Frames {
         }
     }
 
-    /// The unit system that the file names.
+    /// Returns the unit system that the file names.
     pub(super) fn units(&self) -> Option<&str> {
         match &self.from {
             From::Grains { snapshot, .. } => snapshot.units.as_deref(),
@@ -258,7 +258,7 @@ impl Frames {
         }
     }
 
-    /// With which digits the file prints a column, once all was read.
+    /// Returns the printed digits of a column. They are complete after all frames have been read.
     pub(super) fn printed(&self, name: &str) -> Printed {
         match &self.from {
             From::Grains { snapshot, .. } => {

@@ -1,5 +1,7 @@
-//! Two outputs against each other, column by column: at the steps or rows that both have, or in time where their steps
-//! differ, with the second interpolated between its samples.
+//! Comparison of two outputs column by column.
+//!
+//! Samples are matched by step or row. If the steps differ, they are matched by time, and the second output is
+//! interpolated between its samples.
 
 mod column;
 mod frames;
@@ -14,32 +16,32 @@ use frames::{Frame, Frames, Place};
 
 pub use column::{Difference, Sample};
 
-/// What is compared of two outputs.
+/// Options of a comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Only these columns, by the names that the first file has; all that both have when empty.
+    /// Columns to compare, by their names in the first file. If empty, all common columns are compared.
     pub columns: Vec<String>,
-    /// What the second file calls columns of the first.
+    /// Names of the columns in the second file.
     pub names: Names,
-    /// Time steps (s) of both, where files tell steps and no times.
+    /// Time steps (s) of both outputs, needed if the files contain steps but no times.
     pub time_steps: [Option<f64>; 2],
-    /// Takes the whole frames of a file that is cut off.
+    /// If true, complete frames of a truncated file are read.
     pub partial: bool,
 }
 
-/// By what samples of two outputs are matched.
+/// Quantity by which samples of two outputs are matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
-    /// By step.
+    /// Step.
     Step,
-    /// In time, the second interpolated.
+    /// Time. The second output is interpolated.
     Time,
-    /// Row by row.
+    /// Row number.
     Row,
 }
 
 impl Key {
-    /// What a sample is called.
+    /// Returns the word for the quantity.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -58,39 +60,39 @@ impl Key {
     }
 }
 
-/// Two outputs, compared.
+/// Result of a comparison of two outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Column by column.
+    /// Difference of each column.
     pub differences: Vec<Difference>,
-    /// Columns that one of them has and the other has not.
+    /// Columns that only one of the outputs has.
     pub lonely: [Vec<String>; 2],
-    /// Where each is cut off, if that was allowed.
+    /// Position where each output is truncated, if that is allowed.
     pub cuts: [Option<String>; 2],
-    /// By what samples were matched.
+    /// Quantity by which samples were matched.
     pub key: Key,
-    /// How many samples of the first were compared.
+    /// Number of samples of the first output that were compared.
     pub compared: u64,
-    /// How many of them with a value of the second that was interpolated.
+    /// Number of these samples that were compared with an interpolated value.
     pub interpolated: u64,
-    /// How many samples each has.
+    /// Number of samples in each output.
     pub samples: [u64; 2],
-    /// The last sample of each: its step, time (s) or row.
+    /// Step, time (s) or row of the last sample in each output.
     pub last: [f64; 2],
-    /// The last that was compared.
+    /// Step, time (s) or row of the last sample that was compared.
     pub last_compared: f64,
-    /// Mean distance between samples of the one with fewer, in the same unit.
+    /// Mean distance between samples in the output with fewer samples, in the same unit.
     pub interval: f64,
 }
 
-/// Times this near to each other are one, as a part of the larger.
+/// Relative difference below which two times are equal. It refers to the larger time.
 const ONE_TIME: f64 = 1e-6;
 
 /// Compares two dumps or two tables.
 ///
 /// # Errors
-/// One of them cannot be read, they are of different kinds, have no column or no sample in common, or another number of
-/// rows at a step.
+/// If a file cannot be read, or if the files are of different kinds. Also if they have no common column or sample, or
+/// if the numbers of rows at a step differ.
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
     let kinds = [kind(first)?, kind(second)?];
@@ -125,20 +127,20 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     Ok(Comparison { differences, lonely, cuts, key, compared, interpolated, samples, last, last_compared, interval })
 }
 
-/// What both files hold.
+/// Contents of both files.
 struct Survey {
-    /// The columns that are compared.
+    /// Columns that are compared.
     columns: Vec<String>,
-    /// With which digits each file prints them.
+    /// Printed digits of these columns in each file.
     printed: Vec<[Printed; 2]>,
-    /// Columns that one of them has and the other has not.
+    /// Columns that only one of the files has.
     lonely: [Vec<String>; 2],
-    /// Where the samples of each stand.
+    /// Positions of the samples in each file.
     places: [Vec<Place>; 2],
     cuts: [Option<String>; 2],
 }
 
-/// Reads both files to their ends.
+/// Reads both files to the end.
 fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError> {
     let mut places: [Vec<Place>; 2] = Default::default();
     for (frames, places) in files.iter_mut().zip(&mut places) {
@@ -175,8 +177,10 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
     Ok(Survey { columns, printed, lonely, places, cuts })
 }
 
-/// By what samples are matched: by steps where the file with fewer has none of its own and they are at the same times,
-/// else in time where both tell it; row by row only tables that tell neither.
+/// Returns the quantity by which samples are matched.
+///
+/// It is the step if all steps of the file with fewer samples occur in the other file at the same times. Otherwise it
+/// is the time if both files contain it, and else the step. Tables with neither are matched by row number.
 fn key([a, b]: &[Vec<Place>; 2]) -> Option<Key> {
     let tell_times = a.iter().chain(b).all(|place| place.time.is_some());
     let tell_steps = a.iter().chain(b).all(|place| place.step.is_some());
@@ -204,11 +208,11 @@ fn is_one(one: f64, two: f64) -> bool {
     (one - two).abs() <= ONE_TIME * one.abs().max(two.abs())
 }
 
-/// Goes through two outputs together.
+/// Simultaneous pass through two outputs.
 struct Walk {
     key: Key,
     columns: Vec<Column>,
-    /// The largest second difference of each column of the second output, where it is interpolated.
+    /// Largest second difference of each column of the second output, for the interpolation error.
     bends: Vec<f64>,
     compared: u64,
     interpolated: u64,
@@ -224,7 +228,7 @@ impl Walk {
             let at = self.key.of(&frame.place);
             let key = self.key;
             let is_there = |other: f64| if key == Key::Time { is_one(other, at) } else { other == at };
-            // What lies behind is kept for as long as something may lie between it and what is ahead.
+            // Earlier frames are kept as long as a sample can lie between them and the next frame.
             while let Some(next) = ahead.take() {
                 let other = self.key.of(&next.place);
                 if other >= at || is_there(other) {
@@ -265,7 +269,7 @@ impl Walk {
         self.last = at;
     }
 
-    /// Remembers a frame of the second output, and how sharply its columns bend there.
+    /// Stores a frame of the second output and updates the second differences of its columns.
     fn bend(&mut self, recent: &mut Vec<Frame>, next: Frame) {
         if let [first, second] = &recent[..] {
             for (at, bend) in self.bends.iter_mut().enumerate() {
@@ -278,8 +282,8 @@ impl Walk {
         recent.push(next);
     }
 
-    /// Differences with what digits leave open, and an eighth of the second difference where values were interpolated:
-    /// the error of a straight line between two samples.
+    /// Returns the differences with their uncertainty. If values were interpolated, an eighth of the second
+    /// difference is added, which is the error of linear interpolation between two samples.
     fn finish(self) -> Vec<Difference> {
         let interpolated = self.interpolated > 0;
         let with_bends = self.columns.into_iter().zip(self.bends);
@@ -287,13 +291,13 @@ impl Walk {
     }
 }
 
-/// Values between two frames, in a straight line.
+/// Interpolates linearly between two frames.
 fn between(before: &Frame, next: &Frame, share: f64) -> Vec<Vec<f64>> {
     let column = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect();
     before.values.iter().zip(&next.values).map(column).collect()
 }
 
-/// Refuses frames with other rows or other ids.
+/// Returns an error if two frames have different rows or ids.
 fn matched(frame: &Frame, other: &Frame, file: &str, key: Key) -> Result<(), ReadError> {
     let rows = |frame: &Frame| frame.values.first().map_or(0, Vec::len);
     let (word, at) = (key.word(), key.of(&frame.place));
