@@ -23,9 +23,9 @@ impl Moments for DumpReader<'_> {
     }
 }
 
-/// The first step; none of one that is damaged, which whoever reads it is told.
+/// Returns the first step, or `None` if the file is damaged. The reader reports the damage later.
 fn first_step(path: &Path) -> Option<u64> {
-    /// Lines of units and time may stand in front of it.
+    /// Maximum number of lines before the step, which can contain units and time.
     const MOST_LINES: usize = 8;
     let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &path.to_string_lossy()).ok()?;
     let mut is_next = false;

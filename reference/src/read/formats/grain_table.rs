@@ -1,4 +1,4 @@
-//! Tables of grains, a row for each grain and moment: of ParaView, of pandas, of whoever.
+//! Tables of grains from ParaView, pandas or any other program. Each row is one grain at one moment.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
 use crate::read::grain_table::{is_of_grains, read_moments};

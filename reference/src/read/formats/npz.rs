@@ -1,4 +1,4 @@
-//! Arrays of NumPy's.
+//! Arrays of NumPy.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
 use crate::read::npz::{MARK, read_course};
@@ -6,7 +6,7 @@ use crate::read::snapshot::Numbering;
 
 pub(crate) static FORMAT: Format = Format {
     words: "arrays of NumPy's",
-    // Other archives are refused where their text is looked for.
+    // Other archives are refused when they are read as text.
     told_by: ToldBy::Beginning(|of| {
         of.bytes.starts_with(MARK) && of.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
     }),

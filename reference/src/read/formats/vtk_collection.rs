@@ -1,4 +1,4 @@
-//! Lists of VTK's files with their times.
+//! Lists of VTK files with their times.
 
 use crate::read::format::{Format, Holds, ToldBy};
 use crate::read::read_error::ReadError;

@@ -1,4 +1,4 @@
-//! Points of VTK's in HDF5.
+//! VTK points in HDF5 files.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
 use crate::read::snapshot::Numbering;

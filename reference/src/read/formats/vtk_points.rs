@@ -1,4 +1,4 @@
-//! Points of VTK's, legacy or XML.
+//! VTK points in legacy or XML files.
 
 use crate::read::format::{ByPlace, Format, Holds, ToldBy};
 use crate::read::snapshot::Numbering;

@@ -1,9 +1,9 @@
-//! Bytes of a file with a place in them.
+//! Bytes of a file with a reading position.
 
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 
-/// A file in memory and how far it was read.
+/// File in memory with a reading position.
 #[derive(Clone, Copy)]
 pub(super) struct Bytes<'b> {
     file: &'b str,
@@ -16,24 +16,24 @@ impl<'b> Bytes<'b> {
         Self { file, all, at: 0 }
     }
 
-    /// The whole file.
+    /// Returns the whole file.
     pub(super) const fn all(&self) -> &'b [u8] {
         self.all
     }
 
-    /// What errors call it.
+    /// Returns the name of the file for error messages.
     pub(super) const fn file(&self) -> &'b str {
         self.file
     }
 
-    /// A fault at a byte.
+    /// Returns an error at a byte.
     pub(super) fn error_at(&self, at: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let before = &self.all[..at.min(self.all.len())];
         let line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
         ReadError::at(self.file, line, expected, found)
     }
 
-    /// A fault at the place of reading: what stands there.
+    /// Returns an error at the reading position. The found content is the next word.
     pub(super) fn error(&self, expected: impl Into<String>) -> ReadError {
         let rest = &self.all[self.at.min(self.all.len())..];
         let start = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
@@ -44,7 +44,7 @@ impl<'b> Bytes<'b> {
         if word.is_empty() { error.cut() } else { error }
     }
 
-    /// The next line, without its end; none at the end of the file.
+    /// Reads the next line without its line end. Returns `None` at the end of the file.
     pub(super) fn line(&mut self) -> Option<&'b [u8]> {
         let rest = self.all.get(self.at..).filter(|rest| !rest.is_empty())?;
         let end = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
@@ -52,7 +52,7 @@ impl<'b> Bytes<'b> {
         Some(rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]))
     }
 
-    /// The next line that is not empty, without going there.
+    /// Returns the words of the next line that is not empty, without moving the reading position.
     pub(super) fn next_words(&self) -> Option<Vec<&'b str>> {
         let mut ahead = *self;
         loop {
@@ -63,7 +63,7 @@ impl<'b> Bytes<'b> {
         }
     }
 
-    /// So many bytes.
+    /// Reads `count` bytes.
     pub(super) fn take(&mut self, count: usize) -> Result<&'b [u8], ReadError> {
         match self.at.checked_add(count).and_then(|end| self.all.get(self.at..end)) {
             Some(bytes) => {
@@ -77,9 +77,9 @@ impl<'b> Bytes<'b> {
         }
     }
 
-    /// So many printed numbers, and what they tell of their digits.
+    /// Reads `count` printed numbers and updates their digits.
     pub(super) fn printed(&mut self, count: usize, digits: &mut Digits) -> Result<Vec<f64>, ReadError> {
-        // A count that is declared is a claim; memory follows what is there.
+        // The declared number is not trusted. Memory grows with the numbers that are present.
         let mut numbers = Vec::new();
         for _ in 0..count {
             let rest = &self.all[self.at..];

@@ -1,4 +1,4 @@
-//! Collections (`.pvd`): files with their times.
+//! Collections (`.pvd`), which list files with their times.
 
 use super::whole;
 use crate::read::read_error::{ReadError, quoted};
@@ -6,10 +6,10 @@ use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 use std::path::{Path, PathBuf};
 
-/// The files of a collection with their times (s), in its order.
+/// Reads the files of a collection with their times (s), in the order of the collection.
 ///
 /// # Errors
-/// It cannot be read, is no collection, or names a file outside its folder's reach.
+/// If the collection cannot be read or lists no files, or if an entry has no time or no file name.
 pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
     let name = path.to_string_lossy();
     let bytes = whole(path)?;

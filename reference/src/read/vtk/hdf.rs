@@ -1,8 +1,8 @@
-//! Points of VTKHDF files (`.vtkhdf`): `PolyData` and `UnstructuredGrid`, of one moment or of several.
+//! Points of VTKHDF files (`.vtkhdf`) with `PolyData` or `UnstructuredGrid`, at one or several moments.
 //!
-//! Source: "VTKHDF File Format" of the VTK documentation, versions 1.0 to 2.3. A moment `s` has the parts from
-//! `Steps/PartOffsets[s]` on, `Steps/NumberOfParts[s]` of them, with `NumberOfPoints` each. Its points begin at
-//! `Steps/PointOffsets[s]`, what is told of them at `Steps/PointDataOffsets/NAME[s]`.
+//! Source: "VTKHDF File Format" of the VTK documentation, versions 1.0 to 2.3. Moment `s` has
+//! `Steps/NumberOfParts[s]` parts, starting at `Steps/PartOffsets[s]`, with `NumberOfPoints` each. Its points begin
+//! at `Steps/PointOffsets[s]`, and their data at `Steps/PointDataOffsets/NAME[s]`.
 
 use super::points::{Array, Points};
 use crate::read::binary::Number;
@@ -16,35 +16,36 @@ use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
-/// How a file begins.
+/// First bytes of a file.
 pub(crate) const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Most bytes of a file, and of all arrays together that are unpacked from it.
+/// Maximum size of a file, and of all its arrays together after decompression (B).
 const MOST: usize = 1 << 30;
-/// The time of a file of one moment.
+/// Name of the time in a file of one moment.
 const TIME: &str = "TimeValue";
-/// The one group at the root.
+/// Name of the only group at the root.
 const ROOT: &str = "VTKHDF";
-/// Kinds that have points.
+/// Types that contain points.
 const KINDS: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 
-/// A file that is open.
+/// Open file.
 struct File {
     name: String,
     root: Group,
-    /// Bytes that may still be unpacked: a small file may hold large arrays, and one array under many names.
+    /// Remaining number of bytes that may be decompressed. A small file can contain large arrays, or one array under
+    /// many names.
     left: Cell<usize>,
 }
 
-/// Whether a file holds several moments, or one.
+/// Returns true if a file contains several moments.
 ///
 /// # Errors
-/// The file cannot be read or is none of VTK's.
+/// If the file cannot be read or is not a VTKHDF file.
 pub(crate) fn has_steps(path: &Path) -> Result<bool, ReadError> {
     let file = File::open(path)?;
     Ok(file.group(&file.root, "Steps")?.is_some())
 }
 
-/// Grains at one moment or several.
+/// Grains at one or several moments.
 #[derive(Debug)]
 pub(crate) struct Moments {
     name: String,
@@ -53,7 +54,7 @@ pub(crate) struct Moments {
     moments: Vec<Moment>,
 }
 
-/// Where a moment stands in the arrays.
+/// Position of a moment in the arrays.
 #[derive(Debug)]
 struct Moment {
     time: Option<f64>,
@@ -62,10 +63,10 @@ struct Moment {
     of: Vec<usize>,
 }
 
-/// Reads the grains of a file; they are cut out of its arrays moment by moment, for moments may share them.
+/// Reads the grains of a file. The arrays are kept whole, because moments can share them.
 ///
 /// # Errors
-/// The file cannot be read, breaks off, or is not such a file.
+/// If the file cannot be read, is truncated, or is not such a file.
 pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
     let file = File::open(path)?;
     let positions = file.array(&file.root, "Points", Some(3))?;
@@ -80,7 +81,7 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
         Some(steps) => file.moments(&steps, &counts, &arrays)?,
         None => {
             let points: usize = counts.iter().sum();
-            // What is there beyond the points that are counted belongs to nobody knows what.
+            // Rows beyond the declared number of points have no defined meaning.
             for array in [&positions].into_iter().chain(&arrays) {
                 let rows = array.numbers.len() / array.components;
                 if rows != points {
@@ -95,20 +96,20 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
 }
 
 impl Moments {
-    /// What errors call it.
+    /// Returns the name of the file for error messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Most grains at one of them.
+    /// Returns the largest number of grains at any moment.
     pub(crate) fn grains(&self) -> usize {
         self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
     }
 
-    /// The grains at a moment, whose place is the step; none after the last.
+    /// Returns the grains at a moment, whose index is the step. Returns `None` after the last moment.
     ///
     /// # Errors
-    /// An array is too short, or holds what is no finite number.
+    /// If an array is too short or has a number that is not finite.
     pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
         let Some(moment) = self.moments.get(at) else { return Ok(None) };
         let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
@@ -135,7 +136,7 @@ impl File {
         if length > MOST as u64 {
             return Err(fault(&format!("at most {MOST} bytes"), "more"));
         }
-        // What lies in other files stays there: nobody named them.
+        // Links to other files are not followed, because the user did not name these files.
         let options = OpenOptions { max_read_bytes: MOST, max_chunk_bytes: MOST, ..OpenOptions::default() };
         let bytes = fs::read(path).map_err(|error| ReadError::opening(&name, error))?;
         let file = Hdf5File::from_vec_with_options(bytes, options);
@@ -158,13 +159,13 @@ impl File {
         ReadError::at(&self.name, 1, expected, one_line(found))
     }
 
-    /// Names of groups and of arrays.
+    /// Returns the names of the groups and the arrays.
     fn members(&self, group: &Group) -> Result<(Vec<String>, Vec<String>), ReadError> {
         let members = group.member_names();
         members.map_err(|error| self.fault(&format!("what is in `{}`", group.name()), &error.to_string()))
     }
 
-    /// A group of a group; none where it has none of that name, which a damaged one is not.
+    /// Returns a subgroup, or `None` if there is none of that name. A damaged subgroup is an error.
     fn group(&self, of: &Group, name: &str) -> Result<Option<Group>, ReadError> {
         if !self.members(of)?.0.iter().any(|member| member == name) {
             return Ok(None);
@@ -172,12 +173,12 @@ impl File {
         of.group(name).map(Some).map_err(|error| self.fault(&format!("the group `{name}`"), &error.to_string()))
     }
 
-    /// Whether a group has an array of this name.
+    /// Returns true if a group has an array of this name.
     fn has(&self, group: &Group, name: &str) -> Result<bool, ReadError> {
         Ok(self.members(group)?.1.iter().any(|member| member == name))
     }
 
-    /// An array: a row an entry, with so many numbers each where it is known.
+    /// Reads an array with one entry per row. `components` is the number of numbers per row, if it is known.
     fn array(&self, group: &Group, name: &str, components: Option<usize>) -> Result<Array, ReadError> {
         let expected = format!("the array `{name}`");
         let read = || -> Result<(Dataset, usize), Error> {
@@ -203,7 +204,7 @@ impl File {
         Ok(Array { name: name.to_owned(), components: width, numbers, digits: kind.digits() })
     }
 
-    /// Whole numbers, zero or more.
+    /// Reads whole numbers not less than zero.
     fn whole(&self, group: &Group, name: &str) -> Result<Vec<usize>, ReadError> {
         let is_whole = |number: &f64| *number >= 0.0 && number.fract() == 0.0 && *number <= MOST as f64;
         let numbers = self.array(group, name, Some(1))?.numbers;
@@ -213,7 +214,7 @@ impl File {
         }
     }
 
-    /// The time of a file of one moment, where it says it.
+    /// Reads the time of a file of one moment, if the file contains it.
     fn time(&self) -> Result<Option<f64>, ReadError> {
         match self.group(&self.root, "FieldData")? {
             Some(field) if self.has(&field, TIME)? => Ok(self.array(&field, TIME, None)?.numbers.first().copied()),
@@ -221,7 +222,7 @@ impl File {
         }
     }
 
-    /// The moments of a file of several.
+    /// Reads the positions of the moments in a file of several moments.
     fn moments(&self, steps: &Group, counts: &[usize], arrays: &[Array]) -> Result<Vec<Moment>, ReadError> {
         let times = self.array(steps, "Values", Some(1))?.numbers;
         let per_moment = |group: &Group, name: &str| -> Result<Vec<usize>, ReadError> {
@@ -231,7 +232,7 @@ impl File {
             }
             Err(self.fault(&format!("{} numbers in `{name}`, one a step", times.len()), &list.len().to_string()))
         };
-        // One part a moment where nothing is said of parts.
+        // Without this array there is one part per moment.
         let parts = "NumberOfParts";
         let parts = if self.has(steps, parts)? { per_moment(steps, parts)? } else { vec![1; times.len()] };
         let first_part = per_moment(steps, "PartOffsets")?;
@@ -257,7 +258,7 @@ impl File {
     }
 }
 
-/// The kind of a number; none of what is none.
+/// Returns the number type, or `None` if the type is not a number.
 fn number(kind: &Datatype) -> Option<Number> {
     Some(match *kind {
         Datatype::FixedPoint { size: 1, signed: true, .. } => Number::I8,

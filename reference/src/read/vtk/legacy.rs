@@ -1,4 +1,4 @@
-//! Legacy files: three lines of header, then sections that begin with a word; binary numbers have the big end first.
+//! Legacy files. After three header lines, each section begins with a keyword. Binary numbers are big-endian.
 
 use super::bytes::Bytes;
 use super::points::{Array, Points};
@@ -6,17 +6,17 @@ use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Reads points and what is told of each.
+/// Reads points and their data.
 pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     let mut reader = Reader { bytes, is_binary: false };
     reader.header()?;
     reader.body()
 }
 
-/// Which entities the arrays of a section belong to.
+/// Entities that the arrays of a section belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Of {
-    /// The data set as a whole.
+    /// Whole data set.
     All,
     Points,
     Cells,
@@ -28,7 +28,7 @@ struct Reader<'b> {
 }
 
 impl<'b> Reader<'b> {
-    /// Two lines of the version and the title, and how numbers stand.
+    /// Reads the two lines with version and title, and the line with the encoding of numbers.
     fn header(&mut self) -> Result<(), ReadError> {
         let _ = (self.bytes.line(), self.bytes.line());
         self.is_binary = match self.bytes.next_words().as_deref() {
@@ -40,7 +40,7 @@ impl<'b> Reader<'b> {
         Ok(())
     }
 
-    /// The words of the next line that has any.
+    /// Reads the words of the next line that is not blank.
     fn words(&mut self) -> Option<Vec<&'b str>> {
         let words = self.bytes.next_words()?;
         while self.bytes.line()?.iter().all(u8::is_ascii_whitespace) {}
@@ -124,7 +124,7 @@ impl<'b> Reader<'b> {
         Ok(Points { time, positions, arrays })
     }
 
-    /// Passes over cells; gives how many there are.
+    /// Skips cells and returns their number.
     fn connectivity(&mut self, count: usize, size: usize, here: &Bytes<'b>) -> Result<usize, ReadError> {
         let Some(["OFFSETS", kind]) =
             self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
@@ -144,7 +144,7 @@ impl<'b> Reader<'b> {
         Ok(count.saturating_sub(1))
     }
 
-    /// The numbers of an array.
+    /// Reads the numbers of an array.
     fn array(
         &mut self,
         name: &str,
@@ -168,7 +168,7 @@ impl<'b> Reader<'b> {
     }
 }
 
-/// Keeps what is told of points.
+/// Stores an array if it belongs to points.
 fn keep(arrays: &mut Vec<Array>, of: Of, array: Array) {
     if of == Of::Points {
         arrays.push(array);

@@ -1,7 +1,8 @@
-//! Points with their arrays from VTK's files: legacy ones (`.vtk`), XML ones (`.vtp`, `.vtu`), as text or binary, and HDF5
-//! (`.vtkhdf`).
+//! Points with their arrays from VTK files. Legacy files (`.vtk`) and XML files (`.vtp`, `.vtu`) can be text or
+//! binary. HDF5 files have the ending `.vtkhdf`.
 //!
-//! Source: "VTK File Formats" of the VTK documentation, versions to 5.1 of the legacy form and to 2.2 of the XML form.
+//! Source: "VTK File Formats" of the VTK documentation, up to version 5.1 of the legacy format and version 2.2 of the
+//! XML format.
 
 mod bytes;
 mod collection;
@@ -22,13 +23,13 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// Most bytes of a file, unpacked.
+/// Maximum size of a file after decompression (B).
 const MOST: u64 = 1 << 30;
 
-/// How a legacy file begins.
+/// First bytes of a legacy file.
 const LEGACY: &[u8] = b"# vtk DataFile";
 
-/// What a file is by its first bytes; none where it is none of VTK's.
+/// Returns the kind of a file from its first bytes, or `None` if it is not a VTK file.
 pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
     if head.starts_with(LEGACY) {
         return Some(Kind::Points);
@@ -43,20 +44,22 @@ pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
     Some(if is_collection { Kind::Collection } else { Kind::Points })
 }
 
-/// Kinds of VTK's files.
+/// Kind of a VTK file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Points at one moment.
     Points,
-    /// A list of files with their times.
+    /// List of files with their times.
     Collection,
 }
 
-/// The points of a file, plain, gzip or zstd, as a snapshot of grains: arrays of one number under their names; vectors as
-/// `NAME_x`, `NAME_y`, `NAME_z`, but what is known for a velocity or a spin as `vx` and `omegax`.
+/// Reads the points of a file, plain, gzip or zstd, as a snapshot of grains.
+///
+/// Arrays with one number per point keep their names. Vectors become `NAME_x`, `NAME_y` and `NAME_z`. Known names of
+/// velocities and spins become columns such as `vx` and `omegax`.
 ///
 /// # Errors
-/// The file cannot be read, breaks off, or is not such a file.
+/// If the file cannot be read, is truncated, or is not such a file.
 pub(crate) fn read_points(path: &Path) -> Result<DumpSnapshot, ReadError> {
     parse(&path.to_string_lossy(), &whole(path)?)
 }
@@ -67,7 +70,7 @@ fn parse(name: &str, bytes: &[u8]) -> Result<DumpSnapshot, ReadError> {
     points.snapshot(name)
 }
 
-/// All bytes of a file, unpacked.
+/// Reads all bytes of a file and decompresses them.
 fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.to_string_lossy();
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;

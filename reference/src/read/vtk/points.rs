@@ -1,11 +1,11 @@
-//! Points and what is told of each, of either form of file, and a snapshot of grains of them.
+//! Points with their data from any of the formats, and their conversion to a snapshot of grains.
 
 use crate::read::digits::Digits;
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 
-/// Numbers of every point, component by component, point after point.
+/// Numbers of all points, one point after the other, with the components of each.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Array {
     pub(super) name: String,
@@ -14,34 +14,34 @@ pub(super) struct Array {
     pub(super) digits: Digits,
 }
 
-/// Points.
+/// Points with their data.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Points {
-    /// The time, where the file says it.
+    /// Time, if the file contains it.
     pub(super) time: Option<f64>,
-    /// Where they are.
+    /// Positions of the points.
     pub(super) positions: Array,
-    /// What is told of each.
+    /// Data of the points.
     pub(super) arrays: Vec<Array>,
 }
 
-/// What programs call a velocity.
+/// Names of a velocity in programs.
 const VELOCITY: [&str; 7] =
     ["v", "velocity", "vel", "velocity_lin", "linvelocity", "linear_velocity", "linear velocity"];
-/// What they call a spin.
+/// Names of a spin in programs.
 const SPIN: [&str; 8] =
     ["omega", "spin", "angvel", "velocity_ang", "angvelocity", "angular_velocity", "angular velocity", "w"];
-/// What they call the number of a grain.
+/// Names of the id of a grain in programs.
 const ID: [&str; 4] = ["id", "particle_id", "particleid", "particle id"];
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Returns whether programs call the number of a grain by this name.
+/// Returns true if the name is that of the id of a grain.
 pub(crate) fn is_id(name: &str) -> bool {
     ID.contains(&name.to_lowercase().as_str())
 }
 
-/// The column of a component of a vector, by the name that dumps give it.
+/// Returns the name in dumps for a component of a vector.
 pub(crate) fn component(vector: &str, axis: usize) -> String {
     let lower = vector.to_lowercase();
     let is = |names: &[&str]| names.contains(&lower.as_str());
@@ -56,7 +56,7 @@ pub(crate) fn component(vector: &str, axis: usize) -> String {
 }
 
 impl Array {
-    /// The names of its columns.
+    /// Returns the names of the columns.
     fn columns(&self) -> Vec<String> {
         match self.components {
             1 if is_id(&self.name) => vec!["id".to_owned()],
@@ -68,7 +68,7 @@ impl Array {
 }
 
 impl Points {
-    /// A snapshot of grains, its step open.
+    /// Returns a snapshot of grains. Its step is not set.
     pub(super) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
         let points = self.positions.numbers.len() / 3;
         let mut columns: Vec<NumberColumn> = Vec::new();
@@ -89,7 +89,7 @@ impl Points {
                 return Err(ReadError::at(file, 1, expected, found));
             }
             for (component, name) in names.into_iter().enumerate() {
-                // Of two arrays of one meaning the first is taken.
+                // If two arrays have the same meaning, the first one is used.
                 if columns.iter().all(|column| column.name != name) {
                     columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(&name) });
                     parts.push((array, component));

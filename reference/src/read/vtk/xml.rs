@@ -1,4 +1,4 @@
-//! XML files of points: `PolyData` and `UnstructuredGrid`, their numbers printed, encoded in place or appended.
+//! XML files of points, `PolyData` and `UnstructuredGrid`. Numbers are printed, encoded in place or appended.
 
 use super::bytes::Bytes;
 use super::points::{Array, Points};
@@ -13,14 +13,14 @@ use quick_xml::events::{BytesRef, BytesStart, Event};
 use quick_xml::reader::Reader;
 use std::io::Read;
 
-/// What begins the part that is no XML.
+/// Beginning of the part that is not XML.
 const APPENDED: &[u8] = b"<AppendedData";
-/// The last of every file.
+/// Last tag of every file.
 const END: &[u8] = b"</VTKFile>";
-/// The one compression that is read.
+/// Name of the only supported compression.
 const ZLIB: &str = "vtkZLibDataCompressor";
 
-/// Reads points and what is told of each.
+/// Reads points and their data.
 pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     let all = bytes.all();
     if !all.trim_ascii_end().ends_with(END) {
@@ -33,10 +33,10 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     file.points()
 }
 
-/// What stands behind the XML.
+/// Data after the XML part.
 #[derive(Clone, Copy)]
 struct Appended<'b> {
-    /// From behind the underscore on.
+    /// Bytes after the underscore.
     data: &'b [u8],
     is_text: bool,
 }
@@ -52,7 +52,7 @@ fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<Appended<'b>, ReadError
     Ok(Appended { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
 }
 
-/// An array as its tag announces it.
+/// Attributes of an array from its tag.
 struct Announced {
     name: String,
     kind: Option<Number>,
@@ -67,7 +67,7 @@ struct File<'b> {
     bytes: Bytes<'b>,
     appended: Option<Appended<'b>>,
     is_big: bool,
-    /// Whether lengths have eight bytes.
+    /// True if lengths have eight bytes.
     wide: bool,
     compressor: Option<String>,
 }
@@ -128,7 +128,7 @@ impl File<'_> {
         Ok(Points { time, positions, arrays })
     }
 
-    /// The text of a reference such as `&#32;` or `&amp;`. Files that define others are not read.
+    /// Returns the text of a reference such as `&#32;` or `&amp;`. Entities defined in a file are not supported.
     fn resolved(&self, reference: &BytesRef<'_>, at: usize) -> Result<String, ReadError> {
         let name = String::from_utf8_lossy(reference);
         let letter = reference.resolve_char_ref().ok().flatten();
@@ -137,7 +137,7 @@ impl File<'_> {
         known.ok_or_else(|| self.bytes.error_at(at, expected, quoted(&format!("&{name};"))))
     }
 
-    /// Takes the attributes of a tag.
+    /// Reads the attributes of a tag.
     fn open(
         &mut self,
         tag: &BytesStart<'_>,
@@ -185,7 +185,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Reads an array that ends, where it is told of points, and puts it behind what other pieces have of it.
+    /// Reads a complete array if it contains data of points, and appends it to the same array of earlier pieces.
     fn close(
         &self,
         of: &[u8],
@@ -273,7 +273,7 @@ impl File<'_> {
         Ok(Array { name: name.clone(), components: *components, numbers, digits })
     }
 
-    /// The bytes of numbers, from their lengths and blocks.
+    /// Decodes the bytes of numbers from their lengths and blocks.
     fn unpacked(&self, mut stream: Stream<'_>) -> Result<Vec<u8>, String> {
         let size = if self.wide { 8 } else { 4 };
         let kind = if self.wide { Number::U64 } else { Number::U32 };
@@ -315,7 +315,7 @@ impl File<'_> {
     }
 }
 
-/// Bytes as they are, or in base 64, each piece encoded by itself.
+/// Bytes, raw or in base 64. Each piece is encoded separately.
 #[derive(Clone, Copy)]
 struct Stream<'s> {
     data: &'s [u8],
@@ -327,12 +327,13 @@ impl Stream<'_> {
         *self
     }
 
-    /// Whether the first so many bytes were encoded by themselves.
+    /// Returns true if the first `count` bytes are encoded separately.
     fn is_apart(&self, count: usize) -> bool {
         !self.is_text || !count.is_multiple_of(3) && self.data.get(count.div_ceil(3) * 4 - 1) == Some(&b'=')
     }
 
-    /// The next so many bytes; of text all that belong to the letters of the last, cut off there.
+    /// Reads the next `count` bytes. Base-64 text is read up to the group of letters with the last of them, and the
+    /// other bytes of this group are dropped.
     fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
         let length = if self.is_text { count.div_ceil(3).saturating_mul(4) } else { count };
         let Some(piece) = self.data.get(..length) else {
