@@ -1,40 +1,41 @@
-//! One grain of a data file.
+//! Grain of a data file.
 
-/// A grain as a LAMMPS data file of `atom_style sphere`, or a LIGGGHTS one of `atom_style granular`, states it.
+/// Grain of a LAMMPS data file with `atom_style sphere` or a LIGGGHTS data file with `atom_style granular`.
 ///
-/// Numbers are in the units of the file; a data file does not say which these are.
+/// Numbers are in the units of the file. A data file does not name its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Atom {
-    /// The grain's number in its file, 1 or more, used once.
+    /// Id of the grain, at least 1 and unique in its file.
     pub id: u32,
-    /// The grain's type, counted from 1.
+    /// Type of the grain, counted from 1.
     pub type_: u32,
     /// Diameter, positive.
     pub diameter: f64,
-    /// Density of the sphere of this diameter, in two dimensions too; see [`Atom::mass`].
+    /// Density of a sphere with this diameter, in two dimensions too. See [`Atom::mass`].
     pub density: f64,
-    /// Position of the centre. It may lie outside of the box.
+    /// Position of the centre. It can be outside of the box.
     pub position: [f64; 3],
-    /// How many times the grain has crossed each periodic boundary; zero where the file does not say.
+    /// Number of crossings of each periodic boundary. It is zero if the file does not contain it.
     pub image: [i32; 3],
-    /// Velocity of the centre; zero where the file has no `Velocities`.
+    /// Velocity of the centre. It is zero if the file has no `Velocities`.
     pub velocity: [f64; 3],
-    /// Angular velocity, in radians per unit of time; zero where the file has no `Velocities`.
+    /// Angular velocity, in radians per unit of time. It is zero if the file has no `Velocities`.
     pub angular_velocity: [f64; 3],
 }
 
 impl Atom {
-    /// Mass: (π/6) d³ ρ, that of a sphere.
+    /// Returns the mass of a sphere, (π/6) d³ ρ.
     ///
-    /// LAMMPS reads the density of a data file as a sphere's even where the simulation has two dimensions and its
-    /// integrator treats the grains as discs (`fix nve/sphere disc` changes the moment of inertia only).
-    /// LIGGGHTS with `dimension 2` does not: there the mass is (π/4) d² ρ, which the caller has to know.
+    /// LAMMPS takes the density in a data file as that of a sphere, even in two-dimensional simulations with discs.
+    /// There, `fix nve/sphere disc` changes only the moment of inertia.
+    ///
+    /// LIGGGHTS with `dimension 2` uses the mass (π/4) d² ρ. The caller must take this into account.
     #[must_use]
     pub fn mass(&self) -> f64 {
         std::f64::consts::PI / 6.0 * self.diameter.powi(3) * self.density
     }
 
-    /// Radius, half the diameter.
+    /// Returns the radius, half the diameter.
     #[must_use]
     pub fn radius(&self) -> f64 {
         0.5 * self.diameter

@@ -1,8 +1,8 @@
-//! Kinds of numbers in files of VTK and of NumPy.
+//! Number types in files of VTK and NumPy.
 
 use crate::read::digits::Digits;
 
-/// A kind of number.
+/// Number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Number {
     I8,
@@ -18,7 +18,7 @@ pub(crate) enum Number {
 }
 
 impl Number {
-    /// By the word of a legacy file.
+    /// Returns the type for a type name in a legacy VTK file.
     pub(crate) fn of_legacy(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "vtktypechar" => Self::I8,
@@ -35,7 +35,7 @@ impl Number {
         })
     }
 
-    /// By the word of an XML file.
+    /// Returns the type for a type name in an XML file.
     pub(crate) fn of_xml(word: &str) -> Option<Self> {
         Some(match word {
             "Int8" => Self::I8,
@@ -52,7 +52,7 @@ impl Number {
         })
     }
 
-    /// By the word of NumPy, without the order of bytes.
+    /// Returns the type for a type name of NumPy without byte order.
     pub(crate) fn of_numpy(word: &str) -> Option<Self> {
         Some(match word {
             "i1" => Self::I8,
@@ -69,7 +69,7 @@ impl Number {
         })
     }
 
-    /// Bytes of one.
+    /// Returns the size of a number (B).
     pub(crate) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -79,12 +79,12 @@ impl Number {
         }
     }
 
-    /// What is known of the digits of numbers that were not printed.
+    /// Returns the digits of numbers of this type that are stored as binary.
     pub(crate) fn digits(self) -> Digits {
         if self == Self::F32 { Digits::exact().single() } else { Digits::exact() }
     }
 
-    /// Numbers from their bytes, of which there are a whole number of times the size.
+    /// Decodes numbers from bytes. The number of bytes is a multiple of the size.
     pub(crate) fn decode(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
         let one = |chunk: &[u8]| {
             let mut wide = [0_u8; 8];

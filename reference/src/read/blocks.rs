@@ -1,30 +1,30 @@
-//! Lines of an input as bytes, found in large blocks and handed out without being copied.
+//! Lines of an input as bytes. The input is read in large blocks, and lines are not copied.
 
 use std::io::{ErrorKind, Read};
 
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// The longest line that is read, in bytes: a row of a dump with a few thousand columns. A file without line ends must
-/// not fill the memory before it is refused.
+/// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends must be
+/// refused before it fills the memory.
 pub(crate) const LONGEST_LINE: usize = 1 << 16;
 
-/// Bytes that are asked for at once.
+/// Size of a read request (B).
 const BLOCK: usize = 1 << 18;
 
-/// One line without its end.
+/// Line without its line end.
 #[derive(Clone, Copy)]
 pub(crate) struct RawLine<'b> {
     pub(crate) file: &'b str,
-    /// Counted from 1.
+    /// Line number, counted from 1.
     pub(crate) number: u64,
     pub(crate) bytes: &'b [u8],
-    /// Whether a line end stood behind it; only the last line of an input may lack it.
+    /// True if the line had a line end. Only the last line of an input can lack it.
     pub(crate) ended: bool,
 }
 
 impl<'b> RawLine<'b> {
-    /// The line as text, or the fault that it is none.
+    /// Returns the line as text, or an error if it is not text.
     pub(crate) fn text(self) -> Result<Line<'b>, ReadError> {
         match (std::str::from_utf8(self.bytes), not_text_at(self.bytes, true)) {
             (Ok(text), None) => Ok(Line { file: self.file, number: self.number, text }),
@@ -33,18 +33,18 @@ impl<'b> RawLine<'b> {
     }
 }
 
-/// Cuts an input into lines.
+/// Splits an input into lines.
 pub(crate) struct Blocks<'r> {
     reader: Box<dyn Read + 'r>,
     name: String,
     buffer: Vec<u8>,
-    /// What has been read and not yet handed out lies from here …
+    /// Start of the data that have been read but not returned.
     start: usize,
-    /// … to here.
+    /// End of these data.
     end: usize,
     at_end: bool,
     number: u64,
-    /// Whether the line that was handed out last had a line end.
+    /// True if the last returned line had a line end.
     ended: bool,
 }
 
@@ -62,22 +62,22 @@ impl<'r> Blocks<'r> {
         }
     }
 
-    /// How errors call the input.
+    /// Returns the name of the input for error messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// The number of the line that was handed out last; 0 before the first.
+    /// Returns the number of the last returned line, or 0 before the first.
     pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
-    /// The error, marked as a cut where the line that was handed out last has no line end.
+    /// Returns the error. It is marked as a truncation if the last returned line has no line end.
     pub(crate) fn cut_if_unended(&self, error: ReadError) -> ReadError {
         if self.ended { error } else { error.cut() }
     }
 
-    /// The next line; none at the end of the input.
+    /// Returns the next line, or `None` at the end of the input.
     pub(crate) fn next_line(&mut self) -> Result<Option<RawLine<'_>>, ReadError> {
         let mut searched = 0;
         let length = loop {
@@ -108,12 +108,12 @@ impl<'r> Blocks<'r> {
         Ok(Some(RawLine { file: &self.name, number: self.number, bytes, ended }))
     }
 
-    /// Reads more behind what waits, which is moved to the front.
+    /// Moves the remaining data to the front of the buffer and reads more data after them.
     fn fill(&mut self) -> Result<(), ReadError> {
         self.buffer.copy_within(self.start..self.end, 0);
         self.end -= self.start;
         self.start = 0;
-        // A line of the longest length and one byte more always fits.
+        // The buffer always has room for a line of maximum length and one more byte.
         loop {
             match self.reader.read(&mut self.buffer[self.end..]) {
                 Ok(count) => {
@@ -127,7 +127,8 @@ impl<'r> Blocks<'r> {
         }
     }
 
-    /// The fault of a line without end: bytes that are no text tell more than its length.
+    /// Returns the error of a line that is too long. Bytes that are not text are a more useful message than the
+    /// length.
     fn too_long(&self) -> ReadError {
         let number = self.number + 1;
         let waiting = &self.buffer[self.start..self.end];
@@ -139,8 +140,8 @@ impl<'r> Blocks<'r> {
     }
 }
 
-/// The first place that belongs to no text: bytes that are not UTF-8, and controls other than blanks. Where the bytes
-/// are not `whole`, a character may be cut off at their end.
+/// Returns the first position that is not text: bytes that are not UTF-8, and control characters other than blanks.
+/// If `whole` is false, a character may be truncated at the end of the bytes.
 fn not_text_at(bytes: &[u8], whole: bool) -> Option<usize> {
     let binary = |byte: &u8| *byte == 0x7f || (*byte < 0x20 && !byte.is_ascii_whitespace());
     let invalid = match std::str::from_utf8(bytes) {
@@ -150,7 +151,7 @@ fn not_text_at(bytes: &[u8], whole: bool) -> Option<usize> {
     bytes[..invalid.unwrap_or(bytes.len())].iter().position(binary).or(invalid)
 }
 
-/// The fault that the byte at `place` of `line` belongs to no text.
+/// Returns the error for the byte at `place` of `line`, which is not text.
 fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
     let before = String::from_utf8_lossy(line.get(..place).unwrap_or_default());
     let byte = line.get(place).copied().unwrap_or_default();
@@ -161,7 +162,7 @@ fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
     ReadError::at(file, number, "text in UTF-8", found).with_column(before.chars().count() + 1)
 }
 
-/// The end of `text`: enough to recognise the place by.
+/// Returns the last characters of `text`, enough to identify the position.
 fn last_characters(text: &str) -> String {
     let skipped = text.chars().count().saturating_sub(20);
     text.chars().skip(skipped).collect()

@@ -1,4 +1,4 @@
-//! Contacts that the probes of a scene ask for, from where the grains are and from the forces that dumps tell.
+//! Contacts that the probes of a scene request, computed from positions of grains and from forces in dumps.
 
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::record::{ContactState, GrainState, Partner};
@@ -7,14 +7,15 @@ use nalgebra::Vector3;
 
 use crate::pair_forces::PairForce;
 
-/// Where forces come from: of a grain on another, and of a wall on a grain, by places in the scene; none where unknown.
+/// Sources of forces on a grain, from another grain and from a wall, by indices in the scene. The result is `None` if
+/// the force is unknown.
 pub(crate) struct Forces<'f> {
     pub(crate) of_pair: &'f dyn Fn(usize, usize) -> Option<PairForce>,
     pub(crate) of_wall: &'f dyn Fn(usize, usize) -> Option<PairForce>,
 }
 
-/// The contacts that are asked for and touch. Forces that are not known are not a number; `shift` is how many times
-/// what the digits leave open is added to the magnitude of each.
+/// Returns the requested contacts that exist. Unknown forces are NaN. The magnitude of each force is increased by
+/// `shift` times its uncertainty by printed digits.
 pub(crate) fn contacts(
     scene: &Scene,
     time: f64,
@@ -42,7 +43,7 @@ pub(crate) fn contacts(
             _ => continue,
         };
         let overlap = reach - distance;
-        // Where few digits were printed the force tells better than the overlap whether they touch.
+        // If few digits were printed, the force is a better indicator of contact than the overlap.
         let pushed = force.is_some_and(|known| known.force != Vector3::zeros());
         if !(overlap > 0.0 || pushed) {
             continue;
@@ -65,13 +66,14 @@ pub(crate) fn contacts(
     found
 }
 
-/// Unit vector and length of a line.
+/// Returns the unit vector and the length of a vector.
 fn direction(line: Vector3<f64>) -> (Vector3<f64>, f64) {
     let length = line.norm();
     (line / length, length)
 }
 
-/// Direction and distance from a grain to the nearest point of a wall; into the solid of a plane.
+/// Returns direction and distance (m) from a grain to the nearest point of a wall. For a plane, the direction points
+/// into the solid.
 fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
     match shape {
         WallShape::Plane { point, normal } => (-normal, (at - point).dot(normal)),
@@ -82,7 +84,7 @@ fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
     }
 }
 
-/// A line between centres, to the nearest image along periodic axes.
+/// Returns the vector between two centres for the nearest image along periodic axes.
 fn nearest_image(scene: &Scene, mut line: Vector3<f64>) -> Vector3<f64> {
     if let Some(domain) = &scene.domain {
         for axis in (0..3).filter(|&axis| domain.periodic[axis]) {

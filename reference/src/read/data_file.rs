@@ -1,4 +1,4 @@
-//! Data files as `read_data` of LAMMPS and LIGGGHTS takes them and `write_data` leaves them.
+//! Data files that `read_data` of LAMMPS and LIGGGHTS reads and `write_data` writes.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -9,37 +9,39 @@ use crate::read::data_parser::DataParser;
 use crate::read::line_reader::LineReader;
 use crate::read::read_error::ReadError;
 
-/// A LAMMPS data file of `atom_style sphere`, or a LIGGGHTS one of `atom_style granular`.
+/// LAMMPS data file with `atom_style sphere`, or LIGGGHTS data file with `atom_style granular`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataFile {
-    /// The first line, which the programs ignore.
+    /// First line, which the programs ignore.
     pub title: String,
-    /// The lower and the upper corner of the box.
+    /// Lower and upper corner of the box.
     pub bounds: ([f64; 3], [f64; 3]),
-    /// The grains, in the order of the file.
+    /// Grains in the order of the file.
     pub atoms: Vec<Atom>,
 }
 
-/// Reads the data file at `path`, plain or gzip.
+/// Reads the data file at `path`, plain or compressed by gzip or zstd.
 ///
 /// # Errors
-/// The file cannot be read, or is not such a data file; see [`parse_data`].
+/// If the file cannot be read or is not a data file. See [`parse_data`].
 pub fn read_data_file(path: &Path) -> Result<DataFile, ReadError> {
     let name = path.to_string_lossy();
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
     parse_data(BufReader::new(file), &name)
 }
 
-/// Reads a data file, plain or gzip, from `reader`; `name` is what errors call it.
+/// Reads a data file, plain or compressed by gzip or zstd, from `reader`. `name` is its name in error messages.
 ///
-/// The header gives the number of atoms and of atom types and the three bounds of the box, in any order; `Atoms` has
-/// lines `id type diameter density x y z` with or without three image counts behind, `Velocities` lines
-/// `id vx vy vz wx wy wz`. `Masses`, `Pair Coeffs` and `PairIJ Coeffs` are passed over. A position may lie outside of
-/// the box. Comments begin with `#`.
+/// The header contains the number of atoms, the number of atom types and the three bounds of the box, in any order.
+/// `Atoms` has lines `id type diameter density x y z`, optionally with three image counts at the end. `Velocities`
+/// has lines `id vx vy vz wx wy wz`.
+///
+/// `Masses`, `Pair Coeffs` and `PairIJ Coeffs` are skipped. A position can be outside of the box. Comments begin with
+/// `#`.
 ///
 /// # Errors
-/// The input breaks off, holds something else than text, or says something that is not understood: whatever is not
-/// listed above is refused and not passed over, for it could change what the file means.
+/// If the input is truncated, is not text, or has content that is not listed above. Such content is never skipped,
+/// because it could change the meaning of the file.
 pub fn parse_data(reader: impl BufRead, name: &str) -> Result<DataFile, ReadError> {
     let mut lines = LineReader::new(reader, name)?;
     let Some(title) = lines.next_line()?.map(|line| line.text.trim().to_owned()) else {

@@ -1,13 +1,13 @@
-//! The header of a data file: how many, and in which box.
+//! Header of a data file with numbers of atoms and types, and the box.
 
 use crate::read::fields::Fields;
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// The keywords of the three bounds.
+/// Keywords of the three bounds.
 const BOUNDS: [[&str; 2]; 3] = [["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]];
 
-/// What the header has said so far.
+/// Values of the header that have been read.
 #[derive(Default)]
 pub(crate) struct DataHeader {
     atoms: Option<u64>,
@@ -16,7 +16,8 @@ pub(crate) struct DataHeader {
 }
 
 impl DataHeader {
-    /// Takes a line of the header; false if it is none but begins with a letter, as the keyword of a section does.
+    /// Reads a line of the header. Returns false for any other line that begins with a letter, such as the keyword of
+    /// a section.
     pub(crate) fn take(&mut self, line: Line<'_>, content: &str) -> Result<bool, ReadError> {
         let words: Vec<&str> = content.split_whitespace().collect();
         let mut fields = Fields::between_blanks(line, content);
@@ -61,7 +62,7 @@ impl DataHeader {
         Ok(true)
     }
 
-    /// Refuses a header that lacks something; `missing` makes the error.
+    /// Returns an error if the header is incomplete. `missing` creates the error.
     pub(crate) fn complete(&self, missing: impl Fn(String, String) -> ReadError) -> Result<(), ReadError> {
         let absent = |what: &str| {
             let expected = format!("a header line `{what}` in front of the sections");
@@ -81,24 +82,24 @@ impl DataHeader {
         Ok(())
     }
 
-    /// How many atoms are declared; 0 before that was said.
+    /// Returns the declared number of atoms, or 0 before it has been read.
     pub(crate) fn atom_count(&self) -> u64 {
         self.atoms.unwrap_or_default()
     }
 
-    /// How many types are declared; 0 before that was said.
+    /// Returns the declared number of types, or 0 before it has been read.
     pub(crate) fn type_count(&self) -> u32 {
         self.types.unwrap_or_default()
     }
 
-    /// The lower and the upper corner of the box.
+    /// Returns the lower and the upper corner of the box.
     pub(crate) fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let pairs = self.bounds.map(Option::unwrap_or_default);
         (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
     }
 }
 
-/// Refuses a header line with more words than its form has.
+/// Returns an error if a header line has a wrong number of words.
 fn expect_words(words: &[&str], count: usize, line: Line<'_>, form: &str) -> Result<(), ReadError> {
     if words.len() == count {
         return Ok(());
@@ -106,7 +107,7 @@ fn expect_words(words: &[&str], count: usize, line: Line<'_>, form: &str) -> Res
     Err(line.error(form, quoted(&words.join(" "))))
 }
 
-/// Stores what is to be said once.
+/// Stores a value that must occur once.
 fn once<T>(place: &mut Option<T>, value: T, line: Line<'_>, form: &str) -> Result<(), ReadError> {
     match place.replace(value) {
         None => Ok(()),

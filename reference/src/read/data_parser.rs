@@ -1,4 +1,4 @@
-//! The grammar of a data file, taken line by line.
+//! Parser of a data file, line by line.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -9,17 +9,17 @@ use crate::read::fields::Fields;
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// The sections that may follow the header.
+/// Section after the header.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Section {
     Atoms,
     Velocities,
-    /// Says nothing about the grains.
+    /// Section without data of grains.
     PassedOver,
 }
 
 impl Section {
-    /// What stands on its keyword line, comment taken off.
+    /// Returns the section of a keyword line without its comment.
     fn named(keyword: &str) -> Option<Self> {
         match keyword.split_whitespace().collect::<Vec<_>>()[..] {
             ["Atoms"] => Some(Self::Atoms),
@@ -30,28 +30,28 @@ impl Section {
     }
 }
 
-/// Where in the file the next line stands.
+/// Position of the next line in the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Header,
-    /// Directly below a keyword. The programs throw this line away unread, whatever it holds.
+    /// Directly below a keyword. The programs skip this line without reading it.
     BelowKeyword(Section),
     Within(Section),
 }
 
-/// Takes the lines of a data file after its title, and gives the grains.
+/// Reads the lines of a data file after its title and returns the grains.
 pub(crate) struct DataParser {
     stage: Stage,
     header: DataHeader,
     atoms: Vec<Atom>,
-    /// Which grain has this id, and whether its velocity has been read.
+    /// Index of each grain by its id, and true if its velocity has been read.
     known: HashMap<u32, (usize, bool)>,
     atoms_seen: bool,
     velocities_seen: bool,
     velocities: u64,
 }
 
-/// The lower and the upper corner of the box.
+/// Lower and upper corner of the box.
 type Bounds = ([f64; 3], [f64; 3]);
 
 impl DataParser {
@@ -59,7 +59,7 @@ impl DataParser {
         Self {
             stage: Stage::Header,
             header: DataHeader::default(),
-            // The declared count is a claim; memory follows the lines that are really there.
+            // The declared number is not trusted. Memory grows with the lines that are present.
             atoms: Vec::new(),
             known: HashMap::new(),
             atoms_seen: false,
@@ -68,7 +68,7 @@ impl DataParser {
         }
     }
 
-    /// Takes the next line.
+    /// Reads the next line.
     pub(crate) fn take(&mut self, line: Line<'_>) -> Result<(), ReadError> {
         let (content, comment) = match line.text.split_once('#') {
             Some((content, comment)) => (content, comment.trim()),
@@ -107,7 +107,7 @@ impl DataParser {
         }
     }
 
-    /// The box and the grains, once the input has ended; `missing` makes the error of what it lacks.
+    /// Returns the box and the grains at the end of the input. `missing` creates the error for missing content.
     pub(crate) fn finish(
         self,
         missing: impl Fn(String, String) -> ReadError,
@@ -124,7 +124,7 @@ impl DataParser {
         Ok((self.header.bounds(), self.atoms))
     }
 
-    /// Begins the section that `content` names.
+    /// Starts the section that `content` names.
     fn open(&mut self, line: Line<'_>, content: &str, comment: &str) -> Result<(), ReadError> {
         let Some(section) = Section::named(content) else {
             let expected = "a section `Atoms`, `Velocities`, `Masses`, `Pair Coeffs` or `PairIJ Coeffs`";
@@ -158,7 +158,7 @@ impl DataParser {
         Ok(())
     }
 
-    /// Checks that the section that ends here was complete.
+    /// Checks that the section that ends here is complete.
     fn close(&self, section: Section, missing: impl Fn(String, String) -> ReadError) -> Result<(), ReadError> {
         let (name, count) = match section {
             Section::Atoms => ("Atoms", self.atoms.len() as u64),

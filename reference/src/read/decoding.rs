@@ -1,4 +1,4 @@
-//! Plain or compressed: decided by the first bytes, never by the name.
+//! Detection of compression by the first bytes, never by the name.
 
 use std::io::{self, BufRead, Cursor, Read};
 
@@ -9,7 +9,8 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// Beginnings of files that are recognised in order to say so, rather than to complain about bytes that are no text.
+/// Beginnings of files that cannot be read. They are recognised for a better message than an error about bytes that
+/// are not text.
 const UNREADABLE: [(&[u8], &str); 5] = [
     (&[0xfd, b'7', b'z', b'X', b'Z', 0], "a file compressed by xz (unpack it with `xz -dk`)"),
     (b"BZh", "a file compressed by bzip2 (unpack it with `bzip2 -dk`)"),
@@ -20,18 +21,18 @@ const UNREADABLE: [(&[u8], &str); 5] = [
 const BINARY_DUMP: &str =
     "a binary dump of LAMMPS (write it as text: a file name of `dump` that does not end in `.bin`)";
 
-/// The longest of the marks above.
+/// Length of the longest of these beginnings (B).
 const MARK: u64 = 18;
 
-/// What the first bytes of an input announce.
+/// Content of an input according to its first bytes.
 pub(crate) enum Decoded<'r> {
-    /// Text, decompressed on the way where it was gzip or zstd.
+    /// Text, decompressed if it was gzip or zstd.
     Text(Box<dyn Read + 'r>),
-    /// A form that is not read here, in words.
+    /// Unsupported format, as text.
     Unreadable(&'static str),
 }
 
-/// Looks at the first bytes of `reader` and unpacks gzip and zstd.
+/// Detects the format of `reader` from its first bytes, and decompresses gzip and zstd.
 pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'r>> {
     let mut head = Vec::new();
     reader.by_ref().take(MARK).read_to_end(&mut head)?;
@@ -42,7 +43,7 @@ pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'
     let (gzip, zstd) = (is(GZIP), is(ZSTD));
     let whole = Cursor::new(head).chain(reader);
     Ok(Decoded::Text(if gzip {
-        // A gzip file may be several ones in a row, as `cat a.gz b.gz` leaves it.
+        // A gzip file can be a sequence of gzip files, for example from `cat a.gz b.gz`.
         Box::new(MultiGzDecoder::new(whole))
     } else if zstd {
         Box::new(ZstdFrames::new(whole))
@@ -51,7 +52,7 @@ pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'
     }))
 }
 
-/// A zstd file, which may be several frames in a row.
+/// Reader of a zstd file, which can be a sequence of frames.
 struct ZstdFrames<R: BufRead> {
     decoder: FrameDecoder,
     source: R,

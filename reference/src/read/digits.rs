@@ -1,47 +1,48 @@
-//! With how many digits a column was printed, hence how far a printed number may be from the one that was meant.
+//! Number of printed digits of a column, and the resulting uncertainty of its numbers.
 
-/// Values of a column that are looked at whatever their length; after them only those longer than all before.
+/// Number of values of a column that are examined regardless of their length. Later values are examined only if they
+/// are longer than all before, or the first with a fraction.
 const LOOKED_AT: u32 = 32;
 
-/// `%g` prints this many digits unless it is told otherwise.
+/// Default number of significant digits of `%g`.
 const USUAL: u32 = 6;
 
-/// What the texts of a column's numbers tell of their format.
+/// Format of a column, derived from the texts of its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Digits {
     looked_at: u32,
     longest: usize,
     significant: u32,
-    /// Fewest and most digits behind the point, of numbers without an exponent.
+    /// Smallest and largest number of decimals of numbers without an exponent.
     decimals: Option<(u32, u32)>,
-    /// Whether a number ended in a zero behind the point, which a general format never leaves.
+    /// True if a number has decimals that end in a zero. A general format never prints such a zero.
     padded: bool,
-    /// Whether a number had other digits behind the point than one zero.
+    /// True if a number has decimals other than a single zero.
     has_fraction: bool,
-    /// Whether a number had an exponent.
+    /// True if a number has an exponent.
     has_exponent: bool,
-    /// Whether the numbers were single ones (f32), however many digits were printed of them.
+    /// True if the numbers have single precision (f32), however many digits are printed.
     single: bool,
 }
 
 impl Digits {
-    /// Of numbers that were written bit by bit.
+    /// Returns the digits of numbers that are stored as binary.
     pub(crate) fn exact() -> Self {
         Self { significant: 17, ..Self::default() }
     }
 
-    /// The same, of single numbers.
+    /// Marks the numbers as single precision.
     pub(crate) fn single(self) -> Self {
         Self { single: true, ..self }
     }
 
-    /// Most significant digits of a number of the column.
+    /// Returns the largest number of significant digits in the column.
     #[must_use]
     pub fn significant(&self) -> u32 {
         self.significant
     }
 
-    /// Takes the text of one number into account.
+    /// Updates the digits with the text of one number.
     #[inline]
     pub(crate) fn see(&mut self, text: &[u8]) {
         let is_first_fraction = !self.has_fraction && !text.ends_with(b".0") && text.contains(&b'.');
@@ -57,7 +58,7 @@ impl Digits {
         let exponent = text.iter().position(|byte| matches!(byte, b'e' | b'E'));
         let mantissa = &text[..exponent.unwrap_or(text.len())];
         let digits = mantissa.iter().filter(|byte| byte.is_ascii_digit());
-        // Zeros in front say nothing, except for zero itself.
+        // Leading zeros do not count, except for zero itself.
         let counted = digits.skip_while(|byte| **byte == b'0').count();
         self.significant = self.significant.max(u32::try_from(counted).unwrap_or(u32::MAX));
         let point = mantissa.iter().position(|byte| *byte == b'.');
@@ -72,10 +73,10 @@ impl Digits {
         }
     }
 
-    /// Half a unit of the last printed place of `value`: how far the number that was printed may be from it.
+    /// Returns the uncertainty of a printed number, half a unit of the last printed digit of `value`.
     ///
-    /// A general format drops zeros at the end, so that a column of round numbers seems to have few digits; such a
-    /// column is taken to have been printed with as many as the file shows elsewhere, six at most, which is the usual.
+    /// A general format removes trailing zeros, so a column of round numbers seems to have few digits. Such a column
+    /// is assumed to have the digits of the rest of the file, at most six, which is the default of the format.
     #[must_use]
     pub fn uncertainty(&self, value: f64, of_file: &Digits) -> f64 {
         let is_padded = self.is_padded(of_file);
@@ -83,7 +84,7 @@ impl Digits {
             return 0.0;
         }
         let shown = self.significant.max(of_file.significant.min(USUAL)).clamp(1, 17);
-        // f64 holds no more than that.
+        // An f64 has no more digits.
         let general = if value == 0.0 || shown == 17 {
             0.5 * f64::EPSILON * value.abs()
         } else {
@@ -96,25 +97,28 @@ impl Digits {
             }
             _ => general,
         };
-        // The nearest of single numbers is at most this far away.
+        // This is the largest distance of a number from the nearest single-precision number.
         if self.single { printed.max(0.5 * f64::from(f32::EPSILON) * value.abs()) } else { printed }
     }
 
-    /// Half a unit of the last printed place of `value`; a whole number of a column of whole numbers has none.
+    /// Returns half a unit of the last printed digit of `value`. It is zero for a whole number in a column of whole
+    /// numbers.
     #[must_use]
     pub fn half_unit(&self, value: f64, of_file: &Digits) -> f64 {
         let is_whole = matches!(self.decimals, Some((_, 0))) && !self.has_exponent;
         if is_whole { 0.0 } else { self.uncertainty(value, of_file) }
     }
 
-    /// Returns whether zeros at the end are digits that were printed. A column of `0.0` and `2.0` alone in a file with more
-    /// digits elsewhere is not rounded to tenths: programs write whole numbers so.
+    /// Returns true if trailing zeros are printed digits.
+    ///
+    /// If a column contains only numbers such as `0.0` and `2.0` and the file has more digits elsewhere, the numbers
+    /// are not rounded to tenths. Programs write whole numbers in this form.
     fn is_padded(&self, of_file: &Digits) -> bool {
         let has_more = of_file.has_exponent || of_file.decimals.is_some_and(|(_, most)| most > 1);
         self.padded && (self.has_fraction || !has_more)
     }
 
-    /// What both have shown.
+    /// Returns the digits of both columns together.
     #[must_use]
     pub fn with(mut self, other: &Self) -> Self {
         self.looked_at = self.looked_at.saturating_add(other.looked_at);
@@ -153,12 +157,12 @@ mod tests {
         close(digits.uncertainty(1.0, &digits), 0.5e-5);
         close(digits.uncertainty(-0.001_234_57, &digits), 0.5e-8);
         assert_eq!(digits.uncertainty(0.0, &digits), 0.0);
-        // Few digits of a column are believed to be more where the file has more.
+        // A column with few digits is assumed to have more if the file has more.
         close(of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
         close(of(&["0.5"]).uncertainty(0.5, &of(&["0.12345678901234567"])), 0.5e-6);
     }
 
-    /// Python writes zero as `0.0`: in a file with more digits elsewhere that is no number of tenths.
+    /// Python writes zero as `0.0`. In a file with more digits elsewhere, such a number is not rounded to tenths.
     #[test]
     fn a_whole_number_with_a_point_is_not_rounded_to_tenths() {
         let of_file = of(&["0.0", "0.02125", "1e-05"]);

@@ -1,4 +1,4 @@
-//! Text dumps, `dump custom`, `dump atom` and `dump local` of LAMMPS and LIGGGHTS, one snapshot at a time.
+//! Text dumps of LAMMPS and LIGGGHTS (`dump custom`, `dump atom` and `dump local`), read one snapshot at a time.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -12,22 +12,22 @@ use crate::read::numbers::{NotFinite, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
-/// Reads the snapshots of a dump one after the other; memory is that of the largest one.
+/// Reads the snapshots of a dump one after the other. The memory is that of the largest snapshot.
 pub struct DumpReader<'r> {
     blocks: Blocks<'r>,
     form: RowForm,
     units: Option<String>,
     last_step: Option<u64>,
-    /// Most rows of a snapshot.
+    /// Maximum number of rows in a snapshot.
     most_rows: u64,
     ids: Ids,
 }
 
 impl DumpReader<'static> {
-    /// Opens the dump at `path`, plain, gzip or zstd, whatever its name.
+    /// Opens the dump at `path`, plain, gzip or zstd. Its name does not matter.
     ///
     /// # Errors
-    /// The file cannot be opened, or is compressed in another way.
+    /// If the file cannot be opened or has another compression.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let name = path.to_string_lossy();
         let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
@@ -36,35 +36,35 @@ impl DumpReader<'static> {
 }
 
 impl<'r> DumpReader<'r> {
-    /// Reads a dump from `reader`; `name` is what errors call it.
+    /// Reads a dump from `reader`. `name` is its name in error messages.
     ///
     /// # Errors
-    /// The beginning cannot be read, or announces a compression that is not read here.
+    /// If the beginning cannot be read or has an unsupported compression.
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
         let form = RowForm { separator: None, not_finite: NotFinite::default() };
         let most_rows = u64::MAX;
         Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Ids::default() })
     }
 
-    /// Refuses snapshots of more rows than can belong to a scene.
+    /// Sets the maximum number of rows in a snapshot of the scene.
     #[must_use]
     pub fn at_most(self, rows: u64) -> Self {
         Self { most_rows: rows, ..self }
     }
 
-    /// Whether NaN and infinity are read; they are refused otherwise.
+    /// Sets if NaN and infinity are accepted. By default they are errors.
     #[must_use]
     pub fn not_finite(mut self, not_finite: NotFinite) -> Self {
         self.form.not_finite = not_finite;
         self
     }
 
-    /// Reads the next snapshot in the place of the last; false at the end of the file. What the columns tell of their
-    /// digits is carried along while their names stay the same.
+    /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file. The digits of the columns
+    /// accumulate while their names stay the same.
     ///
     /// # Errors
-    /// The file breaks off, holds something else than text, goes back in time, has a step twice with other numbers, names an atom
-    /// twice, or says something that is not understood; see [`ReadError`].
+    /// If the file is truncated, is not text or has unknown content. Also if it goes back in time, repeats a step
+    /// with other numbers, or repeats the id of an atom. See [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let header = DumpHeader::read(&mut self.blocks).map_err(|error| self.blocks.cut_if_unended(error))?;
         let Some(header) = header else {
@@ -98,7 +98,7 @@ impl<'r> DumpReader<'r> {
         snapshot.kind = header.kind;
         (snapshot.bounds, snapshot.tilt, snapshot.periodic) = (header.bounds, header.tilt, header.periodic);
         snapshot.first_line = self.blocks.number() + 1;
-        // The declared count is a claim; memory follows the rows that are really there.
+        // The declared number is not trusted. Memory grows with the rows that are present.
         snapshot.values.clear();
         if header.rows > self.most_rows {
             let expected = format!("at most {} rows, for no more can belong to the scene", self.most_rows);
@@ -146,5 +146,5 @@ impl<'r> DumpReader<'r> {
     }
 }
 
-/// Most numbers that are read of a snapshot (half a gigabyte).
+/// Maximum number of numbers in a snapshot (half a gigabyte).
 const MOST_NUMBERS: usize = 1 << 26;

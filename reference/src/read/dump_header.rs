@@ -1,4 +1,4 @@
-//! What stands above the rows of a snapshot.
+//! Header of a snapshot.
 
 use crate::read::blocks::Blocks;
 use crate::read::fields::Fields;
@@ -7,16 +7,16 @@ use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpKind;
 
-/// More rows than that fit no memory; it keeps the line numbers of rows within bounds.
+/// Maximum number of rows. More rows do not fit in memory, and the limit keeps line numbers within bounds.
 const MOST_ROWS: u64 = u32::MAX as u64;
 
-/// The header of one snapshot.
+/// Header of one snapshot.
 pub(crate) struct DumpHeader {
     pub(crate) step: u64,
-    /// The line of the step.
+    /// Line number of the step.
     pub(crate) step_line: u64,
     pub(crate) time: Option<f64>,
-    /// The unit system, and the line that says it.
+    /// Unit system and its line number.
     pub(crate) units: Option<(String, u64)>,
     pub(crate) kind: DumpKind,
     pub(crate) rows: u64,
@@ -27,18 +27,18 @@ pub(crate) struct DumpHeader {
     pub(crate) columns: Vec<NumberColumn>,
 }
 
-/// The parts that have been read.
+/// Items that have been read.
 #[derive(Default)]
 struct Parts {
     step: Option<(u64, u64)>,
     time: Option<f64>,
     units: Option<(String, u64)>,
-    /// The count, and the word that stands for a row.
+    /// Number of rows, and the word for a row.
     rows: Option<(u64, String)>,
     bounds: Option<Bounds>,
 }
 
-/// The box and its boundaries.
+/// Box and its boundaries.
 struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
@@ -47,7 +47,7 @@ struct Bounds {
 }
 
 impl DumpHeader {
-    /// Reads items up to the one that names the columns; none at the end of the file.
+    /// Reads items up to the one with the names of the columns. Returns `None` at the end of the file.
     pub(crate) fn read(blocks: &mut Blocks<'_>) -> Result<Option<Self>, ReadError> {
         let mut parts = Parts::default();
         let mut any = false;
@@ -167,7 +167,7 @@ impl Parts {
     }
 }
 
-/// The error of a line that is no item: a count alone on the first line is that of an .xyz file.
+/// Returns the error for a line that is not an item. If the first line is a number only, the file is an .xyz file.
 fn not_an_item(line: Line<'_>, text: &str) -> ReadError {
     if line.number == 1 && text.trim().parse::<u64>().is_ok() {
         let expected = "a dump with ids and times, such as `dump … custom … id type x y z vx vy vz` writes";
@@ -176,7 +176,8 @@ fn not_an_item(line: Line<'_>, text: &str) -> ReadError {
     line.error("a line `ITEM: …`", quoted(text))
 }
 
-/// Which axes are periodic, from the words behind `BOX BOUNDS` (old files have none), and whether the box is tilted.
+/// Returns the periodic axes from the words after `BOX BOUNDS`, and true if the box is tilted. Old files have no such
+/// words.
 fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadError> {
     let known = |word: &&str| word.len() == 2 && word.bytes().all(|byte| b"pfsm".contains(&byte));
     match *words {
@@ -192,7 +193,7 @@ fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadE
     }
 }
 
-/// Reads the one line of an item.
+/// Reads the single line of an item.
 fn one<T>(
     blocks: &mut Blocks<'_>,
     what: &str,
