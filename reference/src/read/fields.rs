@@ -1,30 +1,30 @@
-//! The fields of one line, read one after the other.
+//! Fields of a line, read one after the other.
 
 use std::str::FromStr;
 
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Walks over the fields of a line; every fault names the column of the field.
+/// Reads the fields of a line. Every error names the column of the field.
 pub(crate) struct Fields<'l> {
     line: Line<'l>,
     content: &'l str,
-    /// Byte offset of what has not been read yet.
+    /// Byte offset of the unread part.
     offset: usize,
 }
 
 impl<'l> Fields<'l> {
-    /// Fields of `content`, the part of `line` in front of a comment, between blanks.
+    /// Returns the fields of `content`, separated by blanks. `content` is the part of `line` before a comment.
     pub(crate) fn between_blanks(line: Line<'l>, content: &'l str) -> Self {
         Self { line, content, offset: 0 }
     }
 
-    /// A whole number from `smallest` on.
+    /// Reads a whole number not less than `smallest`.
     pub(crate) fn whole<T: FromStr + PartialOrd>(&mut self, what: &str, smallest: T) -> Result<T, ReadError> {
         self.parsed(what, |value| *value >= smallest)
     }
 
-    /// A whole number from `smallest` to `largest`.
+    /// Reads a whole number from `smallest` to `largest`.
     pub(crate) fn whole_up_to<T: FromStr + PartialOrd>(
         &mut self,
         what: &str,
@@ -34,27 +34,27 @@ impl<'l> Fields<'l> {
         self.parsed(what, |value| *value >= smallest && *value <= largest)
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub(crate) fn finite(&mut self, what: &str) -> Result<f64, ReadError> {
         self.parsed(what, |value: &f64| value.is_finite())
     }
 
-    /// A finite number above zero.
+    /// Reads a finite number above zero.
     pub(crate) fn positive(&mut self, what: &str) -> Result<f64, ReadError> {
         self.parsed(what, |value: &f64| value.is_finite() && *value > 0.0)
     }
 
-    /// Three finite numbers.
+    /// Reads three finite numbers.
     pub(crate) fn vector(&mut self, what: [&str; 3]) -> Result<[f64; 3], ReadError> {
         Ok([self.finite(what[0])?, self.finite(what[1])?, self.finite(what[2])?])
     }
 
-    /// Whether every field has been read.
+    /// Returns true if every field has been read.
     pub(crate) fn at_end(&self) -> bool {
         self.rest().trim_start().is_empty()
     }
 
-    /// Refuses a field more than `expected` has.
+    /// Returns an error if there is a field after those in `expected`.
     pub(crate) fn end(&mut self, expected: &str) -> Result<(), ReadError> {
         if self.at_end() {
             return Ok(());
@@ -68,7 +68,7 @@ impl<'l> Fields<'l> {
         self.content.get(self.offset..).unwrap_or_default()
     }
 
-    /// The next field and its column.
+    /// Returns the next field and its column.
     fn next(&mut self, what: &str) -> Result<(&'l str, usize), ReadError> {
         if self.at_end() {
             let column = self.content.trim_end().chars().count() + 1;
@@ -84,7 +84,7 @@ impl<'l> Fields<'l> {
         Ok((&field[..length], column.chars().count() + 1))
     }
 
-    /// The next field as a value that `fits`.
+    /// Reads the next field as a value for which `fits` returns true.
     fn parsed<T: FromStr>(&mut self, what: &str, fits: impl Fn(&T) -> bool) -> Result<T, ReadError> {
         let (text, column) = self.next(what)?;
         let value = text.parse().ok().filter(fits);

@@ -1,66 +1,66 @@
-//! What a format of files with snapshots of grains owes. A new one is a file in `formats`, where it is found.
+//! Interface of formats with snapshots of grains. To add a format, add a file in `formats`.
 
 use super::read_error::ReadError;
 use super::snapshot::{DumpSnapshot, Numbering};
 use std::path::{Path, PathBuf};
 
-/// The moments of a file that was opened.
+/// Snapshots of an open file.
 pub(crate) type Opened = Result<Box<dyn Moments>, ReadError>;
 
-/// A format.
+/// File format.
 #[derive(Debug)]
 pub(crate) struct Format {
-    /// What a file of it is, in words.
+    /// Name of the format as text.
     pub(crate) words: &'static str,
-    /// What tells that a file is of it.
+    /// Criterion for a file of this format.
     pub(crate) told_by: ToldBy,
-    /// How its snapshots are numbered, where a file does not say otherwise.
+    /// Numbering of the snapshots, unless the file contains another one.
     pub(crate) numbering: Numbering,
-    /// What a file of it holds.
+    /// Returns the kind of content of a file.
     pub(crate) holds: fn(&Path) -> Result<Holds, ReadError>,
-    /// Opens a file of it, whose snapshots may have so many rows.
+    /// Opens a file with a maximum number of rows per snapshot.
     pub(crate) open: fn(&Path, u64) -> Opened,
 }
 
-/// What tells that a file is of a format.
+/// Criterion that identifies the format of a file.
 #[derive(Debug)]
 pub(crate) enum ToldBy {
-    /// Its beginning and its name.
+    /// Test of the first bytes and the name.
     Beginning(fn(&Beginning<'_>) -> bool),
-    /// How its first line that is not blank begins, if the beginning did not tell another format.
+    /// Beginning of the first non-blank line, if no format matches the first bytes.
     Line(&'static str),
-    /// The names of columns in its first line that is neither blank nor a comment.
+    /// Test of the column names in the first line that is neither blank nor a comment.
     Names(fn(&[&str]) -> bool),
 }
 
-/// The first bytes of a file.
+/// First bytes of a file.
 pub(crate) struct Beginning<'a> {
-    /// The file.
+    /// Path of the file.
     pub(crate) path: &'a Path,
-    /// As they are.
+    /// Bytes as stored.
     pub(crate) bytes: &'a [u8],
-    /// Unpacked, where it is packed in a way that is known; empty otherwise.
+    /// Bytes after decompression, or empty if the compression is not supported.
     pub(crate) unpacked: &'a [u8],
 }
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Debug)]
 pub(crate) enum Holds {
-    /// Moments that tell their steps, or their order; with the step of the first, where it is at hand.
+    /// Snapshots with steps or in a defined order, and the step of the first one if it is known.
     Course(Option<u64>),
-    /// One moment, whose step the name of the file tells.
+    /// One snapshot. Its step is in the name of the file.
     Moment,
-    /// The names of other files, with their times (s).
+    /// Names of other files with their times (s).
     List(Vec<(f64, PathBuf)>),
 }
 
-/// The moments of a file, one after the other.
+/// Snapshots of a file, read one after the other.
 pub(crate) trait Moments {
-    /// Reads the next in the place of the last; false at the end of the file.
+    /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError>;
 }
 
-/// Moments that are had by their place.
+/// Snapshots that are read by index.
 pub(crate) struct ByPlace<F> {
     file: String,
     of: F,
@@ -68,7 +68,7 @@ pub(crate) struct ByPlace<F> {
 }
 
 impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> ByPlace<F> {
-    /// Of a file, by what gives the one at a place, and none after the last.
+    /// Returns the snapshots of a file. `of` returns the snapshot at an index, or `None` after the last one.
     pub(crate) fn boxed(path: &Path, of: F) -> Box<dyn Moments> {
         Box::new(Self { file: path.to_string_lossy().into_owned(), of, next: 0 })
     }
@@ -86,7 +86,7 @@ impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for ByPlac
     }
 }
 
-/// Refuses more grains than a scene has.
+/// Returns an error if there are more grains than in the scene.
 pub(crate) fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<(), ReadError> {
     if grains as u64 <= most_rows {
         return Ok(());

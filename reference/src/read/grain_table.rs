@@ -1,4 +1,5 @@
-//! Tables of grains as snapshots: rows of one step or time together, columns by the names that dumps give them.
+//! Tables of grains as snapshots. Rows with the same step or time form a snapshot, and columns have the names of
+//! dumps.
 
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::ReadError;
@@ -7,13 +8,13 @@ use crate::read::table::{Table, read_table};
 use crate::read::vtk::{component, is_id};
 use std::path::Path;
 
-/// How ParaView marks the components of a vector: in a table of one moment, and in one of all.
+/// Suffixes of ParaView for the components of a vector, in a table of one moment and in one of all moments.
 const COMPONENTS: [[&str; 3]; 2] = [[":0", ":1", ":2"], ["_X", "_Y", "_Z"]];
 
-/// What ParaView calls the positions.
+/// Name of the positions in ParaView.
 const POINTS: &str = "points";
 
-/// Returns whether columns of these names are those of grains: ids and coordinates.
+/// Returns true if columns of these names belong to grains. They must contain ids and coordinates.
 pub(crate) fn is_of_grains(names: &[&str]) -> bool {
     let names: Vec<String> = names.iter().map(|name| column_name(name)).collect();
     let has = |name: &str| names.iter().any(|other| other == name);
@@ -21,7 +22,7 @@ pub(crate) fn is_of_grains(names: &[&str]) -> bool {
     has("x") && has("y") && (has("id") || is_of_points)
 }
 
-/// The name that dumps give a column.
+/// Returns the name of a column in dumps.
 fn column_name(name: &str) -> String {
     for suffixes in COMPONENTS {
         let Some((vector, axis)) =
@@ -40,12 +41,12 @@ fn column_name(name: &str) -> String {
 /// Grains at one moment.
 pub(crate) struct Moment {
     pub(crate) step: u64,
-    /// Whether the table has a step or a time of it.
+    /// True if the table has a step or time for this moment.
     pub(crate) is_keyed: bool,
     pub(crate) snapshot: DumpSnapshot,
 }
 
-/// Where a table has steps, frames and times.
+/// Columns of a table with steps, frames and times.
 struct Keys {
     step: Option<usize>,
     frame: Option<usize>,
@@ -58,7 +59,7 @@ impl Keys {
         Self { step: column(&["step"]), frame: column(&["TimeStep"]), time: column(&["Time", "time", "t", "time (s)"]) }
     }
 
-    /// The numbers that rows of one moment share.
+    /// Returns the step or frame and the time of a row. All rows of one moment have the same values.
     fn of_row(&self, row: &[f64]) -> [Option<f64>; 2] {
         [self.step.or(self.frame), self.time].map(|at| at.map(|at| row[at]))
     }
@@ -67,7 +68,7 @@ impl Keys {
 /// Reads the moments of the table at a path.
 ///
 /// # Errors
-/// The file cannot be read, has two columns of one meaning, or goes back in time.
+/// If the file cannot be read, has two columns of the same meaning, or goes back in time.
 pub(crate) fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
     let name = path.to_string_lossy();
     let table = read_table(path)?;
@@ -111,7 +112,7 @@ fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
     before.into_iter().zip(key).any(|pair| matches!(pair, (Some(before), Some(now)) if now < before))
 }
 
-/// The columns by the names that dumps give them.
+/// Returns the columns with the names of dumps.
 fn columns(file: &str, table: &Table) -> Result<Vec<NumberColumn>, ReadError> {
     let mut columns: Vec<NumberColumn> = Vec::new();
     for column in &table.columns {

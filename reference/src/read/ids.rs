@@ -1,17 +1,17 @@
-//! Ids of grains: whole numbers, each once in a snapshot.
+//! Ids of grains. They are whole numbers and unique in a snapshot.
 
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 
-/// Whole numbers up to here are numbers of their own in f64.
+/// Largest number up to which an f64 represents every whole number.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// Ids of a snapshot with their rows; the memory is kept from one snapshot to the next.
+/// Ids of a snapshot with their rows. The memory is reused for the next snapshot.
 #[derive(Debug, Default)]
 pub(crate) struct Ids(Vec<(u64, u32)>);
 
 impl Ids {
-    /// Refuses a column of ids with a number that is not whole, is negative, or occurs twice.
+    /// Returns an error if a column of ids has a negative, fractional or repeated number.
     pub(crate) fn check(&mut self, file: &str, snapshot: &DumpSnapshot, column: usize) -> Result<(), ReadError> {
         let fault = |row: u32, expected: String, found: String| {
             ReadError::at(file, snapshot.first_line + u64::from(row), expected, found)

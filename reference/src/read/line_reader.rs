@@ -6,12 +6,12 @@ use crate::read::blocks::{Blocks, RawLine};
 use crate::read::decoding::{Decoded, decoded};
 use crate::read::read_error::ReadError;
 
-/// Reads an input, plain, gzip or zstd, line by line, and refuses what is not text.
+/// Reads an input, plain, gzip or zstd, line by line. Input that is not text is an error.
 pub(crate) struct LineReader<'r> {
     blocks: Blocks<'r>,
 }
 
-/// One line without its end, and where it stands.
+/// Line without its line end, with its position.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'l> {
     pub(crate) file: &'l str,
@@ -20,12 +20,12 @@ pub(crate) struct Line<'l> {
 }
 
 impl<'l> Line<'l> {
-    /// The bytes of the line.
+    /// Returns the bytes of the line.
     pub(crate) fn raw(self) -> RawLine<'l> {
         RawLine { file: self.file, number: self.number, bytes: self.text.as_bytes(), ended: true }
     }
 
-    /// The fault that this line has as a whole.
+    /// Returns an error about the whole line.
     pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         ReadError::at(self.file, self.number, expected, found)
     }
@@ -44,17 +44,17 @@ impl<'r> LineReader<'r> {
         Ok(Self { blocks: blocks(reader, name)? })
     }
 
-    /// The number of the line that was read last; 0 before the first.
+    /// Returns the number of the last line that was read, or 0 before the first.
     pub(crate) fn number(&self) -> u64 {
         self.blocks.number()
     }
 
-    /// The next line; none at the end of the input.
+    /// Returns the next line, or `None` at the end of the input.
     pub(crate) fn next_line(&mut self) -> Result<Option<Line<'_>>, ReadError> {
         self.blocks.next_line()?.map(RawLine::text).transpose()
     }
 
-    /// The fault that something is missing where the input ends.
+    /// Returns an error about content that is missing at the end of the input.
     pub(crate) fn error_at_end(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
     }

@@ -1,4 +1,4 @@
-//! Logs of LAMMPS and LIGGGHTS: what they print while they run.
+//! Logs that LAMMPS and LIGGGHTS print during a run.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -9,15 +9,15 @@ use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::table::Table;
 
-/// One `run` of a log.
+/// Output of one `run` command in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoggedRun {
-    /// What was printed, by the names that the program gives the columns: `Step`, `Time`, `KinEng`, … Releases order
-    /// and align them differently.
+    /// Printed columns with the names of the program: `Step`, `Time`, `KinEng`, … Their order and alignment depend on
+    /// the release.
     pub thermo: Table,
-    /// Time step of the run, where the log repeats the command `timestep` with a number before it.
+    /// Time step of the run, if the log contains a command `timestep` with a number before it.
     pub time_step: Option<f64>,
-    /// How it ended; none where the log breaks off.
+    /// Summary at the end of the run, or `None` if the log is truncated.
     pub end: Option<LoopTime>,
 }
 
@@ -30,48 +30,49 @@ impl LoggedRun {
     }
 }
 
-/// The line `Loop time of … on … procs for … steps with … atoms`.
+/// Values of the line `Loop time of … on … procs for … steps with … atoms`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopTime {
     /// Wall-clock time of the loop (s).
     pub seconds: f64,
-    /// Processes.
+    /// Number of processes.
     pub processes: u64,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Atoms in the end.
+    /// Number of atoms at the end.
     pub atoms: u64,
 }
 
-/// A log.
+/// Log of a program.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
-    /// The line by which the program names its version, where the log begins with it.
+    /// Line with the version of the program, if the log begins with it.
     pub version: Option<String>,
-    /// The name of the unit system, where the log repeats the command that sets it.
+    /// Name of the unit system, if the log contains the command that sets it.
     pub units: Option<String>,
-    /// The time step, where the log repeats a command `timestep` with a number; that of the last one.
+    /// Time step of the last `timestep` command with a number, if the log contains one.
     pub time_step: Option<f64>,
-    /// Its runs, in order.
+    /// Runs in the order of the log.
     pub runs: Vec<LoggedRun>,
 }
 
-/// Reads the log at `path`, plain, gzip or zstd; see [`parse_log`].
+/// Reads the log at `path`, plain, gzip or zstd. See [`parse_log`].
 ///
 /// # Errors
-/// The file cannot be read, or is not such a log.
+/// If the file cannot be read or is not such a log.
 pub fn read_log(path: &Path) -> Result<Log, ReadError> {
     let name = path.to_string_lossy();
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
     parse_log(BufReader::new(file), &name)
 }
 
-/// Reads a log with `thermo_style one` or `custom`; `name` is what errors call it. NaN is kept: it is what the program
-/// printed. Warnings between the rows are passed over. The last run may be broken off.
+/// Reads a log with `thermo_style one` or `custom`. `name` is its name in error messages.
+///
+/// NaN is kept, because the program printed it. Warnings between the rows are skipped. The last run can be truncated.
 ///
 /// # Errors
-/// The input cannot be read, prints thermodynamic output in several lines a step, has a row that is not one number for
-/// each column, or has no run at all.
+/// If the input cannot be read or has no run. Also if it has several lines of thermodynamic output per step, or a row
+/// without exactly one number per column.
 pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut lines = LineReader::new(reader, name)?;
     let mut log = Log::default();
@@ -89,7 +90,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
                     log.runs.push(LoggedRun { thermo, time_step: log.time_step, end });
                     expected = Expected::Text;
                 }
-                // A blank line, a warning.
+                // Blank lines are skipped, and the next case skips warnings.
                 None => {}
                 Some(word) if word.starts_with(char::is_alphabetic) && word.parse::<f64>().is_err() => {}
                 Some(_) => ROW.read(line.raw(), columns, values)?,
@@ -108,7 +109,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
         }
         let mut words = words();
         expected = match (words.next(), words.next(), words.next()) {
-            // LAMMPS says it of each process, older releases and LIGGGHTS of the processor.
+            // LAMMPS prints the first form. Older releases and LIGGGHTS print the second.
             (Some("Per"), Some("MPI"), Some("rank")) | (Some("Memory"), Some("usage"), Some("per")) => Expected::Names,
             (Some("units"), Some(units), None) => {
                 log.units = Some(units.to_owned());
@@ -132,21 +133,21 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     Ok(log)
 }
 
-/// A row of a log.
+/// Format of a row.
 const ROW: RowForm = RowForm { separator: None, not_finite: NotFinite::Kept };
 
-/// What the next line of a log may be.
+/// Content that is expected in the next line of a log.
 #[derive(PartialEq)]
 enum Expected {
-    /// Anything.
+    /// Any text.
     Text,
-    /// The names of the columns.
+    /// Names of the columns.
     Names,
     /// Rows of these columns.
     Rows(Vec<NumberColumn>, Vec<f64>),
 }
 
-/// The columns, if the line names some: words, none a number, none twice, `Step` among them.
+/// Returns the columns if the line contains column names: different words, none a number, one of them `Step`.
 fn columns_of(line: Line<'_>) -> Option<Vec<NumberColumn>> {
     let words: Vec<&str> = line.text.split_whitespace().collect();
     let named = words.contains(&"Step")

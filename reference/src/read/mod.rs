@@ -1,5 +1,5 @@
-//! Readers for files, one format each: what a file holds, or an error that names the file, the place, what was expected
-//! there and what was found.
+//! Readers for files, one per format. They return the content of a file, or an error. The error names the file and
+//! the position, and states the expected and the actual content.
 
 pub(crate) mod atom;
 mod binary;

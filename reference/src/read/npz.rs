@@ -1,4 +1,4 @@
-//! Arrays of NumPy's files (`.npz`): a ZIP of one `.npy` an array.
+//! Arrays in files of NumPy (`.npz`), which are ZIP archives with one `.npy` file per array.
 //!
 //! Source: "numpy.lib.format", versions 1.0 to 3.0 of `.npy`.
 
@@ -13,14 +13,14 @@ use std::io::Read;
 use std::path::Path;
 use zip::ZipArchive;
 
-/// How a file begins.
+/// First bytes of a file.
 pub(crate) const MARK: &[u8] = b"PK\x03\x04";
-/// How an array begins.
+/// First bytes of an array.
 const ARRAY: &[u8] = b"\x93NUMPY";
-/// Most bytes of all arrays together.
+/// Maximum size of all arrays together (B).
 const MOST: u64 = 1 << 30;
 
-/// An array, the last index running fastest.
+/// Array. The last index varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 struct Array {
     shape: Vec<usize>,
@@ -32,18 +32,20 @@ struct Array {
 #[derive(Debug)]
 pub(crate) struct Course {
     name: String,
-    /// Step of every moment; their places where the file does not tell.
+    /// Step of each moment. If the file has no steps, it is the index of the moment.
     steps: Vec<u64>,
-    /// Times (s), where the file tells them.
+    /// Times (s), if the file contains them.
     times: Option<Vec<f64>>,
     grains: usize,
     columns: Vec<NumberColumn>,
-    /// Of each column its numbers, and whether they are of every moment.
+    /// Numbers of each column, and true if they differ between moments.
     numbers: Vec<(Vec<f64>, bool)>,
 }
 
-/// Arrays of grains: the name, the columns that they are, whether there must be one. Of three numbers a grain the array has
-/// the shape (moments, grains, 3), of one (moments, grains) or (grains).
+/// Arrays of grains, with their name, their columns, and true if the array is required.
+///
+/// An array with three numbers per grain has the shape (moments, grains, 3). An array with one number per grain has
+/// the shape (moments, grains) or (grains).
 const KNOWN: [(&str, &[&str], bool); 5] = [
     ("position", &["x", "y", "z"], true),
     ("velocity", &["vx", "vy", "vz"], false),
@@ -52,10 +54,11 @@ const KNOWN: [(&str, &[&str], bool); 5] = [
     ("radius", &["radius"], false),
 ];
 
-/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and `step` or `time` of every moment.
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and `step` or `time` of every
+/// moment.
 ///
 /// # Errors
-/// The file cannot be read, lacks what it must have, or has arrays of other shapes.
+/// If the file cannot be read, lacks a required array, or has arrays of other shapes.
 pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     let name = path.to_string_lossy().into_owned();
     let arrays = arrays(path, &name)?;
@@ -127,17 +130,17 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
 }
 
 impl Course {
-    /// What errors call it.
+    /// Returns the name of the file for error messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// How many grains there are.
+    /// Returns the number of grains.
     pub(crate) const fn grains(&self) -> usize {
         self.grains
     }
 
-    /// The grains at a moment; none after the last.
+    /// Returns the grains at a moment, or `None` after the last.
     pub(crate) fn snapshot(&self, moment: usize) -> Option<DumpSnapshot> {
         let (grains, step) = (self.grains, *self.steps.get(moment)?);
         let number = |grain: usize, of: &(Vec<f64>, bool)| of.0[if of.1 { moment * grains + grain } else { grain }];
@@ -148,7 +151,7 @@ impl Course {
     }
 }
 
-/// All arrays of a file by their names.
+/// Returns all arrays of a file by name.
 fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError> {
     let file = File::open(path).map_err(|error| ReadError::opening(name, error))?;
     let damaged = |error: zip::result::ZipError| ReadError::at(name, 1, "a whole `.npz`", quoted(&error.to_string()));
@@ -160,7 +163,7 @@ fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError>
         let entry_name = entry.name().map_err(damaged)?.into_owned();
         let Some(key) = entry_name.strip_suffix(".npy").map(str::to_owned) else { continue };
         let mut bytes = Vec::new();
-        // What an entry says of its size is a claim.
+        // The declared size of an entry is not trusted.
         entry.take(left + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(name, 1, error))?;
         left = left
             .checked_sub(bytes.len() as u64)
@@ -175,7 +178,7 @@ fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError>
     Ok(arrays)
 }
 
-/// An array of numbers; none where it is of something else. Errors say what was expected and what was found.
+/// Returns an array of numbers, or `None` if it has another type. Errors contain the expected and the actual content.
 fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
     let short = || ("a whole header".to_owned(), "the end of the file".to_owned());
     let rest = bytes.strip_prefix(ARRAY).ok_or_else(|| ("`.npy`".to_owned(), "something else".to_owned()))?;
@@ -263,7 +266,7 @@ mod tests {
             let mut bytes = whole.clone();
             bytes[at] ^= 1 << (at % 8);
             fs::write(&damaged, &bytes).unwrap();
-            // Read or refused, never a panic.
+            // The file must be read or refused without a panic.
             let _ = read_course(&damaged);
         }
     }

@@ -1,42 +1,42 @@
-//! Rows of numbers between blanks or commas, parsed from bytes.
+//! Rows of numbers separated by blanks or commas, parsed from bytes.
 
 use crate::read::blocks::RawLine;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 
-/// One column of a table of numbers.
+/// Column of a table of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NumberColumn {
-    /// Its name, as the file has it.
+    /// Name in the file.
     pub name: String,
-    /// With how many digits its numbers were printed, so far.
+    /// Printed digits of the numbers read so far.
     pub digits: Digits,
-    /// Whether it holds words, as `element` does; its numbers are then NaN.
+    /// True for a column of words, such as `element`. Its numbers are NaN.
     pub is_text: bool,
 }
 
 impl NumberColumn {
-    /// A column of a name.
+    /// Returns a column with a name.
     pub(crate) fn new(name: &str) -> Self {
         let is_text = matches!(name, "element" | "typelabel");
         Self { name: name.to_owned(), digits: Digits::default(), is_text }
     }
 }
 
-/// Whether NaN and infinity are numbers.
+/// Treatment of NaN and infinity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NotFinite {
-    /// They are faults of the file.
+    /// NaN and infinity are errors in the file.
     #[default]
     Refused,
-    /// They are kept, for who wants to say more about a run that went wrong than where its file did.
+    /// NaN and infinity are kept, so that the caller can report where in the run they occur.
     Kept,
 }
 
-/// How rows are written and what they may hold.
+/// Format of rows, and permitted values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowForm {
-    /// What stands between two numbers; blanks where none is said.
+    /// Separator of two numbers. Without a value, numbers are separated by blanks.
     pub(crate) separator: Option<u8>,
     pub(crate) not_finite: NotFinite,
 }
@@ -105,7 +105,7 @@ impl RowForm {
         Ok(())
     }
 
-    /// Bytes of the field that `bytes` begins with.
+    /// Returns the length of the field at the beginning of `bytes` (B).
     fn word(self, bytes: &[u8]) -> usize {
         let ends = |byte: &u8| self.is_blank(*byte) || Some(*byte) == self.separator;
         bytes.iter().position(ends).unwrap_or(bytes.len())
@@ -121,9 +121,9 @@ impl RowForm {
         self.error_at(line, at, &format!("{kind} in the column {}", quoted(&column.name)), "")
     }
 
-    /// The fault of the field at byte `at`.
+    /// Returns the error for the field at byte `at`.
     fn error_at(self, line: RawLine<'_>, at: usize, expected: &str, kind: &str) -> ReadError {
-        // Bytes that are no text are the greater fault.
+        // Bytes that are not text are the more important error.
         let text = match line.text() {
             Ok(line) => line.text,
             Err(error) => return error,

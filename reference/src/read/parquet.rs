@@ -1,4 +1,4 @@
-//! Tables of numbers in Parquet's files, with Snappy's compression or none.
+//! Tables of numbers in Parquet files, uncompressed or compressed by Snappy.
 
 use super::digits::Digits;
 use super::numbers::NumberColumn;
@@ -13,18 +13,19 @@ use std::fs::File;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
-/// How a file begins.
+/// First bytes of a file.
 pub(crate) const MARK: &[u8] = b"PAR1";
-/// Most bytes of all its numbers, unpacked.
+/// Maximum size of all numbers after decompression (B).
 const MOST: i64 = 1 << 30;
 
-/// Reads the table of a file, which errors call `name`.
+/// Reads the table of a file. `name` is its name in error messages.
 ///
 /// # Errors
-/// The file is damaged or larger than a table may be, has a column of something else than numbers, or a number that is absent or
+/// If the file is damaged or too large. Also if a column has a type other than numbers, or if a number is missing or
 /// not finite.
 pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
-    // The crate checks what it reads in most places and trusts a length in some: a damaged file is to be an error, not an end.
+    // The `parquet` crate checks most of its input but trusts some lengths, so a damaged file can cause a panic. It
+    // must be an error instead.
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
         let told = panic::take_hook();
@@ -41,7 +42,7 @@ pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
 }
 
 thread_local! {
-    /// Whether a file is being read: what ends there is told by an error alone.
+    /// True while a file is being read. A panic then prints no message, because it becomes an error.
     static READING: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -87,7 +88,7 @@ fn whole(file: File, name: &str) -> Result<Table, ReadError> {
     Ok(Table::new(columns, values))
 }
 
-/// The number of a field; none where it holds something else.
+/// Returns the number of a field, or `None` if it has another type.
 fn number(field: &Field) -> Option<f64> {
     Some(match *field {
         Field::Double(number) => number,
@@ -115,7 +116,7 @@ mod tests {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/grains_pandas.parquet")
     }
 
-    /// Two grains at three steps, of every width of numbers, as pandas writes them.
+    /// The file contains two grains at three steps with numbers of every width, written by pandas.
     #[test]
     fn a_table_of_pandas_is_read() {
         let table = read_table(&data()).unwrap();
@@ -129,7 +130,7 @@ mod tests {
         assert_eq!(column("omegaz")[5], -1.0);
     }
 
-    /// Wherever a file is cut off or a byte of it is changed, there is a table or an error, and no end.
+    /// A file that is truncated or changed at any byte must yield a table or an error, but no panic.
     #[test]
     fn a_damaged_file_is_an_error() {
         let whole = fs::read(data()).unwrap();

@@ -1,17 +1,18 @@
-//! The one error of every reader here.
+//! Common error of all readers.
 
 use grainbench_scene::text::tamed;
 use std::fmt;
 use std::io;
 
-/// The longest excerpt of an input that an error repeats, in characters.
+/// Maximum length of an excerpt in an error (characters).
 const EXCERPT: usize = 60;
 
-/// An input that could not be read: which file, where in it, what was expected and what stood there.
+/// Input that could not be read, with the file, the position, and the expected and the actual content.
 ///
-/// Displayed on one line, `FILE:LINE: expected …, found …`; with a column `FILE:LINE:COLUMN: …`, and without a line
-/// `FILE: …` where the file could not even be opened. Lines and columns count from 1; those of a compressed file are
-/// of its text.
+/// It is displayed on one line as `FILE:LINE: expected …, found …`. With a column it begins with `FILE:LINE:COLUMN:`.
+/// If the file could not be opened it begins with `FILE:`.
+///
+/// Lines and columns are counted from 1. Those of a compressed file refer to its text.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: expected {expected}, found {found}", Place(file, *line, *column))]
 pub struct ReadError {
@@ -38,7 +39,7 @@ impl ReadError {
         }
     }
 
-    /// Marks an input that ends in the middle of something, as a killed job leaves it.
+    /// Marks an input as truncated, for example because a job was killed.
     pub(crate) fn cut(self) -> Self {
         Self { is_cut: true, ..self }
     }
@@ -48,56 +49,56 @@ impl ReadError {
         self
     }
 
-    /// A failure of the operating system or of the decompressor while line `line` was being read.
+    /// Returns an error of the operating system or the decompression while line `line` was being read.
     pub(crate) fn reading(file: &str, line: u64, source: io::Error) -> Self {
         let found = one_line(&source.to_string());
         let is_cut = source.kind() == io::ErrorKind::UnexpectedEof;
         Self { source: Some(source), is_cut, ..Self::at(file, line, "readable data", found) }
     }
 
-    /// A file that could not be opened.
+    /// Returns the error for a file that could not be opened.
     pub(crate) fn opening(file: &str, source: io::Error) -> Self {
         Self { line: None, expected: "a readable file".into(), ..Self::reading(file, 0, source) }
     }
 
-    /// The input's name, as it was given (characters that would break the line are escaped).
+    /// Returns the given name of the input. Characters that would break the line are escaped.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Returns whether the input ends in the middle of something: what stands in front of that is whole.
+    /// Returns true if the input is truncated. The content before this position is complete.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// The line, counted from 1; none if the file could not be opened.
+    /// Returns the line, counted from 1, or `None` if the file could not be opened.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
         self.line
     }
 
-    /// The column in characters, counted from 1, where the fault has one.
+    /// Returns the column in characters, counted from 1, if the error has one.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         self.column
     }
 
-    /// What should have stood there.
+    /// Returns the expected content.
     #[must_use]
     pub fn expected(&self) -> &str {
         &self.expected
     }
 
-    /// What stood there.
+    /// Returns the actual content.
     #[must_use]
     pub fn found(&self) -> &str {
         &self.found
     }
 }
 
-/// Writes as much of the place as is known.
+/// Known part of the position of an error.
 struct Place<'e>(&'e str, Option<u64>, Option<usize>);
 
 impl fmt::Display for Place<'_> {
@@ -113,7 +114,7 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-/// `text` as an error may repeat it: quoted, on one line, cut short.
+/// Returns an excerpt of `text` for errors. It is quoted, truncated and on one line.
 pub(crate) fn quoted(text: &str) -> String {
     let mut excerpt: String = text.chars().take(EXCERPT).collect();
     if excerpt.len() < text.len() {
@@ -122,7 +123,8 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("`{}`", one_line(&excerpt))
 }
 
-/// `text` with every character that could break or disguise the line (controls, separators, directions) escaped.
+/// Returns `text` with escapes for every character that could break or disguise the line: control characters,
+/// separators and direction marks.
 pub(crate) fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }

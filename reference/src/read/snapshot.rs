@@ -1,90 +1,90 @@
-//! One snapshot of a dump.
+//! Snapshot of a dump.
 
 use crate::read::digits::Digits;
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::ReadError;
 
-/// What the rows of a dump are.
+/// Content of the rows in a dump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DumpKind {
-    /// Grains, of `dump custom` or `dump atom`.
+    /// Grains from `dump custom` or `dump atom`.
     #[default]
     Atoms,
-    /// Whatever a `compute` lists, contacts mostly, of `dump local`.
+    /// Entries of a `compute`, mostly contacts, from `dump local`.
     Entries,
 }
 
-/// How snapshots are numbered.
+/// Numbering of snapshots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Numbering {
-    /// By steps of the run.
+    /// Steps of the run.
     #[default]
     Steps,
-    /// By numbers in the names of files: steps, or a count of files.
+    /// Numbers in the names of files. They are steps or a count of files.
     Files,
-    /// By a count of frames.
+    /// Count of frames.
     Frames,
 }
 
-/// One snapshot of a dump, in the units of its file.
+/// Snapshot of a dump, in the units of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DumpSnapshot {
-    /// The step, or another number by which snapshots are in order.
+    /// Step, or another number that orders the snapshots.
     pub step: u64,
-    /// How snapshots are numbered.
+    /// Numbering of the snapshots.
     pub numbering: Numbering,
-    /// The time, where the file says it.
+    /// Time, if the file contains it.
     pub time: Option<f64>,
-    /// The unit system by name, where the file has said it here or before.
+    /// Name of the unit system, if the file has contained it so far.
     pub units: Option<String>,
-    /// What the rows are.
+    /// Content of the rows.
     pub kind: DumpKind,
-    /// The lower and the upper corner of the box; of a tilted one, of the box with right angles around it.
+    /// Lower and upper corner of the box. For a tilted box, they are those of the enclosing box with right angles.
     pub bounds: ([f64; 3], [f64; 3]),
     /// Tilts `xy`, `xz` and `yz` of the box.
     pub tilt: [f64; 3],
-    /// Which axes are periodic.
+    /// True for each periodic axis.
     pub periodic: [bool; 3],
-    /// The columns, in the order of the file.
+    /// Columns in the order of the file.
     pub columns: Vec<NumberColumn>,
-    /// The line of the first row, counted from 1.
+    /// Line number of the first row, counted from 1.
     pub first_line: u64,
-    /// Row after row.
+    /// Values, row by row.
     pub(crate) values: Vec<f64>,
 }
 
 impl DumpSnapshot {
-    /// How many rows there are.
+    /// Returns the number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.values.len().checked_div(self.columns.len()).unwrap_or(0)
     }
 
-    /// The place of a column.
+    /// Returns the index of a column.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
 
-    /// The numbers of a row, one for each column.
+    /// Returns the numbers of a row, one for each column.
     #[must_use]
     pub fn row(&self, row: usize) -> &[f64] {
         let width = self.columns.len();
         self.values.get(row * width..(row + 1) * width).unwrap_or_default()
     }
 
-    /// The numbers of a column, from top to bottom.
+    /// Returns the numbers of a column, from top to bottom.
     pub fn values(&self, column: usize) -> impl Iterator<Item = f64> {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
-    /// A coordinate along an axis (0, 1, 2): which columns have it, and how it is got from there.
+    /// Returns the coordinate along an axis (0, 1, 2), with its columns and its conversion.
     #[must_use]
     pub fn coordinate(&self, axis: usize) -> Option<Coordinate> {
         ["", "u", "s", "su"].into_iter().find_map(|suffix| self.coordinate_named(&column_name(axis, suffix), axis))
     }
 
-    /// A coordinate along an axis from a column of any name; `xs`, `xsu` and so on are scaled.
+    /// Returns the coordinate along an axis from a column of any name. Columns such as `xs` and `xsu` are scaled.
     #[must_use]
     pub fn coordinate_named(&self, name: &str, axis: usize) -> Option<Coordinate> {
         let column = self.column(name)?;
@@ -94,7 +94,7 @@ impl DumpSnapshot {
         }
     }
 
-    /// Corners of the box itself: those of the box around it less what the tilts add.
+    /// Returns the corners of the tilted box itself. The tilts are subtracted from the enclosing box.
     fn corners(&self) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = self.bounds;
         let [xy, xz, yz] = self.tilt;
@@ -105,7 +105,7 @@ impl DumpSnapshot {
         (low, high)
     }
 
-    /// A scaled coordinate: x = xlo + xs lx + ys xy + zs xz, y = ylo + ys ly + zs yz, z = zlo + zs lz.
+    /// Returns a scaled coordinate: x = xlo + xs lx + ys xy + zs xz, y = ylo + ys ly + zs yz, z = zlo + zs lz.
     fn scaled(&self, column: usize, axis: usize, suffix: &str) -> Option<Coordinate> {
         let [xy, xz, yz] = self.tilt;
         let tilts = [[0.0, xy, xz], [0.0, 0.0, yz], [0.0; 3]][axis];
@@ -117,8 +117,10 @@ impl DumpSnapshot {
         Some(Coordinate { column, origin: low[axis], scale: high[axis] - low[axis], tilted })
     }
 
-    /// Finds the first number that differs from the same number of another snapshot, beyond the printed digits of both: its row,
-    /// and in words the expected and the found value. Rows are matched by id; columns that only one of them has are passed over.
+    /// Finds the first number that differs from another snapshot by more than the uncertainty of printed digits.
+    /// Returns its row, and the expected and the actual value as text.
+    ///
+    /// Rows are matched by id. Columns that only one of the snapshots has are skipped.
     pub(crate) fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
         if self.rows() != other.rows() {
             return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
@@ -147,14 +149,14 @@ impl DumpSnapshot {
         None
     }
 
-    /// Refuses a snapshot of the step or time of another one if its numbers differ.
+    /// Returns an error if the numbers differ from those of an earlier snapshot with the same step or time.
     pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
         let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
         let expected = format!("{expected} as before at step {}, which is there twice", self.step);
         Err(ReadError::at(file, self.first_line + row as u64, expected, found))
     }
 
-    /// What all columns of numbers show together of the format.
+    /// Returns the common digits of all columns of numbers.
     #[must_use]
     pub fn digits(&self) -> Digits {
         let counted = self.columns.iter().filter(|column| !column.is_text);
@@ -162,25 +164,25 @@ impl DumpSnapshot {
     }
 }
 
-/// Name of the column of a coordinate: the letter of the axis and a suffix.
+/// Returns the name of the column of a coordinate, the letter of the axis and a suffix.
 fn column_name(axis: usize, suffix: &str) -> String {
     format!("{}{suffix}", ["x", "y", "z"].get(axis).copied().unwrap_or_default())
 }
 
-/// How a coordinate is got from columns: scaled ones count from the lower side of the box in parts of its length, and in a
-/// tilted box in parts of the tilts too.
+/// Conversion of columns to a coordinate. Scaled columns are fractions of the box length, counted from the lower side
+/// of the box. In a tilted box they also contribute fractions of the tilts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
-    /// The column.
+    /// Index of the column.
     pub column: usize,
     origin: f64,
     scale: f64,
-    /// Other columns and the tilts that they are multiplied by.
+    /// Other columns and their tilts, by which they are multiplied.
     tilted: [Option<(usize, f64)>; 2],
 }
 
 impl Coordinate {
-    /// The coordinate of a row of [`DumpSnapshot::row`].
+    /// Returns the coordinate of a row from [`DumpSnapshot::row`].
     #[must_use]
     pub fn of(&self, row: &[f64]) -> f64 {
         let value = |column: usize| row.get(column).copied().unwrap_or(f64::NAN);
@@ -189,13 +191,13 @@ impl Coordinate {
         if tilted == 0.0 { straight } else { straight + tilted }
     }
 
-    /// What the coordinate changes by where the column changes by one.
+    /// Returns the derivative of the coordinate with respect to the column.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The columns that the coordinate is got from, and what it changes by where each changes by one.
+    /// Returns the columns that contribute to the coordinate, with the derivative for each.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
         [(self.column, self.scale)].into_iter().chain(self.tilted.into_iter().flatten())
     }

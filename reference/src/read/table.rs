@@ -1,4 +1,4 @@
-//! Tables of numbers with a line of names above: CSV, of whatever program; and the same in Parquet.
+//! Tables of numbers below a line of names, as CSV from any program or as Parquet.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
@@ -10,13 +10,13 @@ use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Most numbers that are read of a table: what is made of one takes ten times as much memory.
+/// Maximum number of numbers in a table. Their processing takes ten times as much memory.
 pub(super) const MOST_NUMBERS: usize = 1 << 24;
 
-/// A table of numbers.
+/// Table of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// The columns, in the order of the file.
+    /// Columns in the order of the file.
     pub columns: Vec<NumberColumn>,
     values: Vec<f64>,
 }
@@ -26,40 +26,40 @@ impl Table {
         Self { columns, values }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.values.len().checked_div(self.columns.len()).unwrap_or(0)
     }
 
-    /// The place of a column.
+    /// Returns the index of a column.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
 
-    /// The numbers of a column, from top to bottom.
+    /// Returns the numbers of a column, from top to bottom.
     pub fn values(&self, column: usize) -> impl Iterator<Item = f64> {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
-    /// The numbers of so many rows from one on, row after row.
+    /// Returns the numbers of `rows` rows from `row` on, row by row.
     pub(crate) fn rows_from(&self, row: usize, rows: usize) -> &[f64] {
         let width = self.columns.len();
         self.values.get(row * width..(row + rows) * width).unwrap_or_default()
     }
 
-    /// What all columns show together of the format.
+    /// Returns the common digits of all columns.
     #[must_use]
     pub fn digits(&self) -> Digits {
         self.columns.iter().fold(Digits::default(), |all, column| all.with(&column.digits))
     }
 }
 
-/// Reads the table at `path`: Parquet, or text, plain, gzip or zstd; see [`parse_table`].
+/// Reads the table at `path`, which is Parquet, or text that is plain, gzip or zstd. See [`parse_table`].
 ///
 /// # Errors
-/// The file cannot be read, or is not such a table.
+/// If the file cannot be read or is not such a table.
 pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     let name = path.to_string_lossy();
     let mut file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
@@ -72,19 +72,21 @@ pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     parse_table(BufReader::new(file), &name)
 }
 
-/// The separator of a line of names, and the names.
+/// Returns the separator of a line of names, and the names.
 pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
     let separator = [b',', b';', b'\t'].into_iter().find(|byte| line.contains(char::from(*byte))).unwrap_or(b',');
     let fields = line.trim_end().split(char::from(separator));
     (separator, fields.map(|field| field.trim().trim_matches('"')).collect())
 }
 
-/// Reads a table: a line of names, then a line of numbers a row, separated by commas, semicolons or tabs, whichever the
-/// first line has. Lines that begin with `#` and empty lines are passed over. `name` is what errors call it.
+/// Reads a table with a line of names, followed by one line of numbers per row. `name` is its name in error messages.
+///
+/// The separator is a comma, semicolon or tab, whichever occurs in the first line. Empty lines and lines that begin
+/// with `#` are skipped.
 ///
 /// # Errors
-/// The input cannot be read, has no names, one name twice, no row, or a row with a field missing, too many, or one that
-/// is no finite number.
+/// If the input cannot be read, or has no names, a repeated name or no row. Also if a row has a missing or additional
+/// field, or a number that is not finite.
 pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
     let mut lines = blocks(reader, name)?;
     let mut form = RowForm { separator: None, not_finite: NotFinite::Refused };
