@@ -1,11 +1,12 @@
-//! What a scene calls for that a program does not declare.
+//! Features of a scene that a program does not declare.
 
 use super::manifest::{Can, Manifest, Wall};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
 use grainbench_scene::solver::Resolution;
 
-/// Why a scene is not given to a program at a resolution, in words; none where it declares all that the scene calls for.
+/// Returns the reason why a program cannot run a scene at a resolution, or `None` if it declares all required
+/// features.
 pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution) -> Option<String> {
     let can = &manifest.can;
     let dimension = scene.dimension.count();
@@ -23,7 +24,7 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
     law.or_else(|| lacks_wall(can, scene)).or_else(|| lacks_effect(can, scene, deforms))
 }
 
-/// Of grains that keep their shape.
+/// Returns the missing feature for grains that keep their shape.
 fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
     if let Some(what) = scene.needs_deformable() {
         return Some(match can.deformable[..] {
@@ -40,7 +41,7 @@ fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
     None
 }
 
-/// Of grains and bodies that deform, whose contacts have friction and no springs.
+/// Returns the missing feature for grains and bodies that deform. Their contacts have friction and no springs.
 fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
     if can.deformable.is_empty() {
         return Some("it declares no bodies that deform (`can.deformable`)".to_owned());
@@ -87,9 +88,9 @@ fn lacks_effect(can: &Can, scene: &Scene, deforms: bool) -> Option<String> {
         return Some(format!("driven grains `{name}` have a spin or a motion, which resolved scenes do not hold"));
     }
     let is_asked = |effect: &Effect| match effect {
-        // Whoever moves grains at all lets them fall, and Hertz' law is declared as a law.
+        // Every program has gravity, and Hertz' law is declared as a law.
         Effect::Gravity | Effect::Hertz => false,
-        // Bodies that deform have no dashpots; yielding and viscosity are declared with the law of the material.
+        // Deformable bodies have no dashpots. Plasticity and viscosity are declared with the law of the material.
         Effect::ContactDamping | Effect::Restitution | Effect::Plasticity | Effect::Viscosity => !deforms,
         _ => true,
     };

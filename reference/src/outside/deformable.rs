@@ -1,4 +1,4 @@
-//! What a program is given of bodies that deform: cells, materials, bodies, how they start, and where probes are.
+//! Data of deformable bodies for a program: grid, materials, bodies, initial state and probes.
 
 use grainbench_scene::body::{Block, BlockShape, Hold};
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -7,68 +7,68 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The grid of a run, where bodies deform.
+/// Grid of a run with deformable bodies.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Grid {
     /// Edge h of a cell (m).
     pub cell: f64,
-    /// Material points per cell and axis at the start, for methods that have them.
+    /// Number of material points per cell and axis at the start, for methods that have them.
     pub points: u32,
-    /// Courant number c Δt/h of the steps, c the speed of the fastest wave.
+    /// Courant number c Δt/h of the time step. c is the speed of the fastest wave.
     pub courant: f64,
 }
 
-/// A material that deforms.
+/// Deformable material.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Material {
-    /// Name.
+    /// Name of the material.
     pub material: String,
     /// Bulk modulus K (Pa).
     pub bulk_modulus: f64,
     /// Shear modulus G (Pa).
     pub shear_modulus: f64,
-    /// `hypoelastic`, `neo-hookean` or `von-mises`, with its numbers.
+    /// Constitutive law `hypoelastic`, `neo-hookean` or `von-mises`, with its parameters.
     #[serde(flatten)]
     pub law: Constitutive,
 }
 
-/// A body that is no grain.
+/// Body that is not a grain.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Body {
-    /// Name.
+    /// Name of the body.
     pub name: String,
-    /// Material.
+    /// Name of its material.
     pub material: String,
-    /// Density ρ at the start (kg/m³).
+    /// Initial density ρ (kg/m³).
     pub density: f64,
-    /// Shape at the start.
+    /// Initial shape.
     pub shape: BodyShape,
-    /// Velocity at the start (m/s).
+    /// Initial velocity (m/s).
     pub velocity: [f64; 3],
-    /// Angular velocity ω at the start about the middle of its shape (rad/s), on top of it: ω × (x − c).
+    /// Initial angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity.
     pub spin: [f64; 3],
-    /// Rates of stretch at the start along the axes (1/s), on top of both: aᵢ (xᵢ − cᵢ).
+    /// Initial stretch rates a along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to the velocity.
     pub stretch: [f64; 3],
-    /// By axis, what the lower side of a box may do and the upper one: `free`, `sliding` (kept from moving along its normal) or
-    /// `fixed` (kept from moving at all).
+    /// Constraints of the lower and the upper side of a box along each axis. A side is `free`, `sliding` (no motion
+    /// along the normal) or `fixed` (no motion at all).
     pub sides: [[&'static str; 2]; 3],
-    /// A velocity along x on top of it.
+    /// Sine wave that is added to the velocity along x.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
 }
 
-/// The shape of a body.
+/// Shape of a body.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyShape {
-    /// A box along the axes.
+    /// Box along the axes.
     Box {
         /// Lower corner (m).
         low: [f64; 3],
         /// Upper corner (m).
         high: [f64; 3],
     },
-    /// A ring, in the plane.
+    /// Ring in two dimensions.
     Annulus {
         /// Centre (m).
         centre: [f64; 3],
@@ -79,34 +79,36 @@ pub enum BodyShape {
     },
 }
 
-/// v_x = v₀ sin(β (x − x_low)).
+/// Velocity v_x = v₀ sin(β (x − x_low)).
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Wave {
-    /// v₀ (m/s).
+    /// Amplitude v₀ (m/s).
     pub amplitude: f64,
-    /// β (1/m).
+    /// Wave number β (1/m).
     pub wave_number: f64,
 }
 
-/// A damped phase before the clock starts: everything is at rest, then velocities and spins are given and the clock starts.
+/// Damped relaxation before time zero. All bodies are at rest at its beginning. The initial velocities and spins are
+/// set after it, and then time starts.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Settle {
-    /// How long (s).
+    /// Duration (s).
     pub duration: f64,
-    /// Mass-proportional damping α meanwhile (1/s).
+    /// Mass-proportional damping α during the relaxation (1/s).
     pub damping: f64,
-    /// Gravity meanwhile (m/s²).
+    /// Gravity during the relaxation (m/s²).
     pub gravity: [f64; 3],
 }
 
-/// A probe that looks at a body or into one.
+/// Probe of a body or of a point inside a body.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BodyProbe {
-    /// Name; the columns of the series begin with it.
+    /// Name. The columns of the series begin with it.
     pub name: String,
-    /// The body or grain.
+    /// Name of the body or grain.
     pub of: String,
-    /// The place at the start (m) of the material that it follows; the whole body where none is said.
+    /// Initial position (m) of the material point that the probe follows. Without it, the probe refers to the whole
+    /// body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 3]>,
 }
@@ -115,7 +117,7 @@ fn vector(vector: &Vector3<f64>) -> [f64; 3] {
     [vector.x, vector.y, vector.z]
 }
 
-/// The materials that deform.
+/// Returns the deformable materials.
 pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     let named = scene.materials.iter().zip(&scene.deformable);
     let material = |(name, of): (&String, &Option<Deformable>)| {
@@ -130,7 +132,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     named.filter_map(material).collect()
 }
 
-/// The bodies.
+/// Returns the bodies.
 pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
     let word = |hold: Hold| match hold {
         Hold::Free => "free",
@@ -156,7 +158,7 @@ pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
     scene.bodies.iter().map(body).collect()
 }
 
-/// The phase before the clock starts.
+/// Returns the relaxation before time zero.
 pub(super) fn settle(scene: &Scene) -> Option<Settle> {
     scene.start.settle.map(|settle| Settle {
         duration: settle.duration,
@@ -165,7 +167,7 @@ pub(super) fn settle(scene: &Scene) -> Option<Settle> {
     })
 }
 
-/// The probes of bodies and of the material inside bodies and grains.
+/// Returns the probes of bodies, and of points inside bodies and grains.
 pub(super) fn probes(scene: &Scene) -> Vec<BodyProbe> {
     let name = |of: BodyName| match of {
         BodyName::Grain(at) => format!("grain {}", at + 1),

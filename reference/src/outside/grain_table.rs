@@ -1,4 +1,4 @@
-//! Grains in a table: a row for each grain and sample, with the step or the time of the sample.
+//! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
 
 use crate::observer::{Names, Observed, Observer};
 use crate::read::read_error::{ReadError, quoted};
@@ -7,7 +7,8 @@ use crate::read::table::{Table, read_table};
 use grainbench_scene::scene::Scene;
 use std::path::Path;
 
-/// What the table at a path, which errors call `name`, tells of a scene whose steps are so long (s).
+/// Returns the quantities of a scene that the table at a path contains. `name` is its name in error messages, and
+/// `time_step` is in seconds.
 pub(super) fn observe(
     scene: &Scene,
     path: &Path,
@@ -39,7 +40,7 @@ pub(super) fn observe(
     Ok(observer.finish())
 }
 
-/// The step of every row.
+/// Returns the step of every row.
 fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec<u64>, ReadError> {
     if let Some(column) = table.column(names.of("step")) {
         let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
@@ -52,7 +53,7 @@ fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec
     };
     let step = |time: f64| {
         let step = (time / time_step).round();
-        // A program that adds its steps up is off by their rounding.
+        // A program that adds up its time steps has their rounding error.
         if (time - step * time_step).abs() <= 1e-3 * time_step { Ok(step as u64) } else { Err(time) }
     };
     let steps: Result<Vec<u64>, f64> = table.values(column).map(step).collect();

@@ -1,4 +1,4 @@
-//! `SOLVER.toml`: how a program is started, what it can, and what it leaves.
+//! `SOLVER.toml`, which describes the commands, the features and the output of a program.
 
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
@@ -11,47 +11,51 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path};
 use thiserror::Error;
 
-/// Characters that a program's name may have beside letters and digits.
+/// Characters that are allowed in the name of a program in addition to letters and digits.
 const IN_NAMES: &str = "-_.+ ";
 
-/// What a manifest says, checked.
+/// Checked content of a manifest.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// What rows call the solver.
+    /// Name of the solver in results.
     pub name: String,
-    /// The command that prints its version; the first line goes into the provenance of its runs.
+    /// Command that prints the version. Its first line is stored in the provenance of the runs.
     #[serde(default)]
     pub version: Vec<String>,
-    /// The command of a run. `{scene}` stands for the file with the scene, `{out}` for the fresh folder in which it is started,
-    /// `{here}` for the folder of the manifest; a word that names a file beside the manifest is that file.
+    /// Command of a run.
+    ///
+    /// The program is started in a new folder. `{scene}` is replaced by the file with the scene, `{out}` by this
+    /// folder, and `{here}` by the folder of the manifest. A word that names a file beside the manifest is replaced
+    /// by its path.
     #[serde(default)]
     pub run: Vec<String>,
-    /// In its place, the command of a program that stays and takes a run a line.
+    /// Alternative to `run`: command of a program that keeps running and accepts one run per line.
     #[serde(default)]
     pub worker: Vec<String>,
-    /// A command that is run once in the manifest's folder before the first run, and is not timed.
+    /// Command that is executed once in the folder of the manifest, before the first run. It is not timed.
     #[serde(default)]
     pub prepare: Vec<String>,
-    /// Files elsewhere that it is made of too, by their paths from the manifest: what is kept of its rows is of them as well.
+    /// Further files of the adapter, by their paths relative to the manifest. They are part of its fingerprint, so
+    /// stored results depend on them.
     #[serde(default)]
     pub files: Vec<String>,
-    /// In which format it is given the scene.
+    /// Format of the scene.
     #[serde(default)]
     pub scene: SceneFormat,
-    /// What it can.
+    /// Features of the program.
     pub can: Can,
-    /// What it is run with to see how its error falls and what it costs.
+    /// Parameters of the runs that measure convergence and computing time.
     #[serde(default)]
     pub knobs: Knobs,
-    /// What it leaves.
+    /// Output of the program.
     pub output: Output,
-    /// What it may take.
+    /// Limits of a run.
     #[serde(default)]
     pub limits: Limits,
 }
 
-/// Formats of the scene.
+/// Format of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SceneFormat {
@@ -62,122 +66,123 @@ pub enum SceneFormat {
     Toml,
 }
 
-/// What a program declares that it can. A scene that calls for more is not given to it.
+/// Features that a program declares. A scene that requires more is not run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Can {
-    /// Numbers of dimensions.
+    /// Supported numbers of dimensions.
     pub dimension: Vec<usize>,
     /// Contact laws of grains that keep their shape.
     #[serde(default)]
     pub laws: Vec<SpringsKind>,
-    /// Laws of materials, of programs whose grains and bodies deform.
+    /// Constitutive laws, for programs with deformable grains and bodies.
     #[serde(default)]
     pub deformable: Vec<ConstitutiveKind>,
-    /// Kinds of walls.
+    /// Supported shapes of walls.
     #[serde(default)]
     pub walls: Vec<Wall>,
-    /// Effects beside gravity, by the names of [`Effect::key_word`].
+    /// Effects other than gravity, by the names of [`Effect::key_word`].
     #[serde(default)]
     pub effects: Vec<String>,
-    /// Whether grains can be driven.
+    /// True if the program supports driven grains.
     #[serde(default)]
     pub driven: bool,
 }
 
-/// Kinds of walls.
+/// Shape of a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Wall {
-    /// Planes.
+    /// Plane.
     Plane,
-    /// Segments, in the plane.
+    /// Segment, in two dimensions.
     Segment,
-    /// Rectangles, in space.
+    /// Rectangle, in three dimensions.
     Rectangle,
-    /// Sides of cylinders and cones.
+    /// Side of a cylinder or cone.
     Round,
-    /// Meshes of triangles.
+    /// Mesh of triangles.
     Mesh,
 }
 
-/// Knobs.
+/// Parameters that are varied.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Knobs {
-    /// Time steps as parts of the critical one.
+    /// Time steps as fractions of the critical time step.
     #[serde(default)]
     pub critical_fraction: Vec<f64>,
-    /// Cells per reference length of the scene: of a grain's radius, where there are grains.
+    /// Cells per reference length of the scene. This is the radius of a grain if there are grains.
     #[serde(default)]
     pub cells: Vec<f64>,
 }
 
-/// Files that a run leaves, by their paths in the folder of the run.
+/// Output files of a run, by their paths in the folder of the run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// The grains at every sample.
+    /// Grains at every sample.
     #[serde(default)]
     pub grains: Option<Grains>,
-    /// The forces at contacts at the same steps, as a dump of LAMMPS' kind.
+    /// Contact forces at the same steps, as a dump in the format of LAMMPS.
     #[serde(default)]
     pub contacts: Option<String>,
-    /// A table of further columns of the scene's series.
+    /// Table with further columns of the scene's series.
     #[serde(default)]
     pub series: Option<String>,
-    /// What the program says of itself.
+    /// Report of the program about its run.
     #[serde(default)]
     pub report: Option<String>,
 }
 
-/// The file with the grains.
+/// File with the grains.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
-    /// Its path.
+    /// Path of the file.
     pub path: String,
-    /// Its format.
+    /// Format of the file.
     pub format: GrainFormat,
-    /// What its columns are called there: `x = "position_x"`.
+    /// Names of its columns, for example `x = "position_x"`.
     #[serde(default)]
     pub map: BTreeMap<String, String>,
 }
 
 impl Grains {
-    /// The names of columns.
+    /// Returns the names of the columns.
     #[must_use]
     pub fn names(&self) -> Names {
         Names(self.map.iter().map(|(ours, theirs)| (ours.clone(), theirs.clone())).collect())
     }
 }
 
-/// Formats of grains.
+/// Format of grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GrainFormat {
-    /// A dump of LAMMPS' kind, which LIGGGHTS writes too.
+    /// Dump in the format of LAMMPS, which LIGGGHTS uses too.
     #[serde(alias = "liggghts")]
     Lammps,
-    /// A table with a row for each grain and sample, as text or in Parquet.
+    /// Table with one row per grain and sample, as text or Parquet.
     #[serde(alias = "parquet")]
     Csv,
-    /// Arrays of NumPy: `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
+    /// NumPy arrays `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
     Npz,
-    /// VTK's files, one a sample; `*` in the path stands for the step. Or one of HDF5 with all samples.
+    /// VTK files, one per sample, where `*` in the path replaces the step. An HDF5 file with all samples is possible
+    /// too.
     #[serde(alias = "vtkhdf")]
     Vtk,
 }
 
-/// What a run may take.
+/// Limits of a run.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
     /// Time of a run (s).
     pub seconds: u64,
-    /// Address space of its processes each (MiB); any where none is named.
+    /// Address space of each process (MiB). Without a value there is no limit.
     pub memory_mib: Option<u64>,
-    /// Threads.
+    /// Number of threads.
     pub threads: u16,
 }
 
@@ -187,22 +192,22 @@ impl Default for Limits {
     }
 }
 
-/// A manifest that cannot be used.
+/// Error in a manifest.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{file}: {place}expected {expected}, found {found}")]
 pub struct ManifestError {
-    /// The file.
+    /// Path of the manifest.
     pub file: String,
-    /// The key or the place in the text, with a colon behind it; empty where it is the file.
+    /// Key or line of the error followed by a colon, or empty for the whole file.
     pub place: String,
-    /// What was expected.
+    /// Expected content.
     pub expected: String,
-    /// What stood there.
+    /// Actual content.
     pub found: String,
 }
 
 impl Manifest {
-    /// The command that is started, for each run or once.
+    /// Returns the command that is started, once per run or once for all runs.
     #[must_use]
     pub fn command(&self) -> &[String] {
         if self.worker.is_empty() { &self.run } else { &self.worker }
@@ -211,7 +216,7 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// Names the key, what was expected and what stood there.
+    /// If the manifest is not valid. The error contains the key, the expected and the actual content.
     pub fn read(path: &Path) -> Result<Self, ManifestError> {
         let file = one_line(&path.to_string_lossy());
         let error = |place: &str, expected: &str, found: String| ManifestError {
@@ -230,7 +235,7 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// What is wrong with a value: its key, what was expected, what was found.
+    /// Checks all values. The error consists of the key, the expected and the actual content.
     fn check(&self) -> Result<(), (&'static str, String, String)> {
         let wrong = |key, expected: &str, found: String| Err((key, expected.to_owned(), found));
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || IN_NAMES.contains(letter);

@@ -1,8 +1,11 @@
-//! Programs as solvers, by a manifest: one process a run, files in, files out.
+//! External programs as solvers. A manifest describes a program. Each run is one process with input and output files.
 //!
-//! The program is started in a fresh folder with the scene in a file, everything in it definite ([`Resolved`]). It ends with 0
-//! when it ran, with [`CANNOT`] when it cannot express the scene, the reason on its standard output, and else it failed. It
-//! leaves its grains at every sample; gates, controls, conformance and studies then judge it as they judge any solver.
+//! The program is started in a new folder. A file contains the scene with all values resolved ([`Resolved`]). The
+//! exit code is 0 after a run, and [`CANNOT`] with the reason on standard output if the program cannot express the
+//! scene. Any other code is a failure.
+//!
+//! The program writes its grains at every sample. Claims, negative controls, conformance tests and studies apply to
+//! it as to any solver.
 
 mod can;
 mod deformable;
@@ -38,38 +41,38 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use worker::{Answer, Worker};
 
-/// The code with which a program ends that cannot express a scene.
+/// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
-/// The file with the scene, in the folder of the run.
+/// File with the scene in the folder of the run.
 const SCENE: &str = "scene";
-/// How long a program may take to say its version.
+/// Time limit for the command that prints the version.
 const FOR_VERSION: Duration = Duration::from_secs(20);
-/// How long what is to be done before the first run may take.
+/// Time limit for the command before the first run.
 const FOR_PREPARATION: Duration = Duration::from_secs(1800);
-/// Most that either may print (B).
+/// Maximum size of the text that a program prints (B).
 const MOST_PRINTED: u64 = 16 << 20;
-/// Resolution at which it is shown that a program owes nothing: a fiftieth of the critical step.
+/// Resolution of the conformance tests, a fiftieth of the critical time step.
 const CONFORMING: Resolution = Resolution::CriticalFraction(0.02);
 
-/// A program by its manifest.
+/// External program with its manifest.
 #[derive(Debug)]
 pub struct Outside {
     manifest: Manifest,
-    /// The folder of the manifest.
+    /// Folder of the manifest.
     folder: PathBuf,
     prepared: OnceLock<Result<(), String>>,
     version: OnceLock<Option<String>>,
-    /// Programs that stay and wait for a run.
+    /// Worker processes that wait for a run.
     idle: Mutex<Vec<Worker>>,
-    /// Time that a run of no steps takes (s), by the number of grains.
+    /// Time of a run with zero steps (s), by number of grains.
     start_up: Mutex<BTreeMap<usize, f64>>,
 }
 
 impl Outside {
-    /// The program of the manifest at a path.
+    /// Reads the manifest at a path.
     ///
     /// # Errors
-    /// When the manifest cannot be used.
+    /// If the manifest is not valid.
     pub fn read(path: &Path) -> Result<Self, ManifestError> {
         let manifest = Manifest::read(path)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -84,13 +87,13 @@ impl Outside {
         })
     }
 
-    /// What the manifest says.
+    /// Returns the manifest.
     #[must_use]
     pub const fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// What it claims of itself: nothing beyond what all owe.
+    /// Returns the conformance properties that the program must satisfy. They are solver-independent.
     #[must_use]
     pub fn terms(&self) -> Terms {
         let finest = self.manifest.knobs.critical_fraction.iter().copied().reduce(f64::min);
@@ -98,7 +101,7 @@ impl Outside {
         if self.manifest.can.dimension.contains(&3) { terms } else { terms.in_the_plane() }
     }
 
-    /// A program by its name: a file beside the manifest, or what `PATH` finds.
+    /// Returns the path of a program by its name. It is a file beside the manifest or in `PATH`.
     fn executable(&self, name: &str) -> Result<PathBuf, String> {
         let beside = self.folder.join(name);
         if name.contains('/') || beside.is_file() {
@@ -109,7 +112,8 @@ impl Outside {
             .ok_or_else(|| format!("there is no `{}` beside the manifest or on PATH", one_line(name)))
     }
 
-    /// The words of a command, with what stands in braces put in and files beside the manifest found.
+    /// Returns the arguments of a command with placeholders in braces replaced. Files beside the manifest are
+    /// replaced by their paths.
     fn words(&self, command: &[String], scene: &Path, out: &Path) -> Vec<String> {
         let word = |word: &String| {
             let beside = self.folder.join(word);
@@ -129,7 +133,7 @@ impl Outside {
         process::Limits { deadline: Deadline::after(time), bytes, memory, threads: of.threads }
     }
 
-    /// Runs one of the commands beside that of a run, and gives what it printed.
+    /// Executes a command other than that of a run, and returns its output.
     fn aside(&self, command: &[String], time: Duration) -> Result<String, String> {
         let Some(name) = command.first() else { return Ok(String::new()) };
         let executable = self.executable(name)?;
@@ -156,23 +160,23 @@ impl Outside {
         Ok(String::from_utf8_lossy(if screen.is_empty() { &errors } else { &screen }).into_owned())
     }
 
-    /// Does what is to be done before the first run, once.
+    /// Executes the command before the first run, once.
     fn prepare(&self) -> Result<(), RunError> {
         let done = self.prepared.get_or_init(|| self.aside(&self.manifest.prepare, FOR_PREPARATION).map(drop));
         done.clone().map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
-    /// The folder of the manifest.
+    /// Returns the folder of the manifest.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Hash of what an adapter is: the files in the folder of the manifest, but what is kept of its rows, and those that the
-    /// manifest names beside.
+    /// Returns a hash of the adapter. It covers the files in the folder of the manifest and the files named in the
+    /// manifest. Stored results (`.json`) are omitted.
     ///
     /// # Errors
-    /// When one of them cannot be read.
+    /// If a file cannot be read.
     pub fn fingerprint(&self) -> io::Result<String> {
         let entries = fs::read_dir(&self.folder)?.collect::<io::Result<Vec<_>>>()?;
         let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
@@ -188,7 +192,7 @@ impl Outside {
         Ok(hash.finalize().to_hex()[..32].to_owned())
     }
 
-    /// The first line that it prints of its version.
+    /// Returns the first line of the printed version.
     #[must_use]
     pub fn version(&self) -> Option<String> {
         let ask = || {
@@ -198,7 +202,7 @@ impl Outside {
         self.version.get_or_init(ask).clone()
     }
 
-    /// Gives the program a scene and waits until it is done.
+    /// Runs the program with a scene and waits until it ends.
     fn start(&self, given: &Given<'_>) -> Result<Finished, RunError> {
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
@@ -231,7 +235,7 @@ impl Outside {
             let waiting = idle().pop();
             let worker = waiting.map_or_else(|| Worker::start(&executable, &arguments, limits), Ok);
             let mut worker = worker.map_err(|failure| fail(failure, Vec::new()))?;
-            // What it took to begin is not the run's, for the next one will not pay it.
+            // The start of the worker does not count, because later runs do not need it.
             start = Instant::now();
             let answer = worker.ask(&file, folder.path(), limits);
             let answer = answer.map_err(|(failure, last_lines)| fail(failure, last_lines))?;
@@ -242,13 +246,13 @@ impl Outside {
         Ok(Finished { folder, said, last_lines, seconds: start.elapsed().as_secs_f64() })
     }
 
-    /// The program that is started.
+    /// Returns the path of the program that is started.
     fn program(&self) -> Result<PathBuf, RunError> {
         let found = self.executable(&self.manifest.command()[0]);
         found.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
-    /// Time of a run of no steps (s).
+    /// Returns the time of a run with zero steps (s).
     fn start_up(&self, given: &Given<'_>) -> f64 {
         let grains = given.scene.grains.len();
         let known = |of: &Self| of.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
@@ -260,7 +264,7 @@ impl Outside {
         })
     }
 
-    /// Reads what a run left.
+    /// Reads the output of a run.
     fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<Observed, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
         let mut observed = match grains.as_ref().filter(|_| !scene.grains.is_empty()) {
@@ -284,7 +288,7 @@ impl Outside {
     }
 }
 
-/// Reads the grains that a run left, and their contacts where there is a file of them.
+/// Reads the grains of a run, and their contacts if the program writes them.
 fn observe_grains(
     scene: &Scene,
     stepping: &Stepping,
@@ -318,26 +322,26 @@ fn observe_grains(
     })
 }
 
-/// How a run ended that ended in order.
+/// Result of a program that ended regularly.
 struct Finished {
     folder: tempfile::TempDir,
     said: Said,
     last_lines: Vec<String>,
-    /// How long it took (s).
+    /// Elapsed time (s).
     seconds: f64,
 }
 
-/// What a program says of its run.
+/// Message of a program about its run.
 enum Said {
-    /// It ran; the times of its parts, where it tells them.
+    /// The run succeeded. The times are present if the program reports them.
     Ran(Option<Seconds>),
-    /// It cannot express the scene, and why.
+    /// The program cannot express the scene, for this reason.
     Cannot(String),
     Failed(Failure),
 }
 
 impl Said {
-    /// By the code that it ended with, its own report and what it printed in the folder.
+    /// Returns the message that follows from the exit code, the report and the printed text in the folder.
     fn by_process(ended: &Ended, own: OwnReport, folder: &Path) -> Self {
         if ended.code == CANNOT {
             let said = fs::read(folder.join(SCREEN)).unwrap_or_default();
@@ -352,7 +356,7 @@ impl Said {
         }
     }
 
-    /// By the answer of one that stays.
+    /// Returns the message that follows from the answer of a worker.
     fn by_worker(answer: Answer) -> Self {
         match answer {
             Answer::Ran(times) => times.seconds().map_or_else(Self::Failed, Self::Ran),
@@ -362,7 +366,7 @@ impl Said {
     }
 }
 
-/// The files of a pattern with a `*` in the folder, or the one file of a path without.
+/// Returns the files of a pattern with `*` in the folder, or the single file of a path without it.
 fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     let Some((before, after)) = pattern.split_once('*') else { return Ok(vec![plain_file(folder, pattern)?]) };
     let entries = fs::read_dir(folder).map_err(|error| Failure::Output(error.to_string()))?;
@@ -376,7 +380,7 @@ fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     }
 }
 
-/// A text in which no path of a folder that nobody knows stands.
+/// Removes the path of the scratch folder from a text, because it means nothing to the user.
 fn without(folder: &Path, text: &str) -> String {
     text.replace(&format!("{}/", folder.display()), "")
 }

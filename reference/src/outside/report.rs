@@ -1,4 +1,4 @@
-//! What a program says of its own run, in a JSON file.
+//! Report of a program about its own run, in a JSON file.
 
 use crate::read::read_error::one_line;
 use grainbench_scene::solver::Failure;
@@ -7,33 +7,33 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Most bytes of a report.
+/// Maximum size of a report (B).
 const MOST: u64 = 1 << 20;
 
-/// The report. Other keys are the program's own.
+/// Report of a program. Unknown keys are ignored.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub(super) struct OwnReport {
     /// Times of its parts (s).
     pub(super) seconds: Option<Seconds>,
-    /// How it broke.
+    /// Description of a failure.
     pub(super) failed: Option<Failed>,
 }
 
 /// Times (s).
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Seconds {
-    /// Of the solution, without the start.
+    /// Time of the solution, without the start.
     pub(super) solve: f64,
 }
 
 impl Seconds {
-    /// Whether it is a time.
+    /// Returns true if the time is finite and not negative.
     pub(super) fn is_a_time(self) -> bool {
         self.solve.is_finite() && self.solve >= 0.0
     }
 }
 
-/// When, where and why a run broke: a number, a text or a place.
+/// Time, position and reason of a failure. Each can be any JSON value.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Failed {
     when: Option<Value>,
@@ -43,7 +43,7 @@ pub(super) struct Failed {
 }
 
 impl Failed {
-    /// In words.
+    /// Returns the description as text.
     pub(super) fn words(&self) -> String {
         let of = |value: &Option<Value>| {
             value.as_ref().map_or_else(|| "not told".to_owned(), |value| one_line(&value.to_string()))
@@ -52,7 +52,7 @@ impl Failed {
     }
 }
 
-/// Reads a report; an empty one where there is no file.
+/// Reads a report. Returns an empty report if there is no file.
 pub(super) fn read(path: &Path, name: &str) -> Result<OwnReport, Failure> {
     let wrong = |expected: &str, found: String| Failure::Output(format!("{name}: expected {expected}, found {found}"));
     match fs::symlink_metadata(path) {

@@ -1,4 +1,4 @@
-//! The scene that a program is given: everything definite, in SI, nothing to be looked up elsewhere.
+//! Scene for external programs. All values are explicit and in SI units, and no other source is needed.
 
 use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle};
 use super::manifest::SceneFormat;
@@ -14,77 +14,79 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// The format that this program writes.
+/// Version of the file format.
 const FORMAT: u32 = 1;
 
-/// A scene made definite, with its steps. Lengths are in m, times in s, masses in kg (of discs per metre of depth), angles in
-/// rad; vectors have three components, of which scenes in the plane use x and y for places and z for spins.
+/// Scene with explicit values and its time steps.
+///
+/// Lengths are in m, times in s, masses in kg (for discs per metre of depth), and angles in rad. Vectors have three
+/// components. Scenes in two dimensions use x and y for positions, and z for spins.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Resolved {
-    /// The format of this file.
+    /// Version of the file format.
     pub format: u32,
     /// Title of the scene.
     pub title: String,
     /// Number of dimensions.
     pub dimension: usize,
-    /// What grains are: `disc` or `sphere`.
+    /// Shape of the grains: `disc` or `sphere`.
     pub grain_shape: &'static str,
-    /// Effects that the scene calls for.
+    /// Effects that the scene requires.
     pub effects: Vec<&'static str>,
     /// Steps and samples.
     pub steps: Steps,
     /// Gravity (m/s²).
     pub gravity: [f64; 3],
-    /// Mass-proportional damping α of every grain (1/s): a force −α m v and a torque −α I ω.
+    /// Mass-proportional damping α of every grain (1/s), with the force −α m v and the torque −α I ω.
     pub global_damping: f64,
-    /// The box, where there is one.
+    /// Box of the scene, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub domain: Option<Domain>,
     /// Names of the materials.
     pub materials: Vec<String>,
-    /// The law of each pair of materials that may touch.
+    /// Contact law of each pair of materials that can come into contact.
     pub laws: Vec<Law>,
-    /// The grains.
+    /// Grains at the start.
     pub grains: Vec<Grain>,
-    /// The walls.
+    /// Walls at the start.
     pub walls: Vec<ResolvedWall>,
-    /// Groups of grains that are moved whatever the forces on them.
+    /// Groups of grains with prescribed motion, independent of forces.
     pub driven: Vec<Driven>,
-    /// The grid, where bodies deform. Springs and dashpots of `laws` are then not meant, friction is.
+    /// Grid, if bodies deform. In this case springs and dashpots of `laws` are ignored, and only friction applies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
-    /// Materials that deform, where there is a grid.
+    /// Deformable materials, if there is a grid.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub deformable: Vec<Material>,
-    /// Bodies that are no grains.
+    /// Bodies that are not grains.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<Body>,
-    /// A damped phase before the clock starts.
+    /// Damped relaxation before time zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle: Option<Settle>,
-    /// Probes of bodies and of the material inside them.
+    /// Probes of bodies and of points inside them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<BodyProbe>,
-    /// Columns that a table of the series may have.
+    /// Columns that are allowed in a table of the series.
     pub columns: Vec<String>,
 }
 
-/// A scene as it is given to a program at a resolution.
+/// Scene with time steps and grid for a program.
 #[derive(Clone, Copy)]
 pub struct Given<'s> {
     /// The scene.
     pub scene: &'s Scene,
-    /// Its steps.
+    /// Time steps of the scene.
     pub stepping: Stepping,
-    /// Its grid, where bodies deform.
+    /// Grid, if bodies deform.
     pub grid: Option<Grid>,
 }
 
 impl<'s> Given<'s> {
-    /// Of a scene at a resolution.
+    /// Returns the time steps and the grid of a scene at a resolution.
     ///
     /// # Errors
-    /// Says what is wrong where there are no such steps of the scene.
+    /// If the resolution is not valid for the scene, with the reason.
     pub fn of(scene: &'s Scene, resolution: &Resolution) -> Result<Self, String> {
         let Resolution::Grid { cells, points, courant } = *resolution else {
             return Ok(Self { scene, stepping: Stepping::of(scene, resolution)?, grid: None });
@@ -100,59 +102,59 @@ impl<'s> Given<'s> {
 pub struct Steps {
     /// Time step (s).
     pub time_step: f64,
-    /// How many.
+    /// Number of steps.
     pub count: u64,
-    /// Steps between samples. There is one at the start, and one at the end.
+    /// Number of steps between samples. There is a sample at the start and at the end.
     pub sample_every: u64,
-    /// The critical step 2√(m_min/k_max) (s), where there is one.
+    /// Critical time step 2√(m_min/k_max) (s), if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step: Option<f64>,
 }
 
-/// The box of a scene.
+/// Box of a scene.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Domain {
     /// Lower corner (m).
     pub low: [f64; 3],
     /// Upper corner (m).
     pub high: [f64; 3],
-    /// Which axes are periodic.
+    /// True for each periodic axis.
     pub periodic: [bool; 3],
 }
 
-/// The law of a contact between two materials.
+/// Contact law between two materials.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Law {
-    /// The materials.
+    /// Names of the materials.
     pub between: [String; 2],
-    /// `linear`, `hertz-mindlin` or `coulomb`, with its numbers.
+    /// Law `linear`, `hertz-mindlin` or `coulomb`, with its parameters.
     #[serde(flatten)]
     pub springs: Springs,
     /// Coefficient of friction μ.
     pub friction: f64,
-    /// Cohesion c (N): |F_s| ≤ μ F_n + c.
+    /// Cohesion c (N) in |F_s| ≤ μ F_n + c.
     pub cohesion: f64,
-    /// Stiffness-proportional damping β (s): dashpots β k_n and β k_s.
+    /// Stiffness-proportional damping β (s). The dashpots are β k_n and β k_s.
     pub stiffness_damping: f64,
-    /// Mass-proportional normal damping γ_n (1/s): a dashpot γ_n m_eff.
+    /// Mass-proportional normal damping γ_n (1/s). The dashpot is γ_n m_eff.
     pub normal_damping: f64,
-    /// Mass-proportional tangential damping γ_t (1/s): a dashpot γ_t m_eff.
+    /// Mass-proportional tangential damping γ_t (1/s). The dashpot is γ_t m_eff.
     pub tangential_damping: f64,
-    /// Coefficient of restitution e, where the scene gives one.
+    /// Coefficient of restitution e, if the scene has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
-    /// Coefficient of rolling resistance μ_r: a moment of at most μ_r R_eff F_n.
+    /// Coefficient of rolling resistance μ_r. The rolling moment is at most μ_r R_eff F_n.
     pub rolling_friction: f64,
     /// Damping ratio of the rolling spring.
     pub rolling_damping: f64,
 }
 
-/// A grain at the start.
+/// Grain at the start.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Grain {
-    /// Its number, from 1.
+    /// Id, counted from 1.
     pub id: usize,
-    /// Material.
+    /// Name of its material.
     pub material: String,
     /// Radius (m).
     pub radius: f64,
@@ -160,7 +162,7 @@ pub struct Grain {
     pub mass: f64,
     /// Moment of inertia (kg m²).
     pub inertia: f64,
-    /// Centre (m).
+    /// Position of the centre (m).
     pub position: [f64; 3],
     /// Velocity (m/s).
     pub velocity: [f64; 3],
@@ -168,80 +170,80 @@ pub struct Grain {
     pub spin: [f64; 3],
 }
 
-/// A wall.
+/// Wall at the start.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedWall {
-    /// Name.
+    /// Name of the wall.
     pub name: String,
-    /// Material.
+    /// Name of its material.
     pub material: String,
-    /// Shape at the start.
+    /// Initial shape.
     #[serde(flatten)]
     pub shape: Shape,
-    /// Centre of rotation at the start (m); it moves with the wall.
+    /// Initial centre of rotation (m). It moves with the wall.
     pub centre: [f64; 3],
-    /// How it moves: phases that add up; none where it stands still.
+    /// Phases of the motion, which are added. The list is empty for a wall at rest.
     pub motion: Vec<Phase>,
 }
 
-/// The shape of a wall.
+/// Shape of a wall.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// Everything behind the plane is solid.
+    /// Plane. The space behind it is solid.
     Plane {
-        /// A point on it (m).
+        /// Point on the plane (m).
         point: [f64; 3],
         /// Unit vector out of the solid.
         normal: [f64; 3],
     },
-    /// A segment of a line, in the plane, by its ends (m).
+    /// Line segment in two dimensions, by its ends (m).
     Segment([[f64; 3]; 2]),
-    /// A rectangle, in space.
+    /// Rectangle in three dimensions.
     Rectangle {
-        /// A corner (m).
+        /// Corner (m).
         corner: [f64; 3],
-        /// The perpendicular edges from it (m).
+        /// Perpendicular edges from the corner (m).
         edges: [[f64; 3]; 2],
     },
-    /// The side of a cylinder or a part of a cone.
+    /// Side of a cylinder or a part of a cone.
     Round {
-        /// Ends of its axis (m).
+        /// Ends of the axis (m).
         axis: [[f64; 3]; 2],
-        /// Radius at each (m).
+        /// Radius at each end (m).
         radii: [f64; 2],
     },
-    /// The corners of every triangle of a mesh (m), whose normal is on the side from which they go round to the left.
+    /// Corners of every triangle of a mesh (m). They are counterclockwise when seen from the side of the normal.
     Mesh(Vec<[[f64; 3]; 3]>),
 }
 
-/// Constant velocity and spin between two moments.
+/// Phase of constant velocity and spin.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Phase {
     /// Velocity (m/s).
     pub velocity: [f64; 3],
     /// Angular velocity about the centre (rad/s).
     pub spin: [f64; 3],
-    /// When it starts (s).
+    /// Start (s).
     pub start: f64,
-    /// When it stops (s); at the end of the run where none is said.
+    /// End (s). Without it, the phase lasts until the end of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
 }
 
-/// Grains that are moved whatever the forces on them, without turning.
+/// Grains with a prescribed velocity, without rotation.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Driven {
-    /// Name.
+    /// Name of the group.
     pub name: String,
-    /// Their numbers.
+    /// Ids of the grains.
     pub grains: Vec<usize>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],
 }
 
 impl Resolved {
-    /// Of a scene, with steps.
+    /// Returns a scene with explicit values.
     #[must_use]
     pub fn of(given: &Given<'_>) -> Self {
         let Given { scene, stepping, grid } = given;
@@ -306,10 +308,10 @@ impl Resolved {
 }
 
 impl Resolved {
-    /// As a file has it.
+    /// Returns the content of the file.
     ///
     /// # Errors
-    /// When a value cannot be written down, in words.
+    /// If a value cannot be serialized, with the reason.
     pub fn text(&self, format: SceneFormat) -> Result<String, String> {
         match format {
             SceneFormat::Json => serde_json::to_string(self).map_err(|error| error.to_string()),
@@ -318,13 +320,13 @@ impl Resolved {
     }
 }
 
-/// The JSON schema of resolved scenes.
+/// Returns the JSON schema of resolved scenes.
 #[must_use]
 pub fn schema() -> schemars::Schema {
     schemars::schema_for!(Resolved)
 }
 
-/// The pair table, each pair once.
+/// Returns the contact laws of all pairs of materials, each pair once.
 fn laws(scene: &Scene) -> Vec<Law> {
     let count = scene.materials.len() as u16;
     let pairs = (0..count).flat_map(|first| (first..count).map(move |second| (first, second)));
@@ -342,7 +344,7 @@ fn law(between: [String; 2], law: &ContactLaw) -> Law {
         stiffness_damping: law.stiffness_damping,
         normal_damping: law.normal_damping,
         tangential_damping: law.tangential_damping,
-        // ζ = −ln e/√(π² + ln² e), the other way round.
+        // Inverse of ζ = −ln e/√(π² + ln² e).
         restitution: (damping > 0.0).then(|| (-PI * damping / (1.0 - damping * damping).sqrt()).exp()),
         rolling_friction: law.rolling_friction,
         rolling_damping: law.rolling_damping,

@@ -1,8 +1,9 @@
-//! A program that stays: it is started once, takes a run a line on its standard input and answers each with a line, so that
-//! the start of an interpreter is not paid for by every run.
+//! Program that keeps running. It is started once, reads one request per line from standard input and answers each
+//! with one line. This avoids the start of an interpreter for each run.
 //!
-//! A request is `{"scene": FILE, "out": FOLDER}`. The answer is `{"ran": {"seconds": …}}`, where the time of the solution (s)
-//! may be left out, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays go as files in the folder.
+//! A request is `{"scene": FILE, "out": FOLDER}`. The answer is `{"ran": {"seconds": …}}`, where the time of the
+//! solution (s) is optional, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays are
+//! written to files in the folder.
 
 use super::report::{Failed, Seconds};
 use crate::process::{self, ERRORS, Limits};
@@ -18,14 +19,16 @@ use std::thread;
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Longest answer (B).
+/// Maximum length of an answer (B).
 const LONGEST: u64 = 1 << 16;
-/// How often the limits are looked at.
+/// Interval between checks of the limits.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Hands every line of its own standard input on to the program, and ends the program with all that it has started when that
-/// closes or says that we are alive and done with it. Where nothing was said we are no more, and the folder goes too. What the
-/// program has started ends with it too.
+/// Shell script that passes every line of its own standard input to the program. It ends the program and all child
+/// processes when standard input closes. It also does so when a message says that our process is alive and finished.
+///
+/// If standard input closes without this message, our process has ended, and the script deletes the folder. If the
+/// program ends, its child processes are ended too.
 const GUARD: &str = "exec 3<&0 4>&1 </dev/null >/dev/null
 { while IFS= read -r line <&3; do
     [ \"$line\" = alive ] && kill -9 -$$
@@ -35,26 +38,26 @@ const GUARD: &str = "exec 3<&0 4>&1 </dev/null >/dev/null
 exec 4>&-
 wait";
 
-/// What a worker is asked.
+/// Request to a worker.
 #[derive(Serialize)]
 struct Request<'r> {
     scene: &'r Path,
     out: &'r Path,
 }
 
-/// What it answers.
+/// Answer of a worker.
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum Answer {
-    /// It ran.
+    /// The run succeeded.
     Ran(Times),
-    /// It cannot express the scene.
+    /// The program cannot express the scene.
     Cannot(String),
-    /// It broke.
+    /// The run failed.
     Failed(Failed),
 }
 
-/// What it says of the time that it took.
+/// Times in the answer.
 #[derive(Deserialize)]
 pub(super) struct Times {
     /// Time of the solution (s).
@@ -62,7 +65,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// As a report has it.
+    /// Returns the time as in a report.
     pub(super) fn seconds(&self) -> Result<Option<Seconds>, Failure> {
         match self.seconds.map(|solve| Seconds { solve }) {
             Some(seconds) if !seconds.is_a_time() => {
@@ -73,13 +76,13 @@ impl Times {
     }
 }
 
-/// A program that stays.
+/// Program that keeps running.
 #[derive(Debug)]
 pub(super) struct Worker {
     guard: Child,
     requests: ChildStdin,
     answers: Receiver<String>,
-    /// Its own folder, with what it prints as errors.
+    /// Folder of the worker with its standard error.
     folder: TempDir,
 }
 
@@ -94,7 +97,7 @@ impl Worker {
         let piped = || not_run(io::Error::other("no pipe"));
         let (requests, lines) = (guard.stdin.take().ok_or_else(piped)?, guard.stdout.take().ok_or_else(piped)?);
         let (send, answers) = sync_channel(1);
-        // It ends when the program does, or when nobody listens any more.
+        // The thread ends when the program ends or the receiver is dropped.
         thread::spawn(move || {
             let mut lines = BufReader::new(lines);
             loop {
@@ -109,7 +112,7 @@ impl Worker {
         Ok(Self { guard, requests, answers, folder })
     }
 
-    /// Asks for a run and waits for the answer. A worker that did not answer as it should is not asked again.
+    /// Requests a run and waits for the answer. The caller must not use a worker again after an error.
     pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, (Failure, Vec<String>)> {
         let request = serde_json::to_string(&Request { scene, out }).unwrap_or_default();
         let sent = writeln!(self.requests, "{request}").and_then(|()| self.requests.flush());
@@ -137,7 +140,7 @@ impl Worker {
         answer.map_err(|failure| (failure, process::last_lines(self.folder.path())))
     }
 
-    /// The last lines that it has printed as errors.
+    /// Returns the last lines of standard error.
     pub(super) fn last_lines(&self) -> Vec<String> {
         process::last_lines(self.folder.path())
     }
@@ -152,7 +155,7 @@ impl Drop for Worker {
     }
 }
 
-/// An answer from its line.
+/// Returns the answer in a line.
 fn parsed(line: &str) -> Result<Answer, Failure> {
     let text = line.trim();
     serde_json::from_str(text).map_err(|error| {
