@@ -1,36 +1,36 @@
-//! Silo, drum and deeper beds: what LIGGGHTS and MUSEN, run again from the shared starts, have in common. Of two codes the spread
-//! is half their difference.
+//! Silo, drum and deeper beds: common results of LIGGGHTS and MUSEN, rerun from the shared initial states. The spread
+//! of two codes is half their difference.
 
 use super::impact::Impact;
 use super::tables::{Kind, Published, Silo};
 
-/// When the flow out of the silo is steady (s).
+/// Period of steady flow out of the silo (s).
 pub const STEADY: [f64; 2] = [0.5, 3.5];
-/// The same of the small orifice, which is looked at for a shorter time (s).
+/// Period of steady flow for the small orifice, whose data end earlier (s).
 pub const STEADY_SMALL: [f64; 2] = [0.5, 2.0];
-/// When it has begun (s).
+/// Period shortly after the flow has started (s).
 pub const EARLY: [f64; 2] = [0.2, 0.8];
-/// The codes that count, by how names of tables end.
+/// Codes that are included, by the ending of their table names.
 const CODES: [&str; 2] = ["liggghts", "musen"];
-/// When grains left in the silo are counted (s).
+/// Times at which grains left in the silo are counted (s).
 const LEFT: [f64; 9] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.3];
-/// Until when, and how often, M1 are counted in zone 2 of the drum (s).
+/// Number of samples and interval (s) of the counts of M1 in zone 2 of the drum.
 const MIXED: (usize, f64) = (10, 0.1);
 
-/// Beds of one draw: their thousands of grains, their word in names of tables, and when the ball's height is asked for (s), with
-/// the key of the number.
+/// Beds with one realization each: thousands of grains, word in table names, time (s) of the height of the ball, and
+/// key of the number.
 const BEDS: [(usize, &str, f64, &str); 3] = [
     (50, "case3_50k", 0.03, "height_30_50k"),
     (100, "case3_100k", 0.03, "height_30_100k"),
     (100, "case3_100k", 0.06, "height_60_100k"),
 ];
 
-/// Something that two codes, or one, have found.
+/// Result of two codes, or of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
     /// Mean of the codes.
     pub mean: f64,
-    /// Half their difference; none of one code.
+    /// Half the difference of the codes, or `None` for a single code.
     pub half: Option<f64>,
 }
 
@@ -44,20 +44,20 @@ impl Pair {
     }
 }
 
-/// A derived number.
+/// Derived quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Its key in the provenance of the work; of a course the name of its table.
+    /// Key in the provenance of the paper, or name of the table for a time series.
     pub key: &'static str,
-    /// What it is.
+    /// Description.
     pub what: String,
-    /// When (s), of a course; none of a number.
+    /// Time (s) of a point in a time series, or `None` for a single number.
     pub time: Option<f64>,
-    /// The number.
+    /// Value.
     pub pair: Pair,
 }
 
-/// What the tables of silo and drum tell together.
+/// Returns the common results of the tables of silo, drum and beds.
 #[must_use]
 pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     let codes = |words: &str| -> Vec<&Published> {
@@ -96,7 +96,7 @@ pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     all
 }
 
-/// Whether a name of a table has these words in it and ends with a code.
+/// Returns true if the name of a table contains the given words and ends with a code.
 fn is_of(name: &str, words: &str, code: &str) -> bool {
     name.contains(words) && name.ends_with(&format!("_{code}"))
 }
@@ -109,7 +109,8 @@ fn impact(kind: &Kind) -> Option<&Impact> {
     if let Kind::Impact(impact) = kind { Some(impact) } else { None }
 }
 
-/// The height of a table's one ball (mm) at a time (s) since it was released, whatever its clock says.
+/// Returns the height of the only ball in a table (mm) at a time (s) since its release. The clock error of the table
+/// is corrected.
 fn height(impact: &Impact, time: f64) -> Option<f64> {
     let [course] = &impact.courses[..] else { return None };
     impact.height(course, time - impact.ahead(course)).map(|height| height * 1e3)
@@ -142,11 +143,11 @@ mod tests {
         assert_eq!(of("silo_large_out_2").pair, Pair { mean: 49.0, half: Some(1.0) });
         let left: Vec<f64> = all.iter().filter(|of| of.key == "silo-large").map(|of| of.pair.mean).collect();
         assert_eq!(left[3], 51e3);
-        // The table ends before.
+        // The table ends before the last of the times.
         assert_eq!(left.len(), 8);
     }
 
-    /// A clock that is ahead is set back, and two courses in one table are no bed of one draw.
+    /// A clock error is corrected. Two time series in one table are not a bed with one realization.
     #[test]
     fn a_ball_is_where_it_is_since_its_release() {
         let flight = |time: f64| 0.06 - 5.0 * time - 0.5 * 9.81 * time * time;
@@ -165,7 +166,8 @@ mod tests {
         let all = pairs(&tables);
         let of = |key: &str| all.iter().find(|quantity| quantity.key == key).map(|quantity| quantity.pair.clone());
         let found = of("height_30_100k").unwrap();
-        // 3 mm lower in the second; proportion between samples of a parabola is good to g/8 of a millisecond squared.
+        // The second ball is 3 mm lower. The error of linear interpolation of the parabola is g/8 times the square of
+        // 1 ms.
         assert!((found.mean - (1e3 * flight(0.03) - 1.5)).abs() < 2e-3 && (found.half.unwrap() - 1.5).abs() < 2e-3);
         assert_eq!(of("height_30_50k"), None);
     }

@@ -1,13 +1,13 @@
-//! Grains of one kind as a data file of LAMMPS.
+//! Grains of one kind as a LAMMPS data file.
 
 use std::fmt::Write as _;
 
 /// Density of M1 (kg/m³).
 pub(super) const DENSITY_M1: f64 = 2500.0;
-/// Half the edge of the box that is written (m): grains within 1 m are read, which the drum's middle shifts.
+/// Half the edge of the written box (m). Grains within 1 m are read and then shifted by the centre of the drum.
 const HALF: f64 = 2.0;
 
-/// Grains by their centres (m), of one diameter (m) and one density (kg/m³).
+/// Returns the data file of grains with given centres (m), one diameter (m) and one density (kg/m³).
 pub(super) fn atoms(centres: &[[f64; 3]], diameter: f64, density: f64) -> String {
     let mut text = format!("grains\n\n{} atoms\n1 atom types\n\n", centres.len());
     for axis in ["x", "y", "z"] {

@@ -1,4 +1,4 @@
-//! The shared starts of the impact: a table of spheres, of which one is the ball.
+//! Shared initial states of the impact case. They are tables of spheres, one of which is the ball.
 
 use super::atoms::{DENSITY_M1, atoms};
 use crate::read::line_reader::LineReader;
@@ -9,34 +9,37 @@ use std::path::{Path, PathBuf};
 
 /// Radii of a grain and of the ball (m).
 const RADII: [f64; 2] = [0.001, 0.01];
-/// How far a radius may be off (m).
+/// Tolerance of a radius (m).
 const ROUNDED: f64 = 1e-6;
 
-/// Centres of the ball and of the grains of the bed (m).
+/// Centres of the ball and of the grains in the bed (m).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bed {
-    /// The ball.
+    /// Centre of the ball.
     pub ball: [f64; 3],
-    /// The grains, in the order of the file.
+    /// Centres of the grains, in the order of the file.
     pub grains: Vec<[f64; 3]>,
 }
 
-/// The names under which the start with so many thousand grains is shared: by the authors, and by Yade.
+/// Returns the file names of the initial state with a given number of thousand grains, first by the authors, second
+/// by Yade.
 #[must_use]
 pub fn bed_names(thousands: usize) -> [String; 2] {
     [format!("{thousands}KParticles.txt"), format!("Case3_PenetrationTest_{thousands}000_Particles.txt")]
 }
 
-/// The start with so many thousand grains in a folder, where there is one.
+/// Returns the file of the initial state with a given number of thousand grains in a folder, if there is one.
 #[must_use]
 pub fn bed_in(folder: &Path, thousands: usize) -> Option<PathBuf> {
     bed_names(thousands).map(|name| folder.join(name)).into_iter().find(|path| path.is_file())
 }
 
-/// Reads a start: a line of titles, and for each sphere its radius and three coordinates (m); the ball is told by its radius.
+/// Reads an initial state. After a line of titles, there is one line per sphere with its radius and three coordinates
+/// (m). The ball is identified by its radius.
 ///
 /// # Errors
-/// The file cannot be read, a line is not what it must be, or there is not one ball among so many thousand grains.
+/// If the file cannot be read or a line is not valid. Also if there is not exactly one ball among the given number of
+/// thousand grains.
 pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
     let file = path.to_string_lossy();
     let count = thousands * 1000;
@@ -80,7 +83,7 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
 }
 
 impl Bed {
-    /// The grains of the bed as a data file of LAMMPS.
+    /// Returns the grains of the bed as a LAMMPS data file.
     #[must_use]
     pub fn data(&self) -> String {
         atoms(&self.grains, 2.0 * RADII[0], DENSITY_M1)
@@ -91,7 +94,7 @@ impl Bed {
 mod tests {
     use super::*;
 
-    /// The start with a thousand grains in a row of columns, beginning and ending as asked.
+    /// Returns an initial state with `grains` grains in columns, with the given titles and end.
     fn text(titles: &str, grains: usize, end: &str) -> String {
         let grain = |number: usize| {
             format!("0.001\t{}\t{:.3}\t-.0\n", 0.002 * (number % 40) as f64, 0.002 * (number / 40) as f64)

@@ -1,17 +1,18 @@
-//! Courses of the ball: a column for each code and bed, `CODE_ICn`, of heights (m) over `t` (s).
+//! Time series of the ball. A table has one column of heights (m) for each code and bed, `CODE_ICn`, and the time `t`
+//! (s).
 
 use super::spread::Spread;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::table::Table;
 
-/// Gravity (m/s²) and the velocity that the ball is released with (m/s).
+/// Gravity (m/s²) and initial velocity of the ball (m/s).
 pub(super) const GRAVITY: f64 = 9.81;
 pub(super) const RELEASED: f64 = -5.0;
 
-/// The ball of one code on one bed.
+/// Time series of the ball for one code and one bed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// The code.
+    /// Name of the code.
     pub code: String,
     /// Number of the bed, from 1.
     pub bed: usize,
@@ -19,19 +20,19 @@ pub struct Course {
     pub heights: Vec<f64>,
 }
 
-/// All courses of one table.
+/// All time series of one table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impact {
-    /// Times (s), none of them twice.
+    /// Times (s), without repetitions.
     pub times: Vec<f64>,
-    /// The courses, in the order of the columns.
+    /// Time series in the order of the columns.
     pub courses: Vec<Course>,
-    /// Rows whose time stands in the row before already, which are passed over.
+    /// Number of skipped rows that repeat the time of the row before.
     pub repeated: usize,
 }
 
 impl Impact {
-    /// Of a table whose first column is the time.
+    /// Reads a table whose first column is the time.
     pub(super) fn of(table: &Table, file: &str) -> Result<Self, ReadError> {
         let mut times: Vec<f64> = Vec::new();
         let mut kept = Vec::new();
@@ -59,7 +60,7 @@ impl Impact {
         Ok(Self { repeated: table.rows() - times.len(), times, courses })
     }
 
-    /// The height of a course at a time (m), between samples in proportion; none beyond them.
+    /// Returns the height at a time (m), interpolated linearly between samples. Returns `None` beyond the samples.
     #[must_use]
     pub fn height(&self, course: &Course, time: f64) -> Option<f64> {
         let after = self.times.partition_point(|&sampled| sampled < time - 1e-9);
@@ -72,32 +73,33 @@ impl Impact {
         Some(course.heights[before] + part * (there - course.heights[before]))
     }
 
-    /// How far above free flight from z₀ at −5 m/s it is at a time (m).
+    /// Returns the height above free flight with an initial velocity of −5 m/s at a time (m).
     pub(super) fn held_up(&self, course: &Course, time: f64) -> Option<f64> {
         const START: f64 = 0.06;
         Some(self.height(course, time)? - (START + RELEASED * time - 0.5 * GRAVITY * time * time))
     }
 
-    /// How far a course's clock is ahead in its first sample (s): the ball has fallen there already.
+    /// Returns the clock error of the first sample (s). It is positive if the ball has already fallen in this sample.
     #[must_use]
     pub fn ahead(&self, course: &Course) -> f64 {
         let fallen = self.times.first().and_then(|&first| self.held_up(course, first));
         fallen.map_or(0.0, |up| up / RELEASED)
     }
 
-    /// The mean velocity between two times (m/s).
+    /// Returns the mean velocity between two times (m/s).
     #[must_use]
     pub fn velocity(&self, course: &Course, [from, to]: [f64; 2]) -> Option<f64> {
         Some((self.height(course, to)? - self.height(course, from)?) / (to - from))
     }
 
-    /// The deepest point (m).
+    /// Returns the lowest position (m).
     #[must_use]
     pub fn deepest(course: &Course) -> f64 {
         course.heights.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Mean and deviations of a quantity over the courses that are `kept`.
+    /// Returns the mean and the standard deviations of a quantity over those time series for which `kept` returns
+    /// true.
     pub fn spread(&self, kept: impl Fn(&Course) -> bool, of: impl Fn(&Self, &Course) -> Option<f64>) -> Option<Spread> {
         let kept: Vec<&Course> = self.courses.iter().filter(|course| kept(course)).collect();
         let values: Option<Vec<(&str, f64)>> =

@@ -1,7 +1,8 @@
-//! The round robin of bulk processes (Dosta et al. 2024): what its published courses are read from, and what is derived of them.
+//! Round robin of bulk processes (Dosta et al. 2024): readers for its published time series, and quantities derived
+//! from them.
 //!
-//! The courses are other people's and stay where the user has them. Kept here are numbers derived from them: means between codes,
-//! and deviations between codes and between beds (`reference/literature/dosta-2024`).
+//! The time series are third-party data and stay on the user's machine. This crate stores only derived numbers: means
+//! of codes, and standard deviations between codes and between beds (`reference/literature/dosta-2024`).
 
 mod again;
 mod atoms;
@@ -20,24 +21,27 @@ pub use spread::Spread;
 pub use start::{Start, read_start, start_in};
 pub use tables::{Drum, Kind, Published, Silo, read};
 
-/// Heights of the ball over time, derived: t (s), mean between codes and deviations between codes and between beds (mm), 25
-/// thousand grains.
+/// Derived heights of the ball over time for 25 thousand grains. The columns are t (s), mean of the codes, and
+/// standard deviations between codes and between beds (mm).
 pub const IMPACT: &str = include_str!("../../literature/dosta-2024/impact-25k.csv");
 
-/// What the published data says of itself, as `grainbench reference import dosta-2024` told it of the copies that were read: a
-/// heading and a table.
+/// Observations in the published data as a heading and a table. They were computed by `grainbench reference import
+/// dosta-2024` from copies of the data.
 pub const SAID: &str = include_str!("../../literature/dosta-2024/said.md");
 
-/// Grains left in the silo over time, large orifice, derived: t (s), mean of LIGGGHTS and MUSEN, half their difference.
+/// Derived number of grains left in the silo over time, for the large orifice. The columns are t (s), mean of
+/// LIGGGHTS and MUSEN, and half their difference.
 pub const SILO: &str = include_str!("../../literature/dosta-2024/silo-large.csv");
 
-/// M1 in zone 2 of the drum over time, derived: t (s), mean of LIGGGHTS and MUSEN, half their difference.
+/// Derived number of grains M1 in zone 2 of the drum over time. The columns are t (s), mean of LIGGGHTS and MUSEN,
+/// and half their difference.
 pub const DRUM: &str = include_str!("../../literature/dosta-2024/drum-zone-2.csv");
 
-/// The scene that begins with the drum's shared start, beside `drum-m1.data` and `drum-m2.data`, which are made of it.
+/// Scene that begins with the shared initial state of the drum. It needs `drum-m1.data` and `drum-m2.data`, which are
+/// derived from this state.
 pub const DRUM_SCENE: &str = include_str!("drum.toml");
 
-/// A table of time (s), mean and half the difference of two codes, that is kept here.
+/// Reads a stored table of time (s), mean and half the difference of two codes.
 #[must_use]
 pub fn course(text: &str) -> Vec<[f64; 3]> {
     let row = |line: &str| -> Option<[f64; 3]> {

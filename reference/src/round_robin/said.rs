@@ -1,22 +1,22 @@
-//! What the published data says of itself: each computed from the data, and told soberly.
+//! Observations in the published data, all computed from the data.
 
 use super::impact::{Course, GRAVITY, Impact, RELEASED};
 use super::spread::mean;
 use super::tables::{Drum, Kind, Published};
 use std::fmt;
 
-/// Something that is seen in the data: a row of a check.
+/// Observation in the data with its expectation, a row of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// In which table, by its name; empty until that is known.
+    /// Name of the table, or empty until it is known.
     pub table: String,
-    /// Of what.
+    /// Object of the observation.
     pub about: String,
-    /// Which quantity.
+    /// Observed quantity.
     pub quantity: String,
-    /// What was found.
+    /// Observed value.
     pub found: String,
-    /// What was expected.
+    /// Expected value.
     pub expected: String,
 }
 
@@ -35,18 +35,20 @@ impl fmt::Display for Said {
     }
 }
 
-/// A velocity at the start off by more than this (m/s) is another release.
+/// Tolerance of the initial velocity (m/s). A larger difference is a different release.
 const OTHER_RELEASE: f64 = 0.1;
-/// Deviations from which on a bed or a code stands out: beyond what eighty draws have.
+/// Number of standard deviations from which on a bed or code is an outlier. Eighty realizations do not reach it by
+/// chance.
 const STANDS_OUT: f64 = 4.0;
-/// When the ball has just met the bed (s): beds are told by how far it is held up, before chaos has grown.
+/// Time when the ball has just reached the bed (s). Beds are identified at this time, before chaos has grown.
 const MET: f64 = 0.022;
-/// When depths are compared (s).
+/// Time at which depths are compared (s).
 const DEEP: f64 = 0.030;
-/// By how much codes may differ in how far one bed holds the ball up at first (m).
+/// Tolerance of the height above free flight between codes on the same bed (m).
 const SAME_BED: f64 = 1.2e-5;
 
-/// Of all tables: each by itself, and each drum beside the first.
+/// Returns the observations in all tables. Each table is checked separately, and each drum is compared with the first
+/// one.
 #[must_use]
 pub fn of_all(tables: &[Published]) -> Vec<Said> {
     let mut all = Vec::new();
@@ -62,7 +64,7 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
             Kind::Silo(_) => Vec::new(),
         };
         all.extend(of.into_iter().map(|said| {
-            // A course that is alone in its file has no other name.
+            // A time series that is alone in its file has the same name as the file.
             let about = if said.about == *name { String::new() } else { said.about };
             Said { table: name.clone(), about, ..said }
         }));
@@ -70,7 +72,7 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
     all
 }
 
-/// What the data says of itself as a heading and a table in Markdown.
+/// Returns the observations as a heading and a table in Markdown.
 #[must_use]
 pub fn table_of(rows: &[Said]) -> String {
     let mut text =
@@ -84,7 +86,7 @@ pub fn table_of(rows: &[Said]) -> String {
     text
 }
 
-/// Of the courses of the ball.
+/// Returns the observations in time series of the ball.
 #[must_use]
 pub fn of_impact(impact: &Impact) -> Vec<Said> {
     let mut all = Vec::new();
@@ -107,8 +109,10 @@ fn name(course: &Course) -> String {
     format!("{}, bed {}", course.code, course.bed)
 }
 
-/// A ball that is not released at −5 m/s: by its fall between one and two milliseconds, when a bed hardly holds it up yet. The
-/// first sample is not asked: a clock that is ahead in it alone is no other release.
+/// Returns an observation if the ball was not released at −5 m/s. The velocity is measured between 1 ms and 2 ms,
+/// when the bed hardly decelerates the ball.
+///
+/// The first sample is not used, because a clock error in this sample alone is not a different release.
 fn released(impact: &Impact, course: &Course) -> Option<Said> {
     const FLIGHT: [f64; 2] = [0.001, 0.002];
     let speed = impact.velocity(course, FLIGHT)? + GRAVITY * 0.5 * (FLIGHT[0] + FLIGHT[1]);
@@ -117,7 +121,7 @@ fn released(impact: &Impact, course: &Course) -> Option<Said> {
     ((speed - RELEASED).abs() > OTHER_RELEASE).then(said)
 }
 
-/// Clocks that are ahead: by the height at the first sample, where the ball has fallen already, and at the next.
+/// Returns the clock errors. They follow from the height in the first sample, and are compared with the next sample.
 fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let of = |code: &str, time: f64| -> Option<f64> {
         let of: Option<Vec<f64>> =
@@ -146,7 +150,8 @@ fn codes<'a>(courses: &[&'a Course]) -> Vec<&'a str> {
     codes
 }
 
-/// How far a code's beds hold the ball up at first, by number.
+/// Returns the height of the ball above free flight (m) at the first contact with each bed, by code and number of the
+/// bed.
 fn prints<'a>(impact: &Impact, flown: &[&'a Course]) -> Vec<(&'a str, Vec<(usize, f64)>)> {
     let of = |code: &'a str| {
         let beds = flown.iter().filter(|course| course.code == code);
@@ -155,10 +160,11 @@ fn prints<'a>(impact: &Impact, flown: &[&'a Course]) -> Vec<(&'a str, Vec<(usize
     codes(flown).into_iter().map(of).collect()
 }
 
-/// Beds that stand under another number: how far a bed holds the ball up at first is its fingerprint, which all codes find alike.
+/// Returns the beds that have different numbers in different codes. The initial height above free flight is a
+/// fingerprint of a bed, because all codes agree on it.
 fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let prints = prints(impact, flown);
-    // What most codes have for each number.
+    // Median over the codes for each number.
     let usual = |bed: usize| {
         let mut of: Vec<f64> = prints
             .iter()
@@ -196,7 +202,7 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     all
 }
 
-/// Beds and codes that stand out at 30 ms.
+/// Returns beds and codes that are outliers at 30 ms.
 fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let depth = |course: &Course| impact.height(course, DEEP).map(|height| height * 1e3);
     let of = |code: &str, but: Option<usize>| -> Vec<f64> {
@@ -251,7 +257,7 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     all
 }
 
-/// Of the zones of the drum: a frame that is counted twice.
+/// Returns the frames of a drum that were counted twice.
 #[must_use]
 pub fn of_drum(drum: &Drum) -> Vec<Said> {
     let total = |row: usize| drum.zones.iter().map(|zone| zone[row]).sum::<f64>();
@@ -266,11 +272,11 @@ pub fn of_drum(drum: &Drum) -> Vec<Said> {
     rows.map(said).collect()
 }
 
-/// How far one run of the drum may be off another in how many grains of M1 are in zone 2: codes that were run again from the
-/// shared start, LIGGGHTS and MUSEN, differ by less, 6.6 % at 2 s.
+/// Tolerance of the number of grains M1 in zone 2 between two runs of the drum. LIGGGHTS and MUSEN, rerun from the
+/// shared initial state, differ by less. Their difference is 6.6 % at 2 s.
 const SAME_DRUM: f64 = 0.1;
 
-/// Of a run of the drum beside another one: where M1 in zone 2 is off.
+/// Returns the differences of M1 in zone 2 between a run of the drum and another one.
 #[must_use]
 pub fn of_drums(drum: &Drum, (name, other): (&str, &Drum)) -> Vec<Said> {
     let at = |time: f64| {

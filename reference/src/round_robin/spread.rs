@@ -1,20 +1,20 @@
-//! Mean and deviations of a quantity between codes, and between beds of a code.
+//! Mean and standard deviations of a quantity between codes, and between beds of one code.
 
 use std::collections::BTreeMap;
 
-/// A quantity of every code and bed.
+/// Statistics of a quantity over all codes and beds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Mean over codes of their means over beds.
     pub mean: f64,
-    /// Standard deviation of the codes' means.
+    /// Standard deviation of the means of the codes.
     pub code: f64,
-    /// Standard deviation of the beds about their code's mean, pooled.
+    /// Pooled standard deviation of the beds about the mean of their code.
     pub bed: f64,
 }
 
 impl Spread {
-    /// Of values by code; none where there are fewer than two codes or no code has two beds.
+    /// Returns the statistics of values by code, or `None` if there are fewer than two codes or no code has two beds.
     #[must_use]
     pub fn of<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
         let mut codes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
@@ -34,14 +34,14 @@ impl Spread {
         })
     }
 
-    /// What one more code may be off by with so many beds of its own, where so many are published:
-    /// 2 √(s_code² + s_bed² (1/m + 1/n)).
+    /// Returns the permitted difference of another code with `own` (m) beds from `published` (n) beds: 2 √(s_code² +
+    /// s_bed² (1/m + 1/n)).
     #[must_use]
     pub fn allowed(&self, own: usize, published: usize) -> f64 {
         2.0 * self.deviation(own, published)
     }
 
-    /// √(s_code² + s_bed² (1/m + 1/n)).
+    /// Returns the standard deviation √(s_code² + s_bed² (1/m + 1/n)).
     #[must_use]
     pub fn deviation(&self, own: usize, published: usize) -> f64 {
         let beds = 1.0 / own as f64 + 1.0 / published as f64;
@@ -57,7 +57,7 @@ pub(super) fn mean(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Two codes, two beds each: means 1 and 3, each bed one off its code's mean.
+    /// Two codes with two beds each have the means 1 and 3. Each bed differs by 1 from the mean of its code.
     #[test]
     fn tells_codes_from_beds() {
         let spread = Spread::of([("a", 0.0), ("a", 2.0), ("b", 2.0), ("b", 4.0)]).unwrap();

@@ -1,4 +1,5 @@
-//! The shared start of the drum: an `xyz` file of grains, as data files of LAMMPS about the middle of the drum.
+//! Shared initial state of the drum. An `xyz` file of grains is converted to LAMMPS data files with the origin at the
+//! centre of the drum.
 
 use super::atoms::{DENSITY_M1, atoms};
 use crate::read::line_reader::LineReader;
@@ -7,33 +8,33 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// The middle of the drum in the file's coordinates (m).
+/// Centre of the drum in the coordinates of the file (m).
 const MIDDLE: [f64; 3] = [0.102, 0.032, 0.102];
-/// Most grains that are read.
+/// Maximum number of grains.
 const MOST: usize = 1_000_000;
 
-/// Centres of grains about the middle of the drum (m).
+/// Centres of grains relative to the centre of the drum (m).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
-    /// Of M2, type 0, and of M1, type 1.
+    /// Centres of M2 (type 0) and of M1 (type 1).
     pub kinds: [Vec<[f64; 3]>; 2],
 }
 
-/// The shared start in a folder: the first of its files whose names end in `.xyz`.
+/// Returns the shared initial state in a folder, the first file by name that ends in `.xyz`.
 ///
 /// # Errors
-/// When the folder cannot be read.
+/// If the folder cannot be read.
 pub fn start_in(folder: &Path) -> std::io::Result<Option<PathBuf>> {
     let entries: Vec<PathBuf> =
         std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
     Ok(entries.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "xyz")).min())
 }
 
-/// Reads the start: a line with the number of grains, a line with the box, and for each grain its type, 0 or 1, and three
-/// coordinates (m).
+/// Reads the initial state. The first line is the number of grains, the second the box. Each further line has the
+/// type of a grain, 0 or 1, and three coordinates (m).
 ///
 /// # Errors
-/// The file cannot be read, or a line is not what it must be.
+/// If the file cannot be read or a line is not valid.
 pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     let file = path.to_string_lossy();
     let input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
@@ -62,13 +63,13 @@ pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     Ok(start)
 }
 
-/// A coordinate without what the difference from the middle leaves in its last digits: to 1e-9 m, finer than the file.
+/// Rounds a coordinate to 1e-9 m, finer than the file. This removes the rounding error of the subtraction.
 fn rounded(at: f64) -> f64 {
     (at * 1e9).round() / 1e9
 }
 
 impl Start {
-    /// Both kinds as the data files that the scene of the drum begins with: name and text of each.
+    /// Returns both kinds of grains as data files for the scene of the drum, by name and text.
     #[must_use]
     pub fn files(&self) -> [(&'static str, String); 2] {
         let of = |kind: usize, diameter, density| atoms(&self.kinds[kind], diameter, density);

@@ -1,32 +1,32 @@
-//! Which table is what: told by its columns.
+//! Identification of tables by their columns.
 
 use super::impact::Impact;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::table::{Table, read_table};
 use std::path::Path;
 
-/// Counts in the zones of the drum over time: zone 2 is x < 0, z < 0.
+/// Numbers of grains in the zones of the drum over time. Zone 2 is x < 0, z < 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drum {
     /// Times (s).
     pub times: Vec<f64>,
-    /// Grains of M1 and of M2 in zone 1, and in zone 2.
+    /// Numbers of grains M1 and M2 in zone 1, followed by those in zone 2.
     pub zones: [Vec<f64>; 4],
 }
 
-/// Grains left in the silo over time.
+/// Numbers of grains left in the silo over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Silo {
     /// Times (s).
     pub times: Vec<f64>,
-    /// How many are left.
+    /// Numbers of grains left.
     pub left: Vec<f64>,
 }
 
-/// What a table holds.
+/// Content of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// Courses of the ball, `t` and `CODE_ICn`, or `t,z` of one run.
+    /// Time series of the ball with the columns `t` and `CODE_ICn`, or `t,z` for one run.
     Impact(Impact),
     /// Zones of the drum, `t,z1_m1,z1_m2,z2_m1,z2_m2`.
     Drum(Drum),
@@ -34,23 +34,23 @@ pub enum Kind {
     Silo(Silo),
 }
 
-/// A table of the published data, as the user has it.
+/// Table of the published data on the user's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
-    /// Name of the file without its ending.
+    /// Name of the file without its extension.
     pub name: String,
-    /// What it holds.
+    /// Content of the table.
     pub kind: Kind,
 }
 
 /// Columns of the zones of the drum.
 const ZONES: [&str; 4] = ["z1_m1", "z1_m2", "z2_m1", "z2_m2"];
 
-/// Reads a table of the round robin; none where it is a table of something else: its first column is not `t`, or the second is of
-/// no known name.
+/// Reads a table of the round robin. Returns `None` for any other table: if the first column is not `t` or the second
+/// column has an unknown name.
 ///
 /// # Errors
-/// The file cannot be read, or is not what its columns say.
+/// If the file cannot be read or does not match its columns.
 pub fn read(path: &Path) -> Result<Option<Published>, ReadError> {
     let file = path.to_string_lossy();
     let table = read_table(path)?;
@@ -69,7 +69,7 @@ pub fn read(path: &Path) -> Result<Option<Published>, ReadError> {
     Ok(Some(Published { name, kind }))
 }
 
-/// One run, by the name of its file.
+/// Names the column of a single run after its file.
 fn of_one(mut table: Table, path: &Path) -> Table {
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     table.columns[1].name = format!("{name}_IC1");
@@ -87,7 +87,7 @@ fn drum(table: &Table, names: &[&str], file: &str) -> Result<Drum, ReadError> {
     Ok(Drum { times: rising(table, file)?, zones })
 }
 
-/// Times, which rise.
+/// Returns the times. They must increase.
 fn rising(table: &Table, file: &str) -> Result<Vec<f64>, ReadError> {
     let times: Vec<f64> = table.values(0).collect();
     match times.windows(2).position(|pair| pair[1] <= pair[0]) {
@@ -100,7 +100,7 @@ fn rising(table: &Table, file: &str) -> Result<Vec<f64>, ReadError> {
 }
 
 impl Drum {
-    /// M1 in zone 2 at a time; none where it is no sample.
+    /// Returns the number of grains M1 in zone 2 at a time, or `None` if there is no sample at this time.
     #[must_use]
     pub fn in_zone_2(&self, time: f64) -> Option<f64> {
         self.times.iter().position(|at| (at - time).abs() < 1e-6).map(|at| self.zones[2][at])
@@ -108,7 +108,8 @@ impl Drum {
 }
 
 impl Silo {
-    /// Grains left at a time, between samples in proportion; none beyond them.
+    /// Returns the number of grains left at a time, interpolated linearly between samples. Returns `None` after the
+    /// samples.
     #[must_use]
     pub fn at(&self, time: f64) -> Option<f64> {
         let after = self.times.iter().position(|&sampled| sampled >= time - 1e-9)?;
@@ -120,7 +121,7 @@ impl Silo {
         Some(self.left[after - 1] + part * (left - self.left[after - 1]))
     }
 
-    /// Grains that leave in a second, between two times.
+    /// Returns the number of grains that leave per second between two times.
     #[must_use]
     pub fn rate(&self, [from, to]: [f64; 2]) -> Option<f64> {
         Some((self.at(from)? - self.at(to)?) / (to - from))
