@@ -1,33 +1,33 @@
-//! How far a rerun is from what is stored.
+//! Difference of a rerun from the stored run.
 
 use grainbench_scene::record::Series;
 
-/// How one column has drifted.
+/// Difference of one column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drift {
-    /// The column.
+    /// Name of the column.
     pub name: String,
-    /// Its unit.
+    /// Unit of the column.
     pub unit: String,
-    /// What is stored where they differ most.
+    /// Stored value at the largest difference.
     pub stored: f64,
-    /// What the rerun has there.
+    /// Value of the rerun at the same time.
     pub rerun: f64,
-    /// The largest magnitude of any column of that unit; of coordinates the largest change.
+    /// Largest magnitude of all columns with this unit. For coordinates, it is the largest change.
     pub scale: f64,
-    /// The time of it (s).
+    /// Time of the largest difference (s).
     pub time: f64,
 }
 
 impl Drift {
-    /// (rerun − stored)/scale.
+    /// Returns (rerun − stored)/scale.
     #[must_use]
     pub fn error(&self) -> f64 {
         (self.rerun - self.stored) / self.scale
     }
 }
 
-/// A drift a column, at the stored steps up to `last_step`; what the rerun lacks is not a number.
+/// Returns the difference of each column at the stored steps up to `last_step`. Values that the rerun lacks are NaN.
 #[must_use]
 pub fn drift(stored: &Series, rerun: &Series, last_step: u64) -> Vec<Drift> {
     let moved = |values: &[f64], unit: &str| -> f64 {

@@ -1,56 +1,56 @@
-//! Why a stored run cannot be used.
+//! Errors of stored runs.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::read::read_error::{ReadError, one_line};
 
-/// A stored run that is missing, incomplete, or not what it was when it was stored.
+/// Stored run that is missing, incomplete or changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoredError {
-    /// A name that could lead out of the folder it belongs to.
+    /// A name could lead out of its folder.
     #[error("{place}: expected a plain name of letters, digits, `.`, `-` and `_`, found `{}`", name.escape_debug())]
     Name {
-        /// Where the name stands.
+        /// Position of the name.
         place: String,
-        /// The name.
+        /// Invalid name.
         name: String,
     },
     /// A file of the run cannot be read.
     #[error("{}: expected a readable file, found {source}", shown(path))]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The provenance is not understood.
+    /// The provenance is not valid.
     #[error("{}:{line}: expected the provenance of a stored run, found {}", shown(path), one_line(source.message()))]
     Provenance {
-        /// The file.
+        /// Path of the provenance.
         path: PathBuf,
-        /// The line, counted from 1.
+        /// Line number, counted from 1.
         line: usize,
-        /// What the reader of TOML says.
+        /// Error of the TOML parser.
         source: Box<toml::de::Error>,
     },
-    /// A file of the run is no longer the one that was stored.
+    /// A file of the run has changed since it was stored.
     #[error("{}: expected the file with BLAKE3 {}, found {found}", shown(path), one_line(expected))]
     Changed {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The hash in the provenance.
+        /// Hash in the provenance.
         expected: String,
-        /// The hash of the file as it is.
+        /// Actual hash of the file.
         found: String,
     },
-    /// A file is asked for that the provenance does not vouch for.
+    /// The provenance has no hash of a required file.
     #[error("{}: expected the hash of `{name}`, found none", shown(provenance))]
     Unlisted {
-        /// The provenance.
+        /// Path of the provenance.
         provenance: PathBuf,
-        /// The file.
+        /// Name of the file.
         name: String,
     },
     /// A series of the run is damaged.
@@ -59,22 +59,22 @@ pub enum StoredError {
     /// A series lacks a column.
     #[error("{}: expected a column `{name}`, found none", shown(path))]
     Column {
-        /// The series.
+        /// Path of the series.
         path: PathBuf,
-        /// The column.
+        /// Name of the column.
         name: String,
     },
-    /// The run and its half-step run cannot be compared line by line.
+    /// The run and its half-step run cannot be compared row by row.
     #[error("{}: expected the times of `series.csv.gz`, found {found}", shown(path))]
     Twin {
-        /// The half-step run's series.
+        /// Path of the series of the half-step run.
         path: PathBuf,
-        /// How it differs.
+        /// Description of the difference.
         found: String,
     },
 }
 
-/// A path as an error may repeat it, on one line.
+/// Returns a path on one line for error messages.
 fn shown(path: &Path) -> String {
     one_line(&path.to_string_lossy())
 }

@@ -1,4 +1,4 @@
-//! Makes a stored run with a program that is installed.
+//! Creation of a stored run with an installed program.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -16,23 +16,25 @@ use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::Live;
 
-/// Most samples that are kept of a run, beside its last one.
+/// Maximum number of stored samples of a run, in addition to the last one.
 const MOST_SAMPLES: usize = 100;
-/// From how many bytes on a file of the deck is compressed.
+/// Size from which on a file of the deck is compressed (B).
 const LARGE: usize = 1 << 14;
 
-/// The files of a stored run: name and bytes of each.
+/// Files of a stored run, by name and content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Made {
-    /// The files, `provenance.toml` the last.
+    /// Name and content of each file. `provenance.toml` is the last one.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs the scene, and again with half the time step, and writes both down. `id` is what `reference build` calls it,
-/// and `date` the day (YYYY-MM-DD).
+/// Runs the scene, and repeats the run with half the time step and with a perturbed initial state. Returns the files
+/// of the stored run.
+///
+/// `id` is the name in `reference build`, and `date` the day (YYYY-MM-DD).
 ///
 /// # Errors
-/// When the program cannot express the scene, is not there or fails, or leaves a value that is not finite.
+/// If the program cannot express the scene, is not installed or fails, or if a value is not finite.
 pub fn make(
     program: Program,
     id: &str,
@@ -84,7 +86,7 @@ pub fn make(
     Ok(Made { files })
 }
 
-/// Some hundred samples of a run as CSV, with all their digits.
+/// Returns about a hundred samples of a run as CSV with full precision.
 fn table(record: &Record, program: Program) -> Result<String, RunError> {
     let series = thinned(&record.series);
     let mut text = "step,time".to_owned();
@@ -107,7 +109,8 @@ fn table(record: &Record, program: Program) -> Result<String, RunError> {
     Ok(text)
 }
 
-/// The last step at which a perturbed run is within [`PARTED`]; none where it is so to the end.
+/// Returns the last step at which the perturbed run differs by at most [`PARTED`], or `None` if this holds until the
+/// end.
 fn predictable_steps(run: &Series, perturbed: &Series) -> Option<u64> {
     let parted = |step: u64| {
         drift(run, perturbed, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED)
@@ -116,7 +119,7 @@ fn predictable_steps(run: &Series, perturbed: &Series) -> Option<u64> {
     (first < run.step.len()).then(|| run.step[first.saturating_sub(1)])
 }
 
-/// Evenly spread samples of a series, the last one among them.
+/// Returns evenly spaced samples of a series, including the last one.
 fn thinned(series: &Series) -> Series {
     let stride = series.step.len().div_ceil(MOST_SAMPLES).max(1);
     let keep: Vec<usize> =
@@ -130,11 +133,11 @@ fn thinned(series: &Series) -> Series {
     }
 }
 
-/// Gzip without name or time, so that equal texts are equal files.
+/// Returns a text compressed by gzip. Name and time are omitted, so that equal texts give equal files.
 #[must_use]
 pub fn compressed(text: &str) -> Vec<u8> {
     let mut encoder = GzBuilder::new().mtime(0).write(Vec::new(), Compression::best());
-    // Memory takes whatever is written to it.
+    // Writing to memory cannot fail.
     let _ = encoder.write_all(text.as_bytes());
     encoder.finish().unwrap_or_default()
 }

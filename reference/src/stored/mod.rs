@@ -1,5 +1,7 @@
-//! Runs of other programs that are kept with the sources, so that they can be compared with where those programs are
-//! not installed: the deck, what it left at full precision, the same with half the time step, and where they come from.
+//! Stored runs of other programs. They allow a comparison where these programs are not installed.
+//!
+//! A stored run consists of the deck, the output at full precision, the output with half the time step, and the
+//! provenance.
 
 mod drift;
 mod error;
@@ -29,7 +31,7 @@ const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series.csv.gz";
 const HALF_STEP_SERIES: &str = "series-half-step.csv.gz";
 
-/// A stored run whose files have been found to be the ones that were stored.
+/// Stored run whose files have been verified by their hashes.
 #[derive(Debug, Clone)]
 pub struct StoredRun {
     directory: PathBuf,
@@ -38,17 +40,17 @@ pub struct StoredRun {
     half_step: Table,
 }
 
-/// The folder of the run `id` of a program among the sources of this crate.
+/// Returns the folder of run `id` of a program in this crate.
 #[must_use]
 pub fn folder(program: Program, id: &str) -> PathBuf {
     Path::new(crate::FOLDER).join(program.name()).join(id)
 }
 
 impl StoredRun {
-    /// Loads the run in `directory`: its `provenance.toml`, every file listed there, and its two series.
+    /// Loads the run in `directory`, with its `provenance.toml`, every file listed there, and its two series.
     ///
     /// # Errors
-    /// A file is missing, changed or damaged; see [`StoredError`].
+    /// If a file is missing, changed or damaged. See [`StoredError`].
     pub fn load(directory: &Path) -> Result<Self, StoredError> {
         let provenance = read_provenance(&directory.join(PROVENANCE))?;
         for (name, expected) in &provenance.blake3 {
@@ -65,41 +67,42 @@ impl StoredRun {
         Ok(Self { directory: directory.to_owned(), provenance, series, half_step })
     }
 
-    /// The folder of the run.
+    /// Returns the folder of the run.
     #[must_use]
     pub fn directory(&self) -> &Path {
         &self.directory
     }
 
-    /// Where the run comes from.
+    /// Returns the provenance of the run.
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.provenance
     }
 
-    /// Whether it was made from this scene at this resolution.
+    /// Returns true if the run was made from this scene at this resolution.
     #[must_use]
     pub fn is_of(&self, scene: &Scene, resolution: &Resolution) -> bool {
         Stepping::of(scene, resolution).is_ok_and(|stepping| scene_hash(scene, &stepping) == self.provenance.scene)
     }
 
-    /// What the probes of the scene saw.
+    /// Returns the values of the scene's probes.
     #[must_use]
     pub fn series(&self, scene: &Scene) -> Series {
         series(scene, &self.series)
     }
 
-    /// What they saw at the same times with half the time step: the difference is what the time step of the run is
-    /// worth, its own uncertainty. Steps are counted as those of the run.
+    /// Returns the values of the probes at the same times with half the time step.
+    ///
+    /// Their difference from the run is an estimate of its time-step error. The steps are those of the run.
     #[must_use]
     pub fn half_step(&self, scene: &Scene) -> Series {
         Series { step: self.series(scene).step, ..series(scene, &self.half_step) }
     }
 
-    /// The record of the run.
+    /// Returns the record of the run.
     ///
     /// # Errors
-    /// [`RunError::Stale`] when it was made from another scene.
+    /// [`RunError::Stale`] if the run was made from another scene.
     pub fn record(&self, scene: &Scene, resolution: &Resolution, program: Program) -> Result<Record, RunError> {
         let solver = program.name().to_owned();
         if !self.is_of(scene, resolution) {
@@ -127,14 +130,14 @@ impl StoredRun {
     }
 }
 
-/// A damaged stored run, as a run says it.
+/// Returns the error of a run whose stored files are damaged.
 #[must_use]
 pub fn unusable(program: Program, error: &StoredError) -> RunError {
     let failure = Failure::Output(error.to_string());
     RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() }
 }
 
-/// The columns of a table that are those of a scene's probes.
+/// Returns the columns of a table that belong to the scene's probes.
 fn series(scene: &Scene, table: &Table) -> Series {
     let values =
         |name: &str| -> Vec<f64> { table.column(name).map(|at| table.values(at).collect()).unwrap_or_default() };
@@ -149,7 +152,7 @@ fn series(scene: &Scene, table: &Table) -> Series {
     series
 }
 
-/// Refuses a file that is not the stored one.
+/// Returns an error if a file differs from the stored one.
 fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredError> {
     check_name(name, &directory.join(PROVENANCE).to_string_lossy())?;
     let path = directory.join(name);
@@ -160,7 +163,7 @@ fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredErro
     }
 }
 
-/// Refuses a series without steps or times, and a half-step run that was sampled at other times.
+/// Returns an error if a series lacks steps or times, or if the half-step run has other sample times.
 fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), StoredError> {
     let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
         let path = directory.join(file);
@@ -173,7 +176,7 @@ fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), St
     if of_run.len() != of_half.len() {
         return Err(differing(format!("{} rows where that has {}", of_half.len(), of_run.len())));
     }
-    // Steps are summed up in the programs, so that equal times differ in their last digits.
+    // The programs sum up the time steps, so equal times differ in their last digits.
     match of_run.iter().zip(&of_half).find(|(run, half)| (**run - **half).abs() > 1e-9 * run.max(**half)) {
         Some((run, half)) => Err(differing(format!("{half:?} where that has {run:?}"))),
         None => Ok(()),
@@ -193,7 +196,7 @@ fn read_provenance(path: &Path) -> Result<Provenance, StoredError> {
     })
 }
 
-/// Refuses a name that is a path: a stored run reads nothing outside of its folder.
+/// Returns an error if a name is a path, because a stored run must not read files outside of its folder.
 fn check_name(name: &str, place: &str) -> Result<(), StoredError> {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
     if !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain) {

@@ -1,4 +1,4 @@
-//! The fingerprint of a scene: two scenes of one fingerprint are one run of a program.
+//! Hash of a scene. Scenes with equal hashes give the same run of a program.
 
 use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -9,17 +9,18 @@ use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
 
-/// The BLAKE3 hash of all in a scene and its stepping that a run of rigid grains depends on, in lower-case hexadecimal.
+/// Returns the BLAKE3 hash of all data of a scene and its steps that a run of rigid grains depends on, in lower-case
+/// hexadecimal.
 ///
-/// Titles, names of materials, how often samples are taken, and what deformable bodies alone have are left out. Numbers
-/// go in with all their digits.
+/// Titles, names of materials, the sampling interval and data of deformable bodies are omitted. Numbers have all
+/// their digits.
 #[must_use]
 pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     hash_of(scene, stepping, &lines_of(&scene.grains), text_of)
 }
 
-/// The same with the bits of grains and of springs in place of their digits, which are written a hundred times slower: `2:` and
-/// the hash.
+/// Returns a hash that uses the bits of grains and springs instead of their digits, as `2:` followed by the hash.
+/// Writing the digits takes a hundred times longer.
 #[must_use]
 pub fn scene_hash_by_bits(scene: &Scene, stepping: &Stepping) -> String {
     let of = |bits: &[u8]| blake3::hash(bits).to_hex().to_string();
@@ -28,7 +29,7 @@ pub fn scene_hash_by_bits(scene: &Scene, stepping: &Stepping) -> String {
     format!("{BY_BITS}{}", hash_of(scene, stepping, &grains, springs))
 }
 
-/// Whether a scene and its stepping are those that a hash of either kind tells.
+/// Returns true if a scene and its steps match a hash of either kind.
 #[must_use]
 pub fn is_scene_of(told: &str, scene: &Scene, stepping: &Stepping) -> bool {
     let found = if told.starts_with(BY_BITS) { scene_hash_by_bits } else { scene_hash };
@@ -37,7 +38,7 @@ pub fn is_scene_of(told: &str, scene: &Scene, stepping: &Stepping) -> bool {
 
 const BY_BITS: &str = "2:";
 
-/// The hash of a scene whose grains and springs are told by these texts.
+/// Returns the hash of a scene, given the texts for its grains and springs.
 fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn(&Springs) -> Arc<str>) -> String {
     let mut text =
         format!("{:?} {:?} {:?} {}\n", scene.dimension, scene.grain_shape, scene.gravity, scene.global_damping);
@@ -80,16 +81,18 @@ fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Texts of the last few large lists, by the hash of their bits, which is found a hundred times sooner than a text is written.
-/// The same list is asked for by every variant and every control that begins with it.
+/// Cache with the texts of the last few large lists, by the hash of their bits. The hash takes a hundredth of the
+/// time of the text.
+///
+/// Every variant and every negative control that begins with the same list needs its text.
 struct Known(Mutex<Vec<(blake3::Hash, Lines)>>);
 
-/// The text of a list, which the first who asks for it writes while others wait for this list alone.
+/// Text of a list. The first thread that needs it writes it, and other threads wait for this list only.
 type Lines = Arc<OnceLock<Arc<str>>>;
 
-/// Members of a large list.
+/// Minimum number of entries in a large list.
 const LARGE: usize = 1000;
-/// So many lists are remembered.
+/// Maximum number of cached lists.
 const FEW: usize = 6;
 
 static GRAINS: Known = Known::new();
@@ -100,7 +103,8 @@ impl Known {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// The text of a list of so many members and these bits, which `write` makes where it is not known.
+    /// Returns the text of a list with `members` entries and these bits. If it is not in the cache, `write` creates
+    /// it.
     fn text(&self, members: usize, bits: impl FnOnce() -> Vec<u8>, write: impl FnOnce() -> String) -> Arc<str> {
         if members < LARGE {
             return write().into();
@@ -109,7 +113,7 @@ impl Known {
         Arc::clone(lines.get_or_init(|| write().into()))
     }
 
-    /// Where the text of a list is, or will be.
+    /// Returns the cache entry of a list, which can still be empty.
     fn lines(&self, of: blake3::Hash) -> Lines {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, lines)) = known.iter().find(|(other, _)| *other == of) {
@@ -122,14 +126,14 @@ impl Known {
     }
 }
 
-/// Bytes of the line of a grain, or more.
+/// Upper estimate of the length of a grain's line (B).
 const LINE: usize = 256;
 
-/// The lines of all grains.
+/// Returns the lines of all grains.
 fn lines_of(grains: &Grains) -> Arc<str> {
     let write = || {
         let mut text = Numbers(String::with_capacity(grains.len() * LINE));
-        // Sizes are often those of the grain before.
+        // Sizes are often equal to those of the grain before.
         let (mut sizes, mut before) = (String::new(), None);
         for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
             let now = (material, [radius, mass, inertia].map(|size| size.to_bits()));
@@ -149,7 +153,7 @@ fn lines_of(grains: &Grains) -> Arc<str> {
     GRAINS.text(grains.len(), || grains.bits(), write)
 }
 
-/// The text of springs.
+/// Returns the text of springs.
 fn text_of(springs: &Springs) -> Arc<str> {
     let write = || {
         let Springs { layout, pairs, walls } = springs;
@@ -165,7 +169,8 @@ fn text_of(springs: &Springs) -> Arc<str> {
     SPRINGS.text(springs.pairs.len(), || springs.bits(), write)
 }
 
-/// A text of many numbers in the words of their debug output, whose builders of nested lists take twice as long.
+/// Text of many numbers in the format of their debug output. The standard builders of nested lists take twice as
+/// long.
 struct Numbers(String);
 
 impl Numbers {
