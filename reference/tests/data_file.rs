@@ -1,4 +1,4 @@
-//! Data files, sound and damaged.
+//! Tests with intact and damaged data files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -48,7 +48,7 @@ fn fault(bytes: impl AsRef<[u8]>) -> String {
     shown
 }
 
-/// What the reader says where `from` of the sound file is replaced by `to`.
+/// Returns the error for the intact file in which `from` is replaced by `to`.
 fn damaged(from: &str, to: &str) -> String {
     assert!(SOUND.contains(from));
     fault(SOUND.replacen(from, to, 1))
@@ -102,7 +102,7 @@ fn gzip_is_recognised_by_its_bytes() {
     let (head, tail) = SOUND.split_at(SOUND.len() / 2);
     let both = [gzip(head.as_bytes()), gzip(tail.as_bytes())].concat();
     assert_eq!(parse_data(&both[..], "data").unwrap(), read(SOUND));
-    // One byte at a time, as from a pipe.
+    // Data can arrive one byte at a time, for example from a pipe.
     assert_eq!(parse_data(BufReader::with_capacity(1, &packed[..]), "data").unwrap(), read(SOUND));
 
     let cut = fault(&packed[..packed.len() / 2]);

@@ -1,4 +1,4 @@
-//! Dumps, sound and damaged.
+//! Tests with intact and damaged dumps.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use grainbench_reference::{DumpKind, DumpReader, DumpSnapshot, NotFinite, ReadError};
 
-/// Every snapshot of a dump.
+/// Reads all snapshots of a dump.
 fn all(bytes: &[u8]) -> Result<Vec<DumpSnapshot>, ReadError> {
     let mut reader = DumpReader::new(bytes, "dump")?;
     let mut snapshot = DumpSnapshot::default();
@@ -70,7 +70,8 @@ fn scaled_coordinates_count_from_the_side_of_the_box() {
     assert!((uncertainty - 6e-6).abs() < 1e-12, "{uncertainty}");
 }
 
-/// Tilts .03 and .01, sides .1, .08 and .06 from (0, 0, 0): LAMMPS prints the box around the tilted one.
+/// The tilts are 0.03 and −0.01, and the sides 0.1, 0.08 and 0.06 from (0, 0, 0). LAMMPS prints the box around the
+/// tilted one.
 #[test]
 fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-0.01 0.13 0.03\n0 0.08 -0.01\n\
@@ -80,12 +81,12 @@ fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     assert!((of("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", of("xs", 0));
     assert!((of("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (of("zs", 2) - 0.03).abs() < 1e-15);
     assert_eq!(of("xu", 0), 0.02);
-    // Without the other scaled coordinate nobody can tell.
+    // Without the other scaled coordinate, the coordinate is unknown.
     let text = text.replace("xs ys zs xu", "xs a zs xu");
     assert!(all(text.as_bytes()).unwrap()[0].coordinate_named("xs", 0).is_none());
 }
 
-/// The error of a file that ends in the middle says so; that of a damaged one does not.
+/// The error must distinguish a truncated file from a damaged one.
 #[test]
 fn a_cut_is_told_from_damage() {
     let sound = sound();

@@ -1,4 +1,5 @@
-//! Forces that other programs write down, by hand: whose they are, which way they point, across which face they act.
+//! Forces written by other programs, compared with hand calculations. The tests check the grain on which a force
+//! acts, its direction, and the periodic boundary.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -17,7 +18,8 @@ fn scene(text: &str) -> Scene {
     SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
 }
 
-/// What files of these texts tell of a scene; `names` are pairs of our names of columns and theirs.
+/// Returns the quantities of a scene in files with these texts. `names` are pairs of our column names and those of
+/// the files.
 fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> Observed {
     let directory = tempfile::tempdir().unwrap();
     let file = |(number, text): (usize, &String)| -> PathBuf {
@@ -31,7 +33,7 @@ fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> Observed
     Outputs::survey(sources).unwrap().observe(scene).unwrap()
 }
 
-/// A snapshot of a dump of `what` (`ATOMS`, `ENTRIES`).
+/// Returns a snapshot of a dump of `what` (`ATOMS`, `ENTRIES`).
 fn dump(what: &str, columns: &str, rows: &[&str]) -> String {
     format!(
         "ITEM: TIMESTEP\n0\nITEM: NUMBER OF {what}\n{}\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n-0.5 0.5\n\
@@ -41,7 +43,7 @@ fn dump(what: &str, columns: &str, rows: &[&str]) -> String {
     )
 }
 
-/// The only sample of a column.
+/// Returns the only sample of a column.
 fn value(observed: &Observed, name: &str) -> f64 {
     observed.series.column(name).unwrap()[0]
 }
@@ -50,10 +52,12 @@ fn close(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} for {expected}");
 }
 
-/// Two discs of radius .51 m that meet across the corner of two periodic axes: from a at (.1, .2) to the image of b at
-/// (−.5, −.6) it is 1 m along e = (−.6, −.8), so that they overlap by .02 m. A push of 100 N on a is −100 e = (60, 80) N; 7 N
-/// along t = (e_y, −e_x) = (−.8, .6), clockwise from e, are (−5.6, 4.2) N: together (54.4, 84.2) N on a and the opposite
-/// on b. In the plane the sign of the shear is the same from either side.
+/// Two discs of radius 0.51 m are in contact across the corner of two periodic axes. Disc a is at (0.1, 0.2), the
+/// image of b at (−0.5, −0.6). The distance is 1 m along e = (−0.6, −0.8), so the overlap is 0.02 m.
+///
+/// A normal force of 100 N on a is −100 e = (60, 80) N. A force of 7 N along t = (e_y, −e_x) = (−0.8, 0.6), clockwise
+/// from e, is (−5.6, 4.2) N. The sum on a is (54.4, 84.2) N, and b has the opposite force. In two dimensions the sign
+/// of the shear force is the same from either side.
 #[test]
 fn pair_forces_act_on_the_first_along_the_nearest_image() {
     let scene = scene(
@@ -80,14 +84,16 @@ fn pair_forces_act_on_the_first_along_the_nearest_image() {
         }
         assert!(observed.snapshots[0].contacts.is_none(), "what a probe asks for is not all that there is");
     }
-    // What pulls is negative, as it is written.
+    // An attractive force is negative, and it is not changed.
     let pulled = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 -6 -8"]), grains], &names);
     close(value(&pulled, "ab.normal_force"), -10.0);
 }
 
-/// A disc of radius .5 m that is .01 m deep in a plane with the normal (.6, .8): e = (−.6, −.8) points from the disc to it. A
-/// push of 50 N on the disc is (30, 40) N; 3 N along t = (−.8, .6) are (−2.4, 1.8) N. The plane feels the opposite, and of
-/// all discs together.
+/// A disc of radius 0.5 m has an overlap of 0.01 m with a plane with the normal (0.6, 0.8). e = (−0.6, −0.8) points
+/// from the disc to the plane.
+///
+/// A normal force of 50 N on the disc is (30, 40) N. A force of 3 N along t = (−0.8, 0.6) is (−2.4, 1.8) N. The plane
+/// has the opposite force, summed over all discs.
 #[test]
 fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
     let scene = scene(
@@ -106,8 +112,9 @@ fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
     close(value(&observed, "slope.force_y"), -49.8);
 }
 
-/// A disc of radius .5 m beside the end of a segment: from its centre at (.294, .392) it is .49 m to the end at the origin,
-/// so that they overlap by .01 m along (−.6, −.8). A push of 50 N on the disc is (30, 40) N.
+/// A disc of radius 0.5 m is in contact with the end of a segment. The distance from its centre at (0.294, 0.392) to
+/// the end at the origin is 0.49 m. The overlap is 0.01 m along (−0.6, −0.8). A normal force of 50 N on the disc is
+/// (30, 40) N.
 #[test]
 fn the_end_of_a_segment_is_the_nearest_point() {
     let scene = scene(
@@ -122,8 +129,11 @@ fn the_end_of_a_segment_is_the_nearest_point() {
     close(value(&observed, "c.shear_force"), 0.0);
 }
 
-/// Two spheres in space, 1 m apart along (2, 3, 6)/7 with radii of .51 m: 70 N of push on the first are −(20, 30, 60) N. Of
-/// 5 N along (−6, 0, 2)/√40 the size is told, for in space there is no sign.
+/// Two spheres with radii of 0.51 m in three dimensions are 1 m apart along (2, 3, 6)/7. A normal force of 70 N on
+/// the first is −(20, 30, 60) N.
+///
+/// For a shear force of 5 N along (−6, 0, 2)/√40 only the magnitude is checked, because there is no sign in three
+/// dimensions.
 #[test]
 fn pair_forces_in_space_have_a_push_and_a_size() {
     let (x, y, z) = (2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0);
@@ -141,7 +151,7 @@ fn pair_forces_in_space_have_a_push_and_a_size() {
     close(value(&observed, "c.shear_force"), 5.0);
 }
 
-/// A table has forces as our series have them, and they are taken as they stand, by whatever name.
+/// A table has forces with the signs of our series. They must not be changed, whatever the name of their column.
 #[test]
 fn tables_have_forces_as_series_have_them() {
     let scene = scene(

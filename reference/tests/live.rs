@@ -1,5 +1,5 @@
-//! What becomes of a program that is missing, fails, hangs or writes nonsense. Scripts stand for the programs, so that
-//! none need be installed.
+//! Behaviour when a program is missing, fails, hangs or writes invalid output. Scripts replace the programs, so none
+//! need be installed.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -44,7 +44,7 @@ fn scene() -> Scene {
     SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&|_| Err("no file".to_owned())).unwrap()
 }
 
-/// An executable script in a folder.
+/// Creates an executable script in a folder.
 fn script(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("program");
     fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
@@ -95,7 +95,7 @@ fn a_program_that_leaves_nonsense() {
     assert!(error.ends_with("dump.grains:1: expected a line `ITEM: …`, found `nonsense`"), "{error}");
 }
 
-/// What a program leaves that does its run: three samples, x at the second as given, and a log.
+/// Returns a script for a complete run with three samples and a log. `x` is the position at the second sample.
 fn whole(x: &str, steps: &str) -> String {
     format!(
         "for step in {steps}; do x=$step; [ $step = 1 ] && x={x}; printf \"ITEM: TIMESTEP\\n$step\\nITEM: NUMBER OF ATOMS\\n\
@@ -113,7 +113,7 @@ fn a_program_that_does_its_run() {
     assert!(record.series.column("disc.angle").is_none(), "no dump tells it");
     assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
     assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
-    // What it did not tell is absent, and not zero.
+    // Quantities that the program does not write must be absent and not zero.
     assert_eq!((record.cost.contact_evaluations, record.cost.pair_tests, record.cost.bytes), (None, None, None));
     let last = record.snapshots.last().unwrap();
     assert!(last.contacts.is_none() && last.walls.iter().all(|wall| wall.force.is_none()));
@@ -121,7 +121,7 @@ fn a_program_that_does_its_run() {
     assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
 }
 
-/// What was not seen to its end is not judged, nor what is no number: the program has failed.
+/// An incomplete run and a run with NaN must fail and must not be evaluated.
 #[test]
 fn a_program_that_leaves_less_than_its_run() {
     let said = |text: &str| run(text).unwrap_err().to_string();
@@ -145,7 +145,8 @@ fn a_program_that_fills_the_disk_is_ended() {
     assert!(error.contains("MB for the samples of this scene, found more"), "{error}");
 }
 
-/// Whoever it started ends with it, and it ends with us: the shell that guards it is told by a pipe that closes.
+/// When a program ends, its child processes must end too. The shell that guards it gets the signal through a pipe
+/// that closes.
 #[test]
 fn a_program_ends_with_all_that_it_started() {
     let folder = tempfile::tempdir().unwrap();

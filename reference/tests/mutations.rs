@@ -1,4 +1,4 @@
-//! No damage to a file makes its reader panic, and every refusal names its place on one line.
+//! No damage to a file may cause a panic of its reader. Every error must name its position on one line.
 
 #[path = "common/damage.rs"]
 mod damage;
@@ -7,7 +7,8 @@ use damage::{DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump, well_said};
 use grainbench_reference::{parse_data, parse_log, parse_table};
 use proptest::prelude::*;
 
-/// How many files of each kind: a few hundred, more with `GRAINBENCH_LONG`, or as many as `PROPTEST_CASES` says.
+/// Returns the configuration with the number of files of each kind. It is 500, or 50 000 with `GRAINBENCH_LONG`,
+/// unless `PROPTEST_CASES` is set.
 fn config() -> ProptestConfig {
     let said = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
     let usual = if std::env::var_os("GRAINBENCH_LONG").is_some() { 50_000 } else { 500 };

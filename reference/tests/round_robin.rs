@@ -1,4 +1,4 @@
-//! The round robin of bulk processes: what is derived of tables that a user has, and which are refused.
+//! Round robin of bulk processes: quantities derived from the user's tables, and tables that are refused.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,14 +12,16 @@ fn published(name: &str, text: &str) -> Result<Option<Published>, String> {
     read(&path).map_err(|error| error.to_string())
 }
 
-/// Heights of free flight, held up from 21 ms on: `print` (m) at 22 ms, and `stop` (m) above free flight at the end.
+/// Returns the height of a ball in free flight that decelerates from 21 ms on. It is `print` (m) above free flight at
+/// 22 ms, and `stop` (m) at the end.
 fn course(time: f64, speed: f64, print: f64, stop: f64) -> f64 {
     let flight = 0.06 + speed * time - 0.5 * 9.81 * time * time;
     let met = ((time - 0.021) / 0.001).clamp(0.0, 1.0);
     flight + print * met + (stop - print) * ((time - 0.022) / 0.008).clamp(0.0, 1.0)
 }
 
-/// Four codes on four beds: the last has its beds under numbers one higher and a deep one first; one ball is at rest.
+/// Returns a table of four codes on four beds. In the last code, the numbers of the beds are one higher, and its
+/// first bed is deeper. One ball is at rest.
 fn table() -> String {
     let prints = [1.5e-4, 1.8e-4, 2.1e-4, 2.4e-4];
     let mut lines = "t".to_owned();
@@ -57,7 +59,8 @@ fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
     assert!(has(["C, bed 4: velocity at the start: 0.00 m/s", "expected -5 m/s"]), "{said:#?}");
     assert!(has(["D:", "numbers one higher"]), "{said:#?}");
     assert!(has(["D:", "its bed 1 (held up by 400 µm)"]), "{said:#?}");
-    // 1.5 mm deeper, and half of what its top is higher by: (4.0 - 1.8)/2 · 10⁻¹ mm.
+    // The bed is 1.5 mm deeper. Half of the difference of its fingerprint, (4.0 − 1.8)/2 · 10⁻¹ mm, reduces this to
+    // 1.4 mm.
     assert!(has(["D, bed 1:", "1.4 mm below"]), "{said:#?}");
     assert!(!said.iter().any(|line| line.starts_with("A") || line.starts_with("B")), "{said:#?}");
 }
@@ -75,7 +78,7 @@ fn derives_means_and_deviations() {
     assert!((spread.bed - 0.5 * 3.0e-5 * (5.0_f64 / 3.0).sqrt()).abs() < 1e-7, "{spread:?}");
 }
 
-/// LIGGGHTS' first sample stands half a tenth of a millisecond late, and its ball was let go like the others.
+/// The first sample of LIGGGHTS is about 0.05 ms late, although its ball was released like the others.
 #[test]
 fn a_clock_that_is_ahead_is_no_other_release() {
     let mut text = "t,A_IC1,L_IC1,R_IC1".to_owned();

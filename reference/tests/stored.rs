@@ -1,4 +1,4 @@
-//! The stored runs are what they were, and say so when they are not.
+//! Stored runs must be unchanged, and any change must be reported.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 const ID: &str = "oblique-impact-damped";
 
-/// A copy of a stored run that a test may damage.
+/// Returns a copy of a stored run that a test can damage.
 fn copy() -> TempDir {
     let copy = tempfile::tempdir().unwrap();
     for entry in fs::read_dir(folder(Program::LAMMPS, ID)).unwrap() {
@@ -27,7 +27,7 @@ fn copy() -> TempDir {
     copy
 }
 
-/// Replaces text in a file of the copy and, where `vouch` is set, the file's hash in the provenance with it.
+/// Replaces text in a file of the copy. If `vouch` is set, the hash in the provenance is replaced too.
 fn edit(folder: &Path, name: &str, from: &str, to: &str, vouch: bool) {
     let path = folder.join(name);
     let before = hash_file(&path).unwrap();
@@ -58,7 +58,7 @@ fn fault(folder: &Path) -> String {
     shown.replace(&folder.display().to_string(), "RUN")
 }
 
-/// Every folder of both programs.
+/// The test covers every folder of both programs.
 #[test]
 fn every_run_loads_and_every_file_is_vouched_for() {
     let mut count = 0;

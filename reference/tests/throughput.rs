@@ -1,4 +1,4 @@
-//! How fast a dump is read, and in how much memory. Prints both; `GRAINBENCH_LONG=1` reads a whole gigabyte.
+//! Throughput and memory of the dump reader. Both are printed. `GRAINBENCH_LONG=1` reads a whole gigabyte.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use grainbench_reference::{DumpReader, DumpSnapshot};
 
-/// The same rows again and again, under the steps 0, 1, 2, …
+/// Reader that repeats the same rows at the steps 0, 1, 2, …
 struct Endless {
     rows: String,
     atoms: usize,
@@ -42,7 +42,7 @@ impl Read for Endless {
     }
 }
 
-/// Largest memory of the process so far (MB), where the system says it.
+/// Returns the peak memory of the process so far (MB), if the system reports it.
 fn peak() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
@@ -54,7 +54,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     const ATOMS: usize = 10_000;
     let mut rows = String::new();
     for id in 1..=ATOMS {
-        // An order without order, so that ids have to be sorted.
+        // The ids are shuffled, so they have to be sorted.
         let id = id * 7919 % ATOMS + 1;
         let value = |k: usize| (id as f64 * 0.618_034 + k as f64 * 0.377).sin();
         write!(rows, "{id} 1").unwrap();
@@ -67,7 +67,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     let source = Endless { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
     let mut reader = DumpReader::new(BufReader::new(source), "endless").unwrap();
     let mut snapshot = DumpSnapshot::default();
-    // The first snapshots make room for all others.
+    // The first snapshots allocate the memory for all later ones.
     for _ in 0..3 {
         assert!(reader.read(&mut snapshot).unwrap());
     }

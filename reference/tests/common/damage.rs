@@ -1,12 +1,12 @@
-//! Damage to files, and what a reader owes to whatever it gets.
+//! Damage to files, and requirements on readers for any input.
 
-// Each test uses its part of this.
+// Each test uses only a part of this module.
 #![allow(dead_code, unreachable_pub)]
 
 use grainbench_reference::{DumpReader, DumpSnapshot, ReadError};
 use proptest::prelude::*;
 
-/// A data file as LAMMPS leaves it.
+/// Data file in the format that LAMMPS writes.
 pub(crate) const DATA: &str = "\
 LAMMPS data file via write_data, version 29 Sep 2021, timestep = 30000
 
@@ -30,7 +30,7 @@ Velocities
 3340 0.0010298775089176225 6.716749444959259e-05 0 0 0 0.5
 ";
 
-/// Pieces that mean something to a reader, or to the functions it calls.
+/// Texts that have a meaning for a reader or for the functions that it calls.
 pub(crate) const PIECES: [&str; 32] = [
     "ITEM: ",
     "ITEM: TIMESTEP\n",
@@ -66,7 +66,7 @@ pub(crate) const PIECES: [&str; 32] = [
     "-1 ",
 ];
 
-/// One damage: a place, as a part of the length, and what happens there.
+/// Damage at a position, which is given as a fraction of the length.
 #[derive(Debug, Clone)]
 pub(crate) enum Damage {
     Cut,
@@ -76,7 +76,7 @@ pub(crate) enum Damage {
     Repeat(usize),
 }
 
-/// Some damages by lot, each with its place.
+/// Returns random damages with their positions.
 pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
     let one = prop_oneof![
         1 => Just(Damage::Cut),
@@ -88,7 +88,7 @@ pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
     prop::collection::vec((0.0..1.0, one), 1..5)
 }
 
-/// A text with damages.
+/// Applies damages to a text.
 pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     let mut bytes = text.to_vec();
     for (part, damage) in damages {
@@ -117,7 +117,7 @@ pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     bytes
 }
 
-/// That a refusal names its place, what was expected and what was found, on one line.
+/// Checks that an error contains its position, and the expected and actual content, on one line.
 pub(crate) fn well_said(error: &ReadError) -> Result<(), TestCaseError> {
     let shown = error.to_string();
     prop_assert!(!shown.contains(|character: char| character.is_control()), "{shown:?}");
@@ -134,12 +134,12 @@ pub(crate) const DUMPS: [&str; 5] = [
     include_str!("../data/liggghts-nine.dump"),
     include_str!("../data/liggghts-nine.local"),
 ];
-/// Logs that they wrote.
+/// Logs that the programs wrote.
 pub(crate) const LOGS: [&str; 2] = [include_str!("../data/lammps-two-runs.log"), include_str!("../data/liggghts.log")];
-/// A table that was stored.
+/// Stored table.
 pub(crate) const TABLE: &str = include_str!("../data/series.csv");
 
-/// Reads a dump to its end; the numbers it has shown are finite, and each row is whole.
+/// Reads a dump to the end. Returns true if all numbers are finite and each row is complete.
 pub(crate) fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
     let mut reader = DumpReader::new(bytes, "f")?;
     let mut snapshot = DumpSnapshot::default();

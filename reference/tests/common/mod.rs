@@ -1,8 +1,8 @@
-//! What tests of the readers share.
+//! Common functions for tests of the readers.
 
 use std::path::{Path, PathBuf};
 
-/// A stored file.
+/// Returns the path of a stored file.
 pub(crate) fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
