@@ -34,8 +34,9 @@ impl Spread {
         })
     }
 
-    /// Returns the permitted difference of another code with `own` (m) beds from `published` (n) beds: 2 √(s_code² +
-    /// s_bed² (1/m + 1/n)).
+    /// Returns the permitted difference of another code with `own` (m) beds from `published` (n) beds.
+    ///
+    /// It is 2 √(s_code² + s_bed² (1/m + 1/n)).
     #[must_use]
     pub fn allowed(&self, own: usize, published: usize) -> f64 {
         2.0 * self.deviation(own, published)

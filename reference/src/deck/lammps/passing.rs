@@ -5,8 +5,9 @@
 //!
 //! A piston is a plane that follows an atom. The atom has the mass of the piston and no contacts. The forces on it
 //! are the applied force F, the force of the grains −F_n, and a drag. LAMMPS computes forces with velocities of half
-//! a step before. The velocity v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2) needs the force (F − F_n − M c
-//! v)/(1 + c Δt/2).
+//! a step before. The velocity of the piston after a step is
+//! v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2).
+//! LAMMPS obtains this velocity with the force (F − F_n − M c v)/(1 + c Δt/2).
 
 use grainbench_scene::scene::{Piston, Scene, Wall, WallShape};
 use nalgebra::Vector3;

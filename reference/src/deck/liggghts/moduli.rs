@@ -7,8 +7,8 @@ const RIGID: f64 = 1e40;
 /// Fraction of a compliance that is attributed to rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Contributions of one type to the compliances of its pairs (1/Pa). For the normal modulus, 1/E* = a₁ + a₂ with a =
-/// (1 − ν²)/E. For the shear modulus, 1/G* = b₁ + b₂ with b = 2(2 − ν)(1 + ν)/E.
+/// Contributions of one type to the compliances of its pairs (1/Pa). For the normal modulus, 1/E* = a₁ + a₂ with
+/// a = (1 − ν²)/E. For the shear modulus, 1/G* = b₁ + b₂ with b = 2(2 − ν)(1 + ν)/E.
 #[derive(Clone, Copy)]
 struct Shares {
     normal: f64,
