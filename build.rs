@@ -10,7 +10,7 @@ fn main() {
     println!("cargo::rustc-env=GRAINBENCH_RUSTC={}", words(&rustc, &["--version"]).unwrap_or_else(unknown));
     println!("cargo::rustc-env=GRAINBENCH_COMMIT={}", commit(&root).unwrap_or_else(unknown));
     println!("cargo::rustc-env=GRAINBENCH_BUILD={}", build(Path::new(&root), &rustc));
-    // Whatever can make the tree differ from its commit, and the commit itself.
+    // Inputs that can make the tree differ from its commit, and the commit itself.
     let manifest = fs::read_to_string(Path::new(&root).join("Cargo.toml")).unwrap_or_default();
     for part in ["build.rs", "Cargo.toml", "Cargo.lock", "src"].into_iter().chain(members(&manifest)) {
         println!("cargo::rerun-if-changed={part}");
@@ -22,7 +22,8 @@ fn main() {
     }
 }
 
-/// Hash of what solvers are built with: compiler, its options, and the versions of all crates.
+/// Computes the hash of everything that a build of the solvers depends on: compiler, its options, and versions of all
+/// crates.
 fn build(root: &Path, rustc: &str) -> String {
     let read = |file: &str| fs::read_to_string(root.join(file)).unwrap_or_default();
     let set = |name: &str| env::var(name).unwrap_or_default();
@@ -31,25 +32,25 @@ fn build(root: &Path, rustc: &str) -> String {
     blake3::hash(all.join("\n").as_bytes()).to_hex().to_string()
 }
 
-/// The folders of the workspace's crates but this one, from the line that lists them.
+/// Returns the folders of the workspace's other crates, from the line that lists them.
 fn members(manifest: &str) -> impl Iterator<Item = &str> {
     let line = manifest.lines().find(|line| line.starts_with("members = ")).unwrap_or_default();
     line.split('"').skip(1).step_by(2).filter(|member| *member != ".")
 }
 
-/// The commit, marked when the tree has changes; nothing when the sources are no repository of their own.
+/// Returns the commit, with `+changes` if the tree has changes; `None` if the sources are not the root of a repository.
 fn commit(root: &str) -> Option<String> {
     let top = words("git", &["-C", root, "rev-parse", "--show-toplevel"])?;
     if fs::canonicalize(top).ok()? != fs::canonicalize(root).ok()? {
         return None;
     }
     let commit = words("git", &["-C", root, "rev-parse", "--short", "HEAD"])?;
-    // Without the locks git leaves its index alone, and two builds at once do not disturb each other.
+    // Without optional locks, git does not write its index, and two simultaneous builds do not disturb each other.
     let changes = words("git", &["--no-optional-locks", "-C", root, "status", "--porcelain"])?;
     Some(if changes.is_empty() { commit } else { commit + "+changes" })
 }
 
-/// What a program prints, when it is there and succeeds.
+/// Returns the output of a program; `None` if the program is missing or fails.
 fn words(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())

@@ -1,17 +1,17 @@
-//! What accuracy costs and what stays stable, as it was measured when somebody measured it, and of which sources.
+//! Stored measurements of cost and stability, with the hashes of the solver sources.
 
 pub use grainbench_cases::kept::sources;
 use grainbench_reports::measured::{Costs, Measurements, Stability};
 use grainbench_reports::study::Study;
 use grainbench_studies::kept::{COST, STABILITY};
 
-/// Other people's solvers beside ours in some scenes.
+/// Cost measurements of external solvers and of our solvers in some scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
 
-/// What was measured before.
+/// Reads the stored measurements.
 ///
 /// # Errors
-/// Names the file that is not what was kept.
+/// The error names the file that cannot be read as a study.
 pub fn measured() -> Result<Measurements, String> {
     let read = |name: &str, text: &str| -> Result<Study, String> {
         serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))

@@ -1,4 +1,4 @@
-//! The command line of grainbench.
+//! Command line of grainbench.
 
 mod cli;
 

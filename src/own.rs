@@ -1,4 +1,4 @@
-//! The gates for a solver of one's own, in a few lines:
+//! Tests of an external or new solver against the claims of cases:
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -21,28 +21,28 @@ use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// What was found about a solver: the rows, and for each whether it would have seen wrong physics in this very solver.
+/// Results of a solver, with negative controls that use the same solver.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judgement {
-    /// The rows.
+    /// Results of the claims or conformance properties.
     pub verdicts: Vec<Verdict>,
-    /// Their negative controls. One that stays green tells that the solver does not feel what the row is about: that it
-    /// ignores a value of the scene, say.
+    /// Negative controls of the results. A control that stays green means that the result does not depend on the
+    /// physics in question. For example, the solver ignores a parameter of the scene.
     pub controls: Vec<Control>,
 }
 
-/// Why a solver cannot be judged by a case.
+/// Reasons why a case cannot test a solver.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotJudged {
-    /// There is no such case.
+    /// The case does not exist.
     #[error("there is no case `{0}`; there are {known}", known = names())]
     NoSuchCase(String),
-    /// The gates of the case judge the solvers that they name and nothing else.
+    /// The case has no solver-independent claim.
     #[error("the case `{0}` has no gate that is fair to any solver: all judge a convention of the solvers they name")]
     NothingFair(String),
 }
 
-/// A solver that did not pass; it prints the lines that say why, also where only `Debug` is asked for, as tests do.
+/// Error of a solver that failed. `Debug` prints the same lines as `Display`, so that failed tests show them too.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Refused {
     lines: Vec<String>,
@@ -66,11 +66,14 @@ fn names() -> String {
     registry::CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Puts a solver in the place of those that the gates of some cases name. Only gates that are fair to any solver judge
-/// it. It is given their resolutions, fractions of the critical step of a spring contact, to be read as it sees fit.
+/// Tests a solver with the solver-independent claims of some cases. The solver replaces the solvers that the claims
+/// name.
+///
+/// It receives the resolutions of the claims, as fractions of the critical time step of a spring contact, and may
+/// interpret them.
 ///
 /// # Errors
-/// When a case does not exist or has no such gate.
+/// When a case does not exist or has no solver-independent claim.
 pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement, NotJudged> {
     let solver: Arc<dyn Solver> = Arc::new(solver);
     let solvers: Arc<dyn Solvers> = Arc::new(Registry);
@@ -96,7 +99,8 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
     Ok(judgement)
 }
 
-/// The properties that any solver owes: conservation, symmetries, free flight, order, determinism.
+/// Tests the conformance properties that every solver must satisfy: conservation, symmetries, free flight, order,
+/// determinism.
 #[must_use]
 pub fn conform(solver: &dyn Solver, terms: &Terms) -> Judgement {
     let (verdicts, controls) = conformance::judge(solver, terms);
@@ -104,7 +108,7 @@ pub fn conform(solver: &dyn Solver, terms: &Terms) -> Judgement {
 }
 
 impl Judgement {
-    /// A line for every row that failed or broke, and for every control that stayed green.
+    /// Returns one line for each failed result and each control that stayed green.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let failed = |row: &&Verdict| row.outcome.is_red();
@@ -112,10 +116,10 @@ impl Judgement {
         rows.chain(self.controls.iter().filter(|control| !control.turned_red).map(line::control)).collect()
     }
 
-    /// The judgement, if nothing failed and something passed.
+    /// Returns the judgement if nothing failed and at least one result passed.
     ///
     /// # Errors
-    /// With the lines of [`Judgement::failures`], or with every row where none is green.
+    /// With the lines of [`Judgement::failures`], or with all results if none is green.
     pub fn require(self) -> Result<Self, Refused> {
         let mut lines = self.failures();
         if lines.is_empty() && self.verdicts.iter().all(|row| row.outcome != Outcome::Pass) {
@@ -126,7 +130,7 @@ impl Judgement {
     }
 }
 
-/// A line a row, its outcome first.
+/// One line per result, with its outcome first.
 impl fmt::Display for Judgement {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         for row in &self.verdicts {

@@ -1,8 +1,8 @@
-//! Programs of `peers/`, as they were judged when somebody ran them.
+//! Stored results of the external solvers in `peers/`.
 
 use grainbench_reports::judged::Judged;
 
-/// What is kept of each, by its folder.
+/// Stored results by the directory of the solver.
 pub const KEPT: [(&str, &str); 5] = [
     ("yade", include_str!("../peers/yade/judged.json")),
     ("kratos-dem", include_str!("../peers/kratos-dem/judged.json")),
@@ -11,10 +11,10 @@ pub const KEPT: [(&str, &str); 5] = [
     ("kratos-mpm", include_str!("../peers/kratos-mpm/judged.json")),
 ];
 
-/// The programs that were judged before.
+/// Reads the stored results.
 ///
 /// # Errors
-/// Names the file that is not what was kept.
+/// The error names the file that cannot be read as stored results.
 pub fn kept() -> Result<Vec<Judged>, String> {
     let read =
         |(name, text): (&str, &str)| Judged::read(text).map_err(|error| format!("peers/{name}/judged.json: {error}"));

@@ -1,4 +1,4 @@
-//! Runs that go on where they were ended: each leaves a checkpoint every so many steps, and begins with the one that it finds.
+//! Runs that can be interrupted and continued from periodic checkpoints.
 
 use crate::reports::write_file;
 use crate::scene::brief::Brief;
@@ -8,20 +8,23 @@ use crate::scene::scene::Scene;
 use crate::scene::solver::{Ahead, NotStored, Resolution, RunError, Solver, Watch};
 use std::path::Path;
 
-/// Where a run leaves its checkpoints, each in the place of the one before.
+/// File for checkpoints; each checkpoint replaces the previous one.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
-    /// The file.
+    /// Path of the file.
     pub path: &'a Path,
-    /// Steps from one checkpoint to the next.
+    /// Number of steps between checkpoints.
     pub every: u64,
 }
 
-/// Runs a scene, or goes on with it from a checkpoint that the same run left, here or by `simulate --checkpoint`. The record is
-/// that of the whole run in every bit but its time, which is no number where a part of it was done elsewhere.
+/// Runs a scene from its start or from a checkpoint of the same run, which this function or `simulate --checkpoint`
+/// wrote.
+///
+/// The record equals that of an uninterrupted run in every bit except the run time. The run time is NaN if `simulate`
+/// wrote the checkpoint.
 ///
 /// # Errors
-/// As of the solver; and when the checkpoint is of another run.
+/// When the solver returns an error, or when the checkpoint belongs to another run.
 pub fn run(
     solver: &dyn Solver,
     scene: &Scene,
@@ -40,19 +43,19 @@ pub fn run(
     Ok(record)
 }
 
-/// What the text before the time that a run has taken so far (s) is in its checkpoints.
+/// Prefix of the elapsed time (s) in the output section of a checkpoint.
 const TAKEN: &str = "taken ";
 
-/// The time that a run took before a checkpoint (s), where it was left here.
+/// Returns the elapsed time at a checkpoint (s); `None` if another command wrote the checkpoint.
 fn seconds(checkpoint: &Checkpoint) -> Option<f64> {
     std::str::from_utf8(checkpoint.output()).ok()?.strip_prefix(TAKEN)?.parse().ok()
 }
 
-/// Stores checkpoints, and hands all else on.
+/// Observer that stores checkpoints and forwards all other calls.
 struct Resumable<'a> {
     watch: &'a mut dyn Watch,
     place: Place<'a>,
-    /// Time that the run took before (s).
+    /// Run time before the checkpoint (s).
     before: f64,
     begun: std::time::Instant,
 }

@@ -1,4 +1,4 @@
-//! Whether a program that is installed still gives a stored run.
+//! Comparison of a stored run with a new run of the installed program.
 
 use grainbench_cases::stored::Reference;
 use grainbench_harness::evidence::Evidence;
@@ -12,12 +12,12 @@ use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
 use grainbench_scene::solver::{RunError, Solver};
 
-/// How far a rerun may be off for as long as it can be predicted, in units of what moves: a thousand times what one
-/// unit in the last place of one position has grown to by then, for another build and processor round every sum
-/// otherwise.
+/// Largest |difference| of a rerun while the run is predictable, in units of the column's extent. A rounding error of
+/// one unit in the last place of one position grows to a thousandth of it. Other builds and processors round every sum
+/// differently.
 pub const ALLOWED: f64 = 1e-6;
 
-/// Reruns a stored run: a row for as long as it can be predicted, and one for what comes after.
+/// Repeats a stored run and compares both: point by point while the run is predictable, and by means after it.
 ///
 /// # Errors
 /// When the scene of the case is wrong.
@@ -39,7 +39,7 @@ pub fn verify(of: &Reference) -> Result<Vec<Verdict>, SceneError> {
     let ended = |error: &RunError| vec![row.clone().ended(error)];
     let stored = match StoredRun::load(&directory) {
         Ok(stored) => stored,
-        // A damaged file is a failure of ours, not of the program.
+        // A damaged file is an error of this project, not of the program.
         Err(error) => {
             return Ok(vec![row.left(Outcome::Fail, unusable(of.program, &error).to_string())]);
         }
@@ -72,7 +72,7 @@ pub fn verify(of: &Reference) -> Result<Vec<Verdict>, SceneError> {
     Ok(verdicts)
 }
 
-/// What is not a number is worse than anything else.
+/// Returns the magnitude of a difference; NaN counts as infinite.
 fn weight(drift: &Drift) -> f64 {
     if drift.error().is_nan() { f64::INFINITY } else { drift.error().abs() }
 }
@@ -91,7 +91,8 @@ fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
     row.judged(&found)
 }
 
-/// Means over what cannot be predicted: of sums over all grains, for single grains have none.
+/// Compares means over the unpredictable part of a run. Only sums over all grains are compared, because single grains
+/// have no reproducible mean.
 fn statistics(row: &Verdict, before: &Series, rerun: &Series, last: u64) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
     let places: Vec<usize> = (0..before.step.len()).filter(|&at| before.step[at] > last).collect();

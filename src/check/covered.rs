@@ -1,4 +1,4 @@
-//! How much of the run some outputs cover: what was not seen to its end is not judged.
+//! Part of a run that the output covers. Claims about the whole run need output to its end.
 
 use super::at;
 use grainbench_harness::evidence::Evidence;
@@ -11,13 +11,14 @@ use grainbench_reports::number;
 use grainbench_scene::record::Series;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 
-/// Part of the run that a time printed with few digits may be short of its end.
+/// Accepted distance of the last sample from the end, as a fraction of the run, because times are printed with few
+/// digits.
 const PRINTED: f64 = 1e-6;
 
-/// Longest time between samples, as a part of the run. Coarser samples hide an excursion of a tenth of the run.
+/// Longest time between samples, as a fraction of the run. Coarser samples can hide an excursion of a tenth of the run.
 const PART: f64 = 0.1;
 
-/// A time between two samples that follow each other (s).
+/// Interval between two consecutive samples (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Gap {
     from: f64,
@@ -25,7 +26,7 @@ struct Gap {
 }
 
 impl Gap {
-    /// The longest of some times of samples (s); the run starts at time 0.
+    /// Returns the longest interval between some sample times (s). The run starts at time 0.
     fn longest(times: impl Iterator<Item = f64>) -> Self {
         let (mut longest, mut from) = (Self { from: 0.0, to: 0.0 }, 0.0);
         for to in times {
@@ -42,34 +43,34 @@ impl Gap {
     }
 }
 
-/// How far outputs reach into the run of a scene.
+/// Coverage of a scene's run by the output.
 #[derive(Clone, Copy)]
 pub(super) struct Covered {
     /// Time of the last sample (s).
     pub(super) reached: f64,
-    /// Time of the run (s); none where it is a number of cycles of unknown length.
+    /// Duration of the run (s); `None` if it is a number of cycles of unknown length.
     whole: Option<f64>,
-    /// Most that the last sample may be short of the end (s).
+    /// Accepted time from the last sample to the end (s).
     slack: f64,
     samples: usize,
-    /// Longest time between samples that results can be judged with (s): the sampling interval of the scene, or a tenth of the
-    /// run where that is longer. None where the time of the run is not known.
+    /// Longest interval between samples that a result may depend on (s): the larger of the scene's sampling interval
+    /// and a tenth of the run. `None` if the duration of the run is unknown.
     most: Option<f64>,
-    /// Longest time between samples.
+    /// Longest interval between samples.
     gap: Gap,
-    /// Outputs that cover a part of the run are meant.
+    /// True if the output may cover only a part of the run.
     partial: bool,
 }
 
 impl Covered {
-    /// Of outputs with a time step (s), where that is known. Samples after the end of the scene are taken away: it says
-    /// nothing of them.
+    /// Computes the coverage from the time step of the output (s), if it is known. Removes samples after the end of the
+    /// scene, because the scene does not define them.
     pub(super) fn of(scene: &Scene, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
         let whole = match scene.duration {
             Duration::Seconds(seconds) => Some(seconds),
             Duration::Cycles(cycles) => step.map(|step| step * cycles as f64),
         };
-        // A step that was told wrongly must not make an end of anything.
+        // A wrongly reported time step must not make an early sample count as the end.
         let most = 0.01 * whole.unwrap_or_default();
         let slack = (0.5 * step.unwrap_or_default()).min(most) + PRINTED * whole.unwrap_or_default();
         if let Some(whole) = whole {
@@ -80,7 +81,7 @@ impl Covered {
             Sampling::Cycles(cycles) => step.map_or(0.0, |step| step * cycles as f64),
             Sampling::Count(count) => whole / count.max(1) as f64,
         };
-        // Samples are at whole steps.
+        // Samples lie at whole steps.
         let rounding = step.unwrap_or_default().min(most) + PRINTED * whole.unwrap_or_default();
         let most = whole.map(|whole| interval(whole).max(PART * whole) + rounding);
         let time = &observed.series.time;
@@ -89,24 +90,24 @@ impl Covered {
         Self { reached, whole, slack, samples: time.len(), most, gap, partial }
     }
 
-    /// The same of a part of the samples.
+    /// Returns the coverage by a part of the samples.
     pub(super) fn by(self, observed: &Observed) -> Self {
         let time = &observed.series.time;
         Self { reached: time.last().copied().unwrap_or_default(), samples: time.len(), ..self }
     }
 
-    /// Whether the end was seen.
+    /// Returns true if the output reaches the end of the run.
     pub(super) fn is_whole(&self) -> bool {
         self.whole.is_some_and(|whole| self.reached >= whole - self.slack)
     }
 
-    /// What a row says of the samples that it judged.
+    /// Returns the number of samples of a comparison, and its end if the output stops early, in words.
     pub(super) fn words(&self) -> String {
         let samples = format!("worst of {} samples", self.samples);
         if self.is_whole() { samples } else { format!("{samples} to t = {} s", number::significant(self.reached, 6)) }
     }
 
-    /// Why a claim of the whole run is not judged; none where all of it was seen.
+    /// Returns the reason why claims about the whole run have no result; `None` if the output covers the whole run.
     pub(super) fn why_not(&self) -> Option<String> {
         let short = || match self.whole {
             Some(whole) => format!("{} s of {} s", number::significant(self.reached, 6), number::significant(whole, 6)),
@@ -115,8 +116,9 @@ impl Covered {
         (!self.is_whole()).then(|| format!("the files show {}", short()))
     }
 
-    /// A series with a sample in the middle of the longest time between samples, whose values are off by a part of the largest
-    /// value of each column; none where samples are dense enough.
+    /// Returns the series with a wrong sample in the middle of the longest interval between samples. The values are
+    /// wrong by `part` times the sum of 1 and the largest magnitude of the column. Returns `None` if the samples are
+    /// dense enough.
     pub(super) fn with_wrong_sample(&self, series: &Series, part: f64) -> Option<Series> {
         self.most.filter(|most| self.gap.length() > *most)?;
         let mut series = series.clone();
@@ -133,8 +135,8 @@ impl Covered {
         Some(series)
     }
 
-    /// The row of a result that needs samples all over the run, with the time between samples that it can be judged with: red
-    /// where samples lie farther apart, amber where that is meant.
+    /// Adds the longest accepted interval between samples to a result that needs samples of the whole run. The result
+    /// is red if samples lie farther apart, and amber if the output is declared partial.
     pub(super) fn dense(&self, row: Verdict) -> Verdict {
         let (Some(most), true) = (self.most, row.value.is_some()) else { return row };
         let [limit, length, from] = [most, self.gap.length(), self.gap.from].map(|time| number::significant(time, 6));
@@ -150,7 +152,7 @@ impl Covered {
         row.left(Outcome::Fail, format!("{found}; --partial judges what is there"))
     }
 
-    /// The row of a comparison at some times of the samples (s): amber where those lie too far apart.
+    /// Checks the interval between the sample times of a comparison (s): the result is amber if they lie too far apart.
     pub(super) fn dense_in(&self, times: impl Iterator<Item = f64>, row: Verdict) -> Verdict {
         let row = self.dense(row);
         let gap = Gap::longest(times);
@@ -164,7 +166,8 @@ impl Covered {
         )
     }
 
-    /// The row that says it: red where less than the whole was seen, amber where that is meant.
+    /// Returns the result for the coverage itself. It is red if the output ends early, and amber if the output is
+    /// declared partial.
     pub(super) fn row(&self, outputs: &Outputs, row: Verdict) -> Verdict {
         let row = Verdict {
             evidence: Evidence::Invariant,

@@ -1,4 +1,4 @@
-//! Against the exact answers of a case's gates.
+//! Comparison of output with the exact solutions of a case.
 
 use super::covered::Covered;
 use super::{Candidate, judged};
@@ -11,7 +11,8 @@ use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
-/// A claim of the case, its tolerance widened by what the printed digits may have moved the quantity.
+/// Evaluates a claim of the case. The tolerance is widened by the change of the quantity due to rounding of the printed
+/// digits.
 pub(super) fn exact(
     claim: &Claim,
     candidate: &Candidate,
@@ -51,7 +52,7 @@ pub(super) fn exact(
         }
     }
     let row = judged(row, open, outputs, &found);
-    // A result that wrong values in the longest time without samples do not change needs no sample there.
+    // If wrong values in the longest interval do not change the result, it needs no sample there.
     let is_same = |part: f64| {
         let wrong = covered.with_wrong_sample(&observed.series, part).map(&measured);
         wrong.is_none_or(|wrong| wrong.is_ok_and(|wrong| wrong.error().to_bits() == found.error().to_bits()))

@@ -1,11 +1,11 @@
-//! Pictures of what was observed beside our runs.
+//! Figures of the output and of our runs.
 
 use super::ours::is_compared;
 use grainbench_harness::compare::peers::{Peer, together};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_reference::observer::Observed;
 
-/// The first moving columns: what was observed, and our runs.
+/// Plots the first columns that change: the output and our runs.
 pub(super) fn figures(ours: &[Peer], file: &str, observed: &Observed) -> Vec<Figure> {
     const MOST: usize = 4;
     const MARKERS: usize = 40;

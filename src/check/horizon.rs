@@ -1,4 +1,4 @@
-//! The time up to which a run can be predicted, and what is judged after it: means over time of all grains together.
+//! Predictability horizon of a run, and comparison after it by means over time of quantities of the whole system.
 
 use super::ours::{Plan, is_compared};
 use grainbench_dem::convention::Convention;
@@ -12,11 +12,12 @@ use grainbench_reports::number;
 use grainbench_scene::perturbed::{PARTED, move_one};
 use grainbench_scene::scene::{ProbeTarget, Scene};
 
-/// Largest difference of two means, in units of half its 99 % confidence interval: several columns are judged at once.
+/// Largest difference of two means, in units of half its 99 % confidence interval, because several columns are compared
+/// at once.
 const INTERVALS: f64 = 2.0;
 
-/// Finds the last time (s) at which our run and one with a position moved by one unit in the last place are together; none where
-/// they are to the end.
+/// Returns the last time (s) at which our run and a perturbed run agree; `None` if they agree to the end. In the
+/// perturbed run, one position is moved by one unit in the last place.
 pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f64>, String> {
     let Some(ours) = ours.first().filter(|_| scene.grains.len() > 1) else { return Ok(None) };
     let mut perturbed = scene.clone();
@@ -33,7 +34,7 @@ pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f
     Ok(first.and_then(|first| ours.series.time.get(first.saturating_sub(1)).copied()))
 }
 
-/// Returns rows of means after the horizon (s): of columns that are of no single grain or contact.
+/// Compares means after the horizon (s), for columns of the whole system and of walls.
 pub(super) fn beyond(
     scene: &Scene,
     ours: &[Peer],
@@ -62,7 +63,7 @@ pub(super) fn beyond(
     rows.collect()
 }
 
-/// The row of a mean; amber where the interval is wide, or the samples are few.
+/// Evaluates a mean. The result is amber if the interval is wide or the samples are few.
 fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     let Some(means) = difference(expected, found, BLOCKS) else {
         let reason = format!("fewer than {BLOCKS} samples lie after the horizon");
@@ -80,7 +81,7 @@ fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     row
 }
 
-/// Returns whether a column is compared and is of all grains together or of a wall.
+/// Returns true if a column is compared and belongs to the whole system or to a wall.
 fn is_of_all(scene: &Scene, name: &str) -> bool {
     let probe = name.rsplit_once('.').and_then(|(probe, _)| scene.probes.iter().find(|other| other.name == probe));
     let is_of_all = |target: ProbeTarget| matches!(target, ProbeTarget::System | ProbeTarget::Wall(_));

@@ -1,5 +1,5 @@
-//! Judging what any program left of a case: by the exact answers of the case's gates, by what our solvers make of the
-//! same scene, and by the stored runs of other programs.
+//! Checks the output of any program for a case: against exact solutions of its claims, our solvers, and stored runs of
+//! other programs.
 
 mod covered;
 mod exact;
@@ -35,7 +35,7 @@ use std::sync::Arc;
 use subject::Candidate;
 use thiserror::Error;
 
-/// Why outputs cannot be judged.
+/// Reasons why output cannot be checked.
 #[derive(Debug, Error)]
 pub enum NotChecked {
     /// The files are damaged or lack something.
@@ -44,14 +44,14 @@ pub enum NotChecked {
     /// The case's scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Several variants start as they do.
+    /// The output matches the start of several variants.
     #[error("{file}: expected the name of a variant, for several of {case} start so; found none of {variants}")]
     Ambiguous {
-        /// The files.
+        /// Files of the output.
         file: String,
-        /// The case.
+        /// Name of the case.
         case: String,
-        /// The variants that start so.
+        /// Names of the matching variants.
         variants: String,
     },
     /// The time step is above the critical one.
@@ -61,47 +61,48 @@ pub enum NotChecked {
         .step / .critical
     )]
     Unstable {
-        /// The files.
+        /// Files of the output.
         file: String,
         /// Critical time step (s).
         critical: f64,
         /// Longest time step of the files (s).
         step: f64,
     },
-    /// They are of another scene.
+    /// The output belongs to another scene.
     #[error("{file}: expected the start of a scene of {case}, {expected}; found {found}")]
     OtherScene {
-        /// The files.
+        /// Files of the output.
         file: String,
-        /// The case, with its variant.
+        /// Name of the case, with its variant.
         case: String,
-        /// Where the first grain that differs should be.
+        /// Expected position of the first grain that differs.
         expected: String,
-        /// Where it is.
+        /// Its position in the output.
         found: String,
     },
 }
 
-/// What of outputs is judged, and how.
+/// Options of a check.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// Outputs that end before the run does, or have few samples, are meant.
+    /// True if the output may end early or have few samples.
     pub partial: bool,
-    /// Takes time steps above the critical one.
+    /// True if time steps above the critical one are accepted.
     pub allow_unstable: bool,
-    /// How far the power of the check is looked for.
+    /// Extent of the search for the power of the check.
     pub power: Power,
 }
 
-/// How far a start may be off, in radii, beside the printed digits.
+/// Accepted distance from the starting position beyond the printed digits, in grain radii.
 const START: f64 = 1e-9;
-/// Judges outputs of a case's scene, of one variant or of whichever they start as, or of a scene of the user's own.
+/// Checks output against a case or a scene of the user. For a case without a named variant, the first sample selects
+/// the variant.
 ///
-/// Where they do not reach the end of the run, a row of its own is red, or amber where `partial` says that a part is
-/// meant, and claims of the whole run are not judged.
+/// If the output does not reach the end of the run, claims about the whole run have no result. The result for the
+/// coverage is then red, or amber with `partial`.
 ///
 /// # Errors
-/// When the files cannot be read, start as no scene of the case does, or have a time step above the critical one.
+/// When the files cannot be read, start unlike every scene of the case, or have a time step above the critical one.
 pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Result<Section, NotChecked> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, Observed)> = Vec::new();
@@ -109,7 +110,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
         let observed = outputs.observe(&candidate.scene);
         let observed = match (observed, &first_miss) {
             (Ok(observed), _) => observed,
-            // Another variant may have another number of grains; the first one is what is told.
+            // Other variants may have other numbers of grains; only the first error is reported.
             (Err(error), None) => {
                 first_miss = Some(NotChecked::Output(error));
                 continue;
@@ -131,7 +132,8 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
         let variants = variants.join(", ");
         return Err(NotChecked::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
-    // Few printed digits allow several starts of a variant: the nearest one counts, and the first of those that are as near.
+    // With few printed digits, several scenes of a variant can match. The nearest scene counts, and the first of
+    // equally near ones.
     let starts = matching.len();
     let distance = |(candidate, observed): &(Candidate, Observed)| distance(&candidate.scene, observed);
     matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -154,20 +156,20 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
     }))
 }
 
-/// A coordinate of a grain in the first sample.
+/// Coordinate of a grain in the first sample.
 struct Start<'o> {
     name: &'o str,
     /// Coordinate in the scene (m).
     expected: f64,
     /// Coordinate in the sample (m).
     found: f64,
-    /// What the printed digits leave open (m).
+    /// Uncertainty of the sample due to its printed digits (m).
     open: f64,
     /// Radius of the grain (m).
     radius: f64,
 }
 
-/// The coordinates of grains in the first sample.
+/// Returns the coordinates of grains in the first sample.
 fn starts<'o>(scene: &'o Scene, observed: &'o Observed) -> impl Iterator<Item = Start<'o>> {
     observed.series.columns.iter().enumerate().filter_map(|(at, column)| {
         let (probe, quantity) = column.name.rsplit_once('.')?;
@@ -180,12 +182,12 @@ fn starts<'o>(scene: &'o Scene, observed: &'o Observed) -> impl Iterator<Item = 
     })
 }
 
-/// Largest distance of a coordinate from the start of a scene, in radii.
+/// Returns the largest distance of a coordinate from the start of a scene, in grain radii.
 fn distance(scene: &Scene, observed: &Observed) -> f64 {
     starts(scene, observed).map(|start| (start.found - start.expected).abs() / start.radius).fold(0.0, f64::max)
 }
 
-/// Where the first grain that does not start as in the scene should be, and where it is.
+/// Returns the expected and the found position of the first grain that does not start as in the scene.
 fn misplaced(scene: &Scene, outputs: &Outputs, observed: &Observed) -> Option<(String, String)> {
     let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
     let mut is_placed = false;
@@ -196,17 +198,17 @@ fn misplaced(scene: &Scene, outputs: &Outputs, observed: &Observed) -> Option<(S
         }
         is_placed = true;
     }
-    // Only a sample that is seen to be the start of the scene can count as time 0.
+    // A first sample counts as time 0 only if it shows the start of the scene.
     late.filter(|_| !is_placed).map(|late| ("at time 0".to_owned(), late))
 }
 
-/// Step and time of a first sample, in words.
+/// Returns step and time of a first sample, in words.
 fn at(origin: Origin) -> String {
     let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
     format!("step {}{time}", origin.step)
 }
 
-/// Refuses time steps above the critical one of a scene: our own solvers would not hold.
+/// Rejects time steps above the critical one, because our own solvers would be unstable.
 fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), NotChecked> {
     let critical = scene.critical_time_step();
     match outputs.time_step() {
@@ -290,7 +292,7 @@ fn section(
 struct OfOurs {
     plan: Plan,
     peers: Vec<Peer>,
-    /// Time (s) up to which the run can be predicted; none where that is its end.
+    /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
     horizon: Option<f64>,
 }
 
@@ -313,7 +315,8 @@ fn against_ours(scene: &Scene, plan: Plan) -> Result<OfOurs, String> {
     Ok(OfOurs { plan, peers, horizon })
 }
 
-/// The rows against our runs: sample by sample up to the horizon, by means after it, and what they could not have seen.
+/// Compares the output with our runs: sample by sample up to the horizon, and by means after it. Adds the power of the
+/// check.
 fn rows_of_ours(made: &Made<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
     let mut rows = made.compare(made.observed, row);
     if rows.is_empty() {
@@ -329,26 +332,26 @@ fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, reason: String) -> Verdi
     row.left(Outcome::NoReference, reason)
 }
 
-/// The row of what was found, its tolerance widened by what the printed digits leave open. One that allows more than a
-/// twentieth of its scale is never green.
+/// Evaluates a measured value, with the tolerance widened by the uncertainty of the printed digits. A tolerance above a
+/// twentieth of the scale never gives a green result.
 fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measured) -> Verdict {
     widened(row, open, outputs).judged(found).unless_wider_than(WIDE)
 }
 
-/// What a column may be off by beside the digits.
+/// Allowed error of a column, without the uncertainty of its digits.
 struct Beside {
-    /// In any case, as a part of the scale.
+    /// Constant part, as a fraction of the scale.
     floor: f64,
-    /// How many times the change by half the time step.
+    /// Factor for the change from halving the time step.
     times: f64,
-    /// What differs between the runs, in words.
+    /// Name of the runs that differ from each other, in words.
     conventions: &'static str,
 }
 
-/// Part of the samples that may allow too much for the others to speak for a column.
+/// Largest fraction of samples that may allow too large an error if the other samples decide the result of a column.
 const FEW: f64 = 0.1;
 
-/// The row of a column that is judged at each sample by what its runs leave open around that time.
+/// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.
 fn judged_in_time(row: Verdict, of: &Compared<'_>, beside: &Beside, outputs: &Outputs) -> Verdict {
     let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
     let Some(decisive) = of.decisive(|sample| allowed(sample) + of.open) else {
@@ -385,10 +388,10 @@ fn judged_in_time(row: Verdict, of: &Compared<'_>, beside: &Beside, outputs: &Ou
     }
 }
 
-/// The row with its tolerance widened by what the printed digits leave open.
+/// Widens the tolerance by the uncertainty of the printed digits.
 fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
     row.allowed += open;
-    // Below a thousandth of the tolerance nobody need know.
+    // A widening below a thousandth of the tolerance is not reported.
     if open > 1e-3 * row.allowed {
         let digits = outputs.significant_digits();
         let words = format!("; widened by {} for the digits printed, {digits} at most", number::fraction(open));

@@ -1,4 +1,4 @@
-//! Against what our solvers make of the same scene.
+//! Comparison of output with our solvers on the same scene.
 
 use super::Beside;
 use super::covered::Covered;
@@ -17,26 +17,27 @@ use grainbench_scene::solver::Solver;
 /// Our conventions, the default one first.
 const CONVENTIONS: [Convention; 4] =
     [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS];
-/// What our solvers owe each other beside what is measured: a millionth of the scale.
+/// Allowed difference beyond the measured ones: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
-/// Most particle-steps that one of our solvers is run for: about half an hour.
+/// Largest number of particle-steps for one run of our solvers: about half an hour.
 const MOST_WORK: f64 = 2e10;
-/// Most values of our runs that are compared.
+/// Largest number of samples of our runs.
 const MOST_SAMPLES: u64 = 2_000_000;
 
-/// How our solvers follow the samples of some outputs.
+/// Time steps of our runs, which reproduce the sample times of the output.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     /// Time step (s).
     pub(super) step: f64,
-    /// Steps to the last sample, and between samples.
+    /// Number of steps to the last sample, and greatest common divisor of the steps of all samples.
     counts: [u64; 2],
-    /// Steps of the finer run for each step: two, or as many as reach the shortest step of the outputs.
+    /// Steps of the finer run per step: two, or more if the shortest step of the output requires it.
     parts: u64,
 }
 
 impl Plan {
-    /// Finds the time step of which all times of the samples are multiples: the longest of the outputs (s), or the shortest.
+    /// Returns a plan whose time step divides all sample times: the longest time step of the output (s), or else the
+    /// shortest.
     pub(super) fn new(observed: &Observed, [shortest, longest]: [f64; 2]) -> Result<Self, String> {
         let times = &observed.series.time;
         if !times.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -66,7 +67,7 @@ impl Plan {
         CONVENTIONS.len() as u64 + self.parts
     }
 
-    /// Runs a scene with a convention, with so many steps for each one.
+    /// Runs a scene with a contact convention, and divides each step into `parts` steps.
     pub(super) fn run(&self, scene: &Scene, convention: Convention, parts: u64) -> Result<Record, String> {
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let (scene, resolution) = refined(&scene, self.step, self.counts, parts);
@@ -74,7 +75,7 @@ impl Plan {
     }
 }
 
-/// Runs our conventions on a scene over the time of some outputs, one of them with finer time steps too.
+/// Runs a scene with each of our contact conventions over the time of the output, and once more with finer time steps.
 pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {
@@ -92,7 +93,7 @@ fn common_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
-/// Columns that are compared: of the motion, the kinetic energy, and the forces of contacts and walls.
+/// Returns true if a column is compared: motion, kinetic energy, and forces of contacts and walls.
 pub(super) fn is_compared(name: &str) -> bool {
     let quantity = name.rsplit_once('.').map_or(name, |(_, quantity)| quantity);
     ["x", "y", "z", "vx", "vy", "vz", "kinetic_energy", "normal_force", "shear_force"].contains(&quantity)
@@ -100,8 +101,8 @@ pub(super) fn is_compared(name: &str) -> bool {
         || quantity.starts_with("force_")
 }
 
-/// A row a column: against the convention that is nearest as a whole, within what the conventions and half the time
-/// step leave open.
+/// Compares each column with the contact convention that is nearest to all columns. The tolerance contains the
+/// difference between conventions and the change from halving the time step.
 pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],
@@ -113,9 +114,9 @@ pub(super) fn compare(
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     let mass: f64 = scene.grains.iter().map(|grain| grain.mass).sum();
     let end = observed.series.time.last().copied().unwrap_or_default();
-    // What hardly moves or turns is not judged by its rounding: a way of a millionth of the radius, the speed that
-    // leads there, that speed at the rim. Grains at rest have no energy that others could be measured by: a thousandth
-    // of the speed is rest.
+    // Grains at rest must not be compared by their rounding. The smallest displacement scale is therefore a millionth
+    // of the radius. The smallest speed is that displacement over the run time, and the smallest angular velocity has
+    // that speed at the rim. The smallest energy is that of all grains at a thousandth of the speed scale.
     let scale = |extent: &dyn Fn(&str) -> f64, unit: &str| {
         let way = extent("m").max(1e-6 * radius);
         let speed = if end > 0.0 { extent("m/s").max(way / end) } else { extent("m/s") };
@@ -140,8 +141,8 @@ fn column(
     covered: &Covered,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
-    // Programs print forces with the velocities of the full step, half a step after those that moved the grains: of a
-    // dashpot that is twice what half the step changes.
+    // Programs print forces with the velocities of the full step, half a step after those that moved the grains. For a
+    // dashpot, this shift changes the force by twice the change from halving the step.
     let times = if of.unit == "N" { 3.0 } else { 1.0 };
     let row = Verdict {
         source: format!("{nearest}, the nearest of our conventions, at the file's time step"),

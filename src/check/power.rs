@@ -1,5 +1,5 @@
-//! Power of a check: which changes of the scene the given output would reveal. Our solver runs the scene with one effect changed,
-//! and what it leaves is judged as if it were the output.
+//! Power of a check: the changes of the scene that the given output would reveal. Our solver runs the scene with one
+//! effect changed, and its result is checked as if it were the output.
 
 use super::covered::Covered;
 use super::horizon;
@@ -18,40 +18,40 @@ use grainbench_scene::record::Series;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
-/// How far the power of a check is looked for.
+/// Extent of the search for the power of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Power {
-    /// Not at all.
+    /// No search.
     Off,
-    /// In at most three times the work of the comparison with our solvers.
+    /// At most three times the work of the comparison with our solvers.
     #[default]
     Limited,
-    /// Every effect in every size.
+    /// Every effect with every size of change.
     Full,
 }
 
-/// Source of the rows that say it.
+/// Source that identifies results about power.
 const SOURCE: &str = "our solver on the scene with one effect changed";
 /// Most work, in units of the comparison with our solvers.
 const MOST_WORK: u64 = 3;
 /// Relative changes of coefficients, from the smallest.
 const SIZES: [f64; 2] = [0.1, 0.25];
-/// Most names of columns that a row lists.
+/// Largest number of column names in a result.
 const MOST_NAMES: usize = 8;
 
-/// Returns whether a row says what a check could reveal, and not what it found.
+/// Returns true if a result describes the power of a check, and not the output itself.
 #[must_use]
 pub fn is_of_power(row: &Verdict) -> bool {
     row.source == SOURCE
 }
 
-/// An effect, with changes of growing size.
+/// Effect with changes of increasing size.
 struct Family {
     name: String,
     sizes: Vec<Size>,
 }
 
-/// Changes of one size, all of which must be revealed.
+/// Changes of one size. The size counts as revealed only if all of them are revealed.
 struct Size {
     /// Relative change.
     amount: f64,
@@ -59,22 +59,22 @@ struct Size {
     scenes: Vec<Scene>,
 }
 
-/// What became of a family.
+/// Outcome of the search for one effect.
 enum Found {
-    /// The smallest size that is revealed, with the larger ones.
+    /// Smallest revealed change; larger changes are revealed too.
     Revealed(f64),
-    /// Not even the largest size is revealed.
+    /// Even the largest change is not revealed.
     Hidden,
-    /// It was not tried, for this reason.
+    /// Not tried, with the reason.
     NotTried(String),
 }
 
-/// A check that was made, to be made again of other output.
+/// Inputs of a check, which can be repeated for other output.
 pub(super) struct Made<'c> {
     pub(super) scene: &'c Scene,
     pub(super) plan: &'c Plan,
     pub(super) ours: &'c [Peer],
-    /// Time (s) up to which the run can be predicted; none where that is its end.
+    /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
     pub(super) horizon: Option<f64>,
     pub(super) outputs: &'c Outputs,
     pub(super) observed: &'c Observed,
@@ -95,7 +95,8 @@ impl Made<'_> {
         rows
     }
 
-    /// Returns a row for each effect of the scene, one of effects that were not tried, and one of columns that were not judged.
+    /// Returns a result for each effect of the scene, one for all untried effects, and one for all columns without
+    /// comparison.
     pub(super) fn power(&self, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
         if power == Power::Off {
             return Vec::new();
@@ -129,7 +130,8 @@ impl Made<'_> {
         rows
     }
 
-    /// Finds the smallest size that is revealed, from the largest down: what hides a large change hides a small one.
+    /// Finds the smallest revealed change, from the largest to smaller ones. Output that hides a large change hides a
+    /// smaller one too.
     fn find(&self, family: &Family, left: &mut u64) -> Found {
         let mut smallest = None;
         for size in family.sizes.iter().rev() {
@@ -158,7 +160,8 @@ impl Made<'_> {
         Ok(true)
     }
 
-    /// Returns whether a run would be red if it were the output: at the same times, with the same columns and digits.
+    /// Returns true if a run would give a red result as output, with the sample times, columns and digits of the real
+    /// output.
     fn is_red(&self, series: &Series) -> bool {
         let mut seen = Observed { series: Series::default(), uncertainty: Vec::new(), snapshots: Vec::new() };
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
@@ -175,7 +178,7 @@ impl Made<'_> {
         self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail)
     }
 
-    /// The columns of the scene's probes that are not compared; none where all are.
+    /// Returns the columns of the scene's probes that are not compared; `None` if all are compared.
     fn unjudged(&self) -> Option<String> {
         let columns = Recorder::new(self.scene, 1.0, 1).finish().0.columns;
         let is_judged = |name: &str| is_compared(name) && self.observed.series.column(name).is_some();
@@ -188,7 +191,7 @@ impl Made<'_> {
     }
 }
 
-/// The row of a family that was tried.
+/// Returns the result for an effect that was tried.
 fn told(family: &Family, found: &Found, row: Verdict) -> Verdict {
     let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
     let row = Verdict { because: format!("tried: {}", sizes.join(", ")), ..row };
@@ -205,7 +208,7 @@ fn told(family: &Family, found: &Found, row: Verdict) -> Verdict {
     }
 }
 
-/// The effects of a scene that have sizes, and those that can only be left out.
+/// Returns the effects of a scene that can be scaled, and those that can only be removed.
 fn families(scene: &Scene) -> Vec<Family> {
     let has = |is_on: &dyn Fn(&ContactLaw) -> bool| scene.laws.iter().flatten().any(is_on);
     let mut families = Vec::new();
@@ -243,7 +246,7 @@ fn families(scene: &Scene) -> Vec<Family> {
     families
 }
 
-/// A change of one relative size in both directions.
+/// Returns changes of one relative size in both directions.
 fn both(scene: &Scene, size: f64, change: &dyn Fn(&mut ContactLaw, f64)) -> Size {
     let with = |factor: f64| changed(scene, |law| change(law, factor));
     Size {

@@ -1,4 +1,4 @@
-//! Against the stored runs of LAMMPS and LIGGGHTS of the same scene.
+//! Comparison of output with stored runs of LAMMPS and LIGGGHTS of the same scene.
 
 use super::covered::Covered;
 use super::ours::is_compared;
@@ -14,15 +14,15 @@ use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
 use grainbench_scene::record::Series;
 
-/// How many times what half the time step changes a stored run may be off itself: the grid convergence index of the
-/// coarser of two steps, with the factor of safety 3 that two call for and first order, as where contacts begin and end
-/// (Roache 1994).
+/// Ratio of the uncertainty of a stored run to its change from halving the time step. It is the grid convergence index
+/// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). F_s = 3 applies to two steps, with r = 2. The order is p = 1, as
+/// where contacts begin and end.
 const SAFETY: f64 = 6.0;
-/// What a program may be off by beside what is measured: a millionth of the scale.
+/// Allowed error of a program beyond the measured ones: a millionth of the scale.
 const FLOOR: f64 = 1e-6;
 
-/// A row a column: against the stored run that is nearest as a whole, at the times that both have, within what the
-/// stored runs differ by and their own uncertainty.
+/// Compares each column with the stored run that is nearest to all columns, at the sample times that both have. The
+/// tolerance contains the difference between the stored runs and their own uncertainty.
 pub(super) fn compare(
     case: &Case,
     candidate: &Candidate,
@@ -49,7 +49,7 @@ pub(super) fn compare(
     rows.collect()
 }
 
-/// The stored runs of the scene; those that are stale or damaged judge nothing.
+/// Returns the valid stored runs of the scene; outdated and damaged runs are skipped.
 fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
     let of_case = stored::all().into_iter().filter(|of| of.case.name == case.name);
     of_case
@@ -66,7 +66,7 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
         .collect()
 }
 
-/// The samples up to the last one that can be predicted.
+/// Returns the samples up to the last predictable step.
 fn until(mut series: Series, last: Option<u64>) -> Series {
     let keep = last.map_or(series.step.len(), |last| series.step.partition_point(|&step| step <= last));
     series.step.truncate(keep);

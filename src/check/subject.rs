@@ -1,4 +1,4 @@
-//! What outputs may be of: a case with its own numbers or with others, or a scene that is no case.
+//! Scene of the output: a case with its own or with changed parameters, or a scene of the user.
 
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::{Claim, Elsewhere};
@@ -6,18 +6,18 @@ use grainbench_harness::tolerance::computed;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 
-/// What outputs are said to be of.
+/// Declared scene of the output.
 pub enum Subject<'s> {
-    /// A case: one variant of it, or whichever they start as.
+    /// A case, with one variant or with the variant that matches the first sample.
     Case {
         /// The case.
         case: &'static Case,
         /// The variant.
         variant: Option<&'s str>,
-        /// Keys of the scene that have other values, with those.
+        /// Changed scene keys with their values.
         set: &'s [(String, String)],
     },
-    /// A scene of the user's own, by a name.
+    /// A scene of the user.
     Scene {
         /// The name.
         name: String,
@@ -27,7 +27,7 @@ pub enum Subject<'s> {
 }
 
 impl Subject<'_> {
-    /// The case, where it is one.
+    /// Returns the case; `None` for a scene of the user.
     pub(super) const fn case(&self) -> Option<&'static Case> {
         match self {
             Self::Case { case, .. } => Some(case),
@@ -35,7 +35,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The case, where its numbers are its own, as those of stored runs are.
+    /// Returns the case if its parameters are unchanged, as in stored runs.
     pub(super) const fn as_stored(&self) -> Option<&'static Case> {
         match self {
             Self::Case { case, set: [], .. } => Some(case),
@@ -43,7 +43,7 @@ impl Subject<'_> {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the case or scene.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Case { case, .. } => case.name.to_owned(),
@@ -58,7 +58,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The name with that of the variant, where one was named.
+    /// Returns the name, with the variant if one is given.
     pub(super) fn place(&self) -> String {
         match self {
             Self::Case { case, variant: Some(variant), .. } => format!("{}/{variant}", case.name),
@@ -66,7 +66,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The scenes that outputs may be of.
+    /// Returns all scenes that the output may belong to.
     pub(super) fn candidates(&self) -> Result<Vec<Candidate>, SceneError> {
         match *self {
             Self::Case { case, variant, set: [] } => candidates(case, variant),
@@ -78,15 +78,15 @@ impl Subject<'_> {
     }
 }
 
-/// A scene that the outputs may be of.
+/// Scene that the output may belong to.
 pub(super) struct Candidate {
     pub(super) variant: String,
     pub(super) scene: Scene,
-    /// The gates whose scene it is.
+    /// Claims about this scene.
     pub(super) claims: Vec<Claim>,
 }
 
-/// The scenes as they stand, and those that gates fair to any solver adjust.
+/// Returns the scenes of a case, with and without the adjustments of solver-independent claims.
 fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidate>, SceneError> {
     let mut names = case.variants()?;
     if !names.iter().any(|name| name == PLAIN) {
@@ -115,7 +115,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     Ok(candidates)
 }
 
-/// The scenes with keys that have other values, and the claims whose tolerance follows the scene.
+/// Returns the scenes with changed parameters, and the claims whose tolerance can be computed for them.
 fn with_other_numbers(
     case: &'static Case,
     variant: Option<&str>,
@@ -135,7 +135,7 @@ fn with_other_numbers(
     names.into_iter().map(candidate).collect()
 }
 
-/// A claim as it holds of another scene of its kind; none where that is not known.
+/// Returns a claim for another scene of the same kind; `None` if its tolerance is unknown there.
 fn elsewhere(mut claim: Claim, scene: &Scene) -> Option<Claim> {
     let Elsewhere { quantity, allowed, because } = claim.elsewhere.take()?;
     let allowed = allowed(scene);
