@@ -1,7 +1,7 @@
 //! Folder of the cache of finished runs, outside the tree.
 //!
-//! The key of a run is a plain hash, so a user who can write the folder can change the results. A folder that another user owns,
-//! or that every user can write, is not used.
+//! The key of a run is a plain hash, so a user who can write the folder can change the results. A folder that another
+//! user owns, or that every user can write, is not used.
 
 use super::exit;
 use grainbench::cases::solvers::Registry;
@@ -15,13 +15,13 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The folder, or `off`.
+/// Environment variable with the folder, or `off`.
 const VARIABLE: &str = "GRAINBENCH_CACHE";
-/// Bytes that it may have.
+/// Largest size of the cache (bytes).
 const MOST: u64 = 2 << 30;
 
-/// Opens the cache; none if it is off, if there is no folder for it, or if the folder cannot be written or trusted. Under
-/// `CI=true` it is off unless the variable names a folder.
+/// Opens the cache. Returns `None` if it is off, if it has no folder, or if the folder cannot be written or trusted.
+/// Under `CI=true` it is off unless the variable names a folder.
 pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
     let is_ci = env::var_os("CI").is_some_and(|word| word == "true");
     let folder = match env::var_os(VARIABLE) {
@@ -80,12 +80,12 @@ const fn owner(_: &Path) -> Option<String> {
     None
 }
 
-/// The solvers of the registry, with a cache where there is one.
+/// Returns the solvers of the registry, with the cache if there is one.
 pub(crate) fn solvers(cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     with(Registry, cache)
 }
 
-/// Solvers with a cache where there is one.
+/// Returns solvers with the cache if there is one.
 pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     match cache {
         Some(cache) => Arc::new(WithCache::new(solvers, Arc::clone(cache))),
@@ -93,13 +93,13 @@ pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>
     }
 }
 
-/// What of this program a solver's runs hang on: its sources, and what they were built with.
+/// Returns everything in this program that a solver's runs depend on: its sources, compiler and build options.
 fn edition(solver: &str) -> Option<String> {
     let sources = grainbench::kept::sources(solver)?;
     Some(format!("{sources} {}", env!("GRAINBENCH_BUILD")))
 }
 
-/// Where programs of this system keep what can be made again.
+/// Returns the default cache folder of the operating system.
 fn usual() -> Option<PathBuf> {
     let of = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = || of("HOME");

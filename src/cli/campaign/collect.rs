@@ -1,4 +1,4 @@
-//! `grainbench collect`: the report of what is finished of a plan, as if all of it had been run here.
+//! `grainbench collect`: the report of the finished tasks of a plan, as if one machine had run all of them.
 
 use super::plan::Arguments as Planned;
 use super::{enter, study};
@@ -34,25 +34,26 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// How a report is made.
+/// Options of a report.
 pub(crate) struct How<'a> {
-    /// Where.
+    /// Directory of the report.
     pub(crate) out: &'a Path,
     pub(crate) strict: bool,
     pub(crate) parquet: bool,
     pub(crate) json: bool,
-    /// The results of the last of the earlier reports.
+    /// Results of the last earlier report.
     pub(crate) against: Option<&'a Path>,
-    /// What is to be said beside the options of the study.
+    /// Words to add to the options of the study.
     pub(crate) words: Vec<String>,
-    /// How long all of it took (s).
+    /// Total duration of all tasks (s).
     pub(crate) seconds: f64,
 }
 
-/// Makes the report.
+/// Writes the report.
 pub(crate) fn collect(arguments: &Arguments) -> Outcome {
     let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
-    // Paths are seen from here, and the plan's from where it was made.
+    // Paths of the command line are relative to the current directory, and paths of the plan to the directory in which
+    // it was made.
     let from_here = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| arguments.plan.join("report"));
     let out = from_here(&out);
@@ -90,7 +91,7 @@ pub(crate) fn collect(arguments: &Arguments) -> Outcome {
     Ok(code)
 }
 
-/// Where the work was done, and what of it is not.
+/// Returns the number of finished tasks if some are missing, the machines, and the system load during timed tasks.
 fn words(plan: &Plan, finished: &Finished, missing: usize) -> Vec<String> {
     let mut words = Vec::new();
     if missing > 0 {
@@ -119,7 +120,7 @@ fn results_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("results.json") } else { path.to_owned() }
 }
 
-/// A report as a column of the trend.
+/// Reads a report as a column of the trend.
 fn read_column(path: &Path) -> Result<Column, Fault> {
     let file = results_of(path);
     let name = if path.is_dir() { path } else { path.parent().unwrap_or(path) };

@@ -1,4 +1,5 @@
-//! `grainbench plan`, `work`, `status` and `collect`: many runs from one plan, on this machine or by a batch system.
+//! `grainbench plan`, `work`, `status` and `collect`: many runs from one plan, on this machine or through a batch
+//! system.
 
 pub(crate) mod collect;
 mod of_cost;
@@ -20,13 +21,14 @@ impl From<campaign::Fault> for Fault {
         match fault {
             campaign::Fault::Input(words) => Self::input(words),
             campaign::Fault::Write(error) => Self::writing(error),
-            // What a batch system refuses is no fault of what was typed.
+            // An error of a batch system is not an input error.
             campaign::Fault::Batch(words) => Self::Broken(words),
         }
     }
 }
 
-/// Reads a plan, and goes where it was made: paths in it are seen from there. Its own path stays what it was.
+/// Reads a plan and changes to the directory in which it was made, because its paths are relative to it. The path of
+/// the plan becomes absolute.
 fn enter(path: &Path) -> Result<Plan, Fault> {
     let mut plan = Plan::read(path)?;
     let whole = std::fs::canonicalize(path).map_err(|error| Fault::input(format!("{}: {error}", path.display())))?;

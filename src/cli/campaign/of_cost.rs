@@ -1,4 +1,4 @@
-//! A plan of what accuracy costs: a task a point, and one each for prices and loads.
+//! Plan of a cost study: one task per point, and one each for the parts of a step and for large scenes.
 
 use super::collect::How;
 use super::plan::Arguments;
@@ -26,11 +26,12 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// What prices and loads are expected to take (s).
+/// Expected duration of the timing of the parts of a step (s).
 const PRICES: f64 = 40.0;
+/// Expected duration of the timing of a step with one and with ten thousand grains (s).
 const LOADS: f64 = 90.0;
 
-/// What is measured.
+/// Cost study of a plan.
 pub(crate) struct OfCost {
     subjects: Vec<Subject>,
     solver: Vec<String>,
@@ -66,19 +67,20 @@ impl OfCost {
         WithStrangers::read_by_content(&self.solver).map(|(solvers, _)| solvers)
     }
 
-    /// Prices and loads, by their words.
+    /// Returns the tasks outside the diagrams: the cost of the parts of a step, and of a step at different numbers of
+    /// grains.
     fn beside(&self, program: &str) -> [(Id, &'static str, f64); 2] {
         [("prices", PRICES), ("loads", LOADS)]
             .map(|(word, seconds)| (Id::of_words(program, &["cost", word]), word, seconds))
     }
 }
 
-/// The id of a point.
+/// Returns the task id of a point.
 fn id_of(name: &str) -> Option<Id> {
     Id::of_hash(name)
 }
 
-/// What a point took (s).
+/// Returns the duration of a point (s).
 fn seconds_of(point: &Point) -> f64 {
     point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
 }
@@ -123,7 +125,7 @@ impl Study for OfCost {
                     what: subject.quantity.clone(),
                     repetitions: if self.wanted.counts { 1 } else { 5 },
                     seconds: point.seconds,
-                    // Repetitions of one subject are measured in turn.
+                    // One worker measures the repetitions of one target quantity in alternation.
                     group: if self.wanted.counts { None } else { Some(number) },
                 });
             }
@@ -175,7 +177,7 @@ impl Study for OfCost {
             })
             .filter(|(_, mine): &(usize, Vec<Id>)| !mine.is_empty())
             .collect();
-        // Without times a point is a piece of its own.
+        // Without timing, each point is a separate item.
         let pieces: Vec<(usize, Vec<Id>)> = if self.wanted.counts {
             pieces.into_iter().flat_map(|(at, mine)| mine.into_iter().map(move |id| (at, vec![id]))).collect()
         } else {

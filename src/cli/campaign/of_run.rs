@@ -1,4 +1,5 @@
-//! A plan of gates: a task a row with its control, one for the figures of a case, and one for what each solver owes.
+//! Plan of claims: one task per claim with its control, one for the figures of a case, and one for the conformance of
+//! each solver.
 
 use super::collect::How;
 use super::plan::Arguments;
@@ -29,31 +30,34 @@ use std::collections::{BTreeMap, HashMap};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
-/// What the figures of a case take beside its runs, and what is tried of what one solver owes (s).
+/// Expected duration of the figures of a case beyond its runs (s).
 const FIGURES: f64 = 0.5;
+/// Expected duration of the conformance tests of one solver (s).
 const CONFORMANCE: f64 = 2.0;
-/// What is kept of a run is read in this time (s), and a program starts in this.
+/// Expected duration of reading a stored result (s).
 const KEPT: f64 = 0.1;
+/// Expected duration of starting a program (s).
 const START: f64 = 0.5;
 
-/// What is judged.
+/// Claims of a plan.
 pub(crate) struct OfRun {
     selected: Vec<Selected>,
     options: run::Options,
     arguments: Arguments,
+    /// True if all resolution levels run.
     thorough: bool,
-    /// Whether it is the whole registry, beside which stands more.
+    /// True if the plan covers the whole registry.
     is_whole: bool,
 }
 
-/// The words of `run` by which its options are read.
+/// Parser for the options of `run`.
 #[derive(clap::Parser)]
 struct Again {
     #[command(flatten)]
     arguments: run::Arguments,
 }
 
-/// One piece of work, by places in the list of cases and in the claims of the case.
+/// Work item, with indices of the case and of the claim within the case.
 #[derive(Clone, Copy)]
 enum Piece {
     Row(usize, usize),
@@ -61,12 +65,12 @@ enum Piece {
     Owed(usize),
 }
 
-/// What comes out of a piece: a part of a section, and the keys by which its runs are in order.
+/// Result of a work item: part of a section, and the keys that order its runs.
 #[derive(Serialize, Deserialize)]
 struct Part {
     keys: Vec<String>,
     section: Section,
-    /// Why there are no figures.
+    /// Error if the figures could not be drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     without: Option<String>,
 }
@@ -94,12 +98,12 @@ impl OfRun {
         Ok(Self { selected, options, arguments: arguments.clone(), thorough, is_whole })
     }
 
-    /// Whether what solvers owe belongs to it.
+    /// Returns true if the plan includes conformance tests.
     fn owes(&self) -> bool {
         self.is_whole && (self.options.levels.is_empty() || self.thorough)
     }
 
-    /// Every piece with its id, in the order of the report.
+    /// Returns all work items with their ids, in the order of the report.
     fn pieces(&self, program: &str) -> Result<Vec<(Id, Piece)>, Fault> {
         let mut pieces = Vec::new();
         let mut seen: HashMap<String, usize> = HashMap::new();
@@ -114,7 +118,7 @@ impl OfRun {
             for (gate, claim) in selected.claims.iter().enumerate() {
                 let keys: Vec<String> = claim.runs.iter().map(Run::key).collect();
                 let words = format!("{case}|{stranger}|{}|{}|{}", keys.join("|"), claim.quantity, claim.control.name);
-                // Two claims may have the same words.
+                // Two claims may have equal descriptions.
                 let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
                 rows += &words;
                 pieces.push((
@@ -132,7 +136,7 @@ impl OfRun {
         Ok(pieces)
     }
 
-    /// What a claim is expected to take (s), with its control.
+    /// Estimates the duration of a claim with its control (s).
     fn seconds(&self, runner: &Runner, claim: &Claim) -> f64 {
         let once = |run: &Run| {
             let start = if grainbench::cases::solvers::is_program(run.solver) { START } else { 0.0 };
@@ -151,13 +155,13 @@ impl OfRun {
     }
 }
 
-/// What comes of a row.
+/// Evaluates a claim and its control.
 fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (State, Part) {
     let claim = &selected.claims[gate];
     let verdict = runner.judge(claim);
     let tried = controls && runner.is_available(claim) && runner.tries_control(claim, &verdict);
     let control = tried.then(|| runner.control(claim));
-    // What is not here now may be here when it is asked for again.
+    // A solver that is missing now may be available in a later attempt.
     let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
     let state = if is_failed { State::Failed } else { State::Done };
     let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
@@ -172,7 +176,7 @@ fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (St
     (state, in_short(part))
 }
 
-/// What comes of the figures.
+/// Draws the figures of a case.
 fn figures(selected: &Selected, runner: &Runner) -> (State, Part) {
     let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
     match run::draw(selected, runner) {
@@ -186,14 +190,14 @@ fn figures(selected: &Selected, runner: &Runner) -> (State, Part) {
     (if part.without.is_some() { State::Failed } else { State::Done }, in_short(part))
 }
 
-/// Words that the case has anyway are left out.
+/// Removes the texts that the report takes from the case.
 fn in_short(part: Part) -> Part {
     let nothing = String::new;
     let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
     Part { section, ..part }
 }
 
-/// The row of a piece at which our program failed.
+/// Returns the result of a task at which our program panicked.
 fn crashed(selected: &Selected, gate: usize, detail: String) -> Verdict {
     let claim = &selected.claims[gate];
     let first = claim.runs.first();

@@ -1,4 +1,4 @@
-//! A plan of what stays stable: a task a limit or a hard case.
+//! Plan of a stability study: one task per limit or hard case.
 
 use super::collect::How;
 use super::plan::Arguments;
@@ -24,13 +24,14 @@ use std::collections::{BTreeMap, HashMap};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a limit is expected to take (s): of springs, and of a grid of so many cells.
+/// Expected duration of a stability limit with contact springs (s).
 const SPRINGS: f64 = 0.5;
+/// Expected duration of a stability limit with a grid, per cell (s).
 const CELLS: f64 = 0.05;
-/// A hard case is run at smaller steps too, where it fails.
+/// Factor on the duration of a hard case, which is repeated with smaller steps if it fails.
 const TRIES: f64 = 3.0;
 
-/// What is tried.
+/// Limits and hard cases of a plan.
 pub(crate) struct OfStability {
     assemblies: Vec<Assembly>,
     hard: Vec<HardCase>,
@@ -44,7 +45,7 @@ impl OfStability {
         study.with(|_, _| Ok(())).map(|()| study)
     }
 
-    /// Does something with the pieces and who is asked.
+    /// Calls a function with the work items and solvers of the plan.
     fn with<T>(&self, work: impl FnOnce(&[Piece<'_>], &WithStrangers) -> Result<T, Fault>) -> Result<T, Fault> {
         let (solvers, named) = WithStrangers::read_by_content(&self.arguments.solver)?;
         let strangers = solvers.names();
@@ -53,7 +54,7 @@ impl OfStability {
     }
 }
 
-/// The name of a piece in a result cache.
+/// Returns the name of a work item in a result cache.
 fn name(piece: &Piece<'_>, program: &str, solvers: &WithStrangers) -> String {
     use grainbench::harness::solvers::Solvers;
     let by = |solver: &str| program.to_owned() + &solvers.edition(solver);
@@ -160,7 +161,7 @@ impl Study for OfStability {
         let program = &plan.head.program;
         self.with(|pieces, solvers| {
             for piece in pieces {
-                // What is not finished would be done here.
+                // An unfinished item would otherwise be computed here.
                 if Id::of_hash(&name(piece, program, solvers)).is_some_and(|id| there.contains(&id)) {
                     stability::do_piece(piece, (program, solvers), &cache, &mut study, &mut Follower::none())?;
                 }

@@ -1,4 +1,4 @@
-//! A plan of a sweep.
+//! Plan of a sweep.
 
 use super::collect::How;
 use super::plan::Arguments;
@@ -24,12 +24,13 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// A sweep, and who is asked.
+/// Sweep with its solvers.
 pub(crate) struct OfSweep {
     path: String,
     sweep: Sweep,
-    /// Solvers as the file names them, and as rows do.
+    /// Solvers as the file names them.
     asked: Vec<String>,
+    /// Solver names in the results.
     names: Vec<String>,
 }
 
@@ -41,7 +42,7 @@ impl OfSweep {
         arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;
         let beside = Path::new(file).parent().unwrap_or(Path::new(""));
-        // Manifests stand where the file says, seen from it.
+        // Paths of manifests are relative to the sweep file.
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
         let (_, names) = WithStrangers::read_by_content(&asked)?;
@@ -74,7 +75,7 @@ impl Study for OfSweep {
     }
 
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
-        // What is timed is done, and not taken from before.
+        // Timed tasks are always run, and never taken from the cache.
         let cache = if self.is_timed() { None } else { cache::open(false) };
         let solvers = cache::with(self.solvers()?, cache.as_ref());
         let places: HashMap<Id, usize> = plan.tasks.iter().enumerate().map(|(at, task)| (task.id, at)).collect();
@@ -121,7 +122,7 @@ impl Study for OfSweep {
             let page = how.out.join("index.html");
             print(&format!("{w} within, {o} outside or broken, {a} amber\n{}\n", page.display()))?;
         }
-        // A design goes where methods fail: only a crash of ours is red.
+        // A sweep includes conditions in which methods fail, so only a crash of our program is red.
         let crashed = plan
             .tasks
             .iter()

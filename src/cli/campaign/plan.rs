@@ -1,4 +1,4 @@
-//! `grainbench plan`: what is to be done, a task a line.
+//! `grainbench plan`: writes a plan with one task per line.
 
 use super::study;
 use crate::cli::exit::{Fault, Outcome, print, print_json};
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// The words by which a plan is read again.
+/// Parser for the arguments of a stored plan.
 #[derive(clap::Parser)]
 struct Again {
     #[command(flatten)]
@@ -59,7 +59,7 @@ struct Again {
 }
 
 impl Arguments {
-    /// The words that mean the same.
+    /// Returns the command line that gives these arguments again.
     fn words(&self) -> Vec<String> {
         let mut words = vec![self.what.clone()];
         words.extend(self.cases.iter().cloned());
@@ -75,7 +75,7 @@ impl Arguments {
         words
     }
 
-    /// What a plan was told.
+    /// Reads the arguments from a stored plan.
     pub(crate) fn read(plan: &Plan) -> Result<Self, Fault> {
         let words = std::iter::once("plan").chain(plan.head.arguments.iter().map(String::as_str));
         let again = <Again as clap::Parser>::try_parse_from(words).map_err(|error| {
@@ -85,7 +85,7 @@ impl Arguments {
         Ok(again.arguments)
     }
 
-    /// Refuses options that what is planned does not heed.
+    /// Rejects options that this kind of plan does not support.
     pub(crate) fn only(&self, heeded: &[&str]) -> Result<(), Fault> {
         let given = [
             ("CASE", !self.cases.is_empty()),
@@ -107,7 +107,7 @@ impl Arguments {
     }
 }
 
-/// A plan in short, for programs.
+/// JSON summary of a plan.
 #[derive(Serialize)]
 struct Summary<'a> {
     tasks: usize,
@@ -117,7 +117,7 @@ struct Summary<'a> {
     out: &'a PathBuf,
 }
 
-/// Plans.
+/// Writes a plan.
 pub(crate) fn plan(arguments: &Arguments) -> Outcome {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
     let study = study::of(arguments)?;

@@ -1,4 +1,4 @@
-//! `grainbench status`: how far a plan is.
+//! `grainbench status`: shows the progress of a plan.
 
 use crate::cli::exit::{Outcome, print, print_json};
 use grainbench::campaign::plan::Plan;
@@ -20,16 +20,16 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// All that is told.
+/// JSON form of the progress.
 #[derive(Serialize)]
 struct Told<'a> {
     #[serde(flatten)]
     status: &'a Status,
-    /// Elements of job arrays that wait or run; null where the batch system does not answer.
+    /// Number of elements of job arrays that wait or run; null if the batch system does not answer.
     queued: Option<usize>,
 }
 
-/// Tells how far a plan is.
+/// Prints the progress of a plan.
 pub(crate) fn status(arguments: &Arguments) -> Outcome {
     let plan = Plan::read(&arguments.plan)?;
     let status = Status::of(&plan)?;
@@ -49,7 +49,7 @@ pub(crate) fn status(arguments: &Arguments) -> Outcome {
         ("damaged", status.damaged),
     ];
     for (word, count) in lines {
-        // What there should be none of is told where there is some.
+        // Counts that should be zero are reported only if they are not.
         if count > 0 || !matches!(word, "crashed" | "twice" | "damaged") {
             text.push_str(&format!("{word:<9} {}\n", number::count(count as u64)));
         }

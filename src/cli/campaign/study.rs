@@ -1,4 +1,4 @@
-//! What a plan is of: who says which tasks there are, does them, and makes the report of what came out.
+//! Kinds of plans: each lists its tasks, runs them, and makes the report.
 
 use super::collect::How;
 use super::of_cost::OfCost;
@@ -16,25 +16,25 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a plan is of.
+/// Kind of plan.
 pub(crate) trait Study: Sync {
-    /// Which of the four.
+    /// Returns the kind.
     fn kind(&self) -> Kind;
-    /// Whether times are measured.
+    /// Returns true if times are measured.
     fn is_timed(&self) -> bool;
-    /// Every task, by the program of this hash.
+    /// Returns all tasks for the program with this hash.
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault>;
-    /// Files that tasks hang on, with their hashes.
+    /// Returns the hashes of the files that the tasks depend on.
     fn inputs(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
     }
-    /// Does some tasks, so many at once.
+    /// Runs tasks, at most `jobs` at a time.
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault>;
-    /// Makes the report of what is finished.
+    /// Writes the report of the finished tasks.
     fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome;
 }
 
-/// The study that is asked for.
+/// Returns the study that the arguments ask for.
 pub(crate) fn of(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
     Ok(match arguments.what.as_str() {
         "run" => Box::new(OfRun::new(arguments)?),
@@ -44,17 +44,17 @@ pub(crate) fn of(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
     })
 }
 
-/// What came out of a task: its result, or that our program failed at it.
+/// Result of a task.
 pub(crate) enum Came<T> {
-    /// Nothing yet.
+    /// No result yet.
     Nothing,
-    /// This.
+    /// Result.
     Out(T),
-    /// A crash of ours, in words.
+    /// Message of a crash of our program.
     Crash(String),
 }
 
-/// What came out of a task.
+/// Reads the result of a task.
 pub(crate) fn came<T: DeserializeOwned>(finished: &Finished, id: Id) -> Came<T> {
     let Some(entry) = finished.entries.get(&id) else { return Came::Nothing };
     if entry.state == State::Crashed {

@@ -1,4 +1,4 @@
-//! `grainbench work`: the tasks of a plan, or of a chunk of it, here or by a batch system.
+//! `grainbench work`: runs the tasks of a plan or of a chunk, here or through a batch system.
 
 use super::plan::Arguments as Planned;
 use super::{enter, study};
@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     sbatch: Vec<String>,
 }
 
-/// Works, or has others work.
+/// Runs the tasks, or submits them.
 pub(crate) fn work(arguments: &Arguments) -> Outcome {
     let plan = enter(&arguments.plan)?;
     plan.check_program()?;
@@ -97,7 +97,7 @@ fn words(summary: &Summary) -> String {
     format!("{} tasks: {} were finished, {} done now{failed}\n", count(tasks), count(before), count(done))
 }
 
-/// Who works here.
+/// Describes this process as a worker.
 fn worker() -> Worker {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let (host, process) = (machine::name(), std::process::id());
@@ -117,7 +117,7 @@ fn worker() -> Worker {
     }
 }
 
-/// Tells people how far it is, and listens to them.
+/// Observer that shows the progress and stops the work on an interrupt.
 struct Told {
     interrupt: Interrupt,
     progress: Mutex<Option<Progress>>,
