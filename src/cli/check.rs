@@ -1,4 +1,4 @@
-//! `grainbench check`: what any program left of a case, judged.
+//! `grainbench check`: checks the output of any program against a case or scene.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::pattern;
@@ -77,7 +77,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Judges and writes the report.
+/// Checks the output and writes the report.
 pub(crate) fn check(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let mut words = vec!["check".to_owned()];
@@ -108,7 +108,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     } else {
         print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    // That a file reaches the end says nothing of what is in it: each output must have a row of a quantity that is judged.
+    // A complete run can still have wrong content, so each output needs at least one result about a quantity.
     let mut sections = report.sections.iter();
     let is_told = sections.all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
@@ -117,7 +117,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     if is_told { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
 }
 
-/// Judges the outputs that were named; gives what a page calls them too.
+/// Checks the named output. Returns its section, and its name for the page.
 fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
     let is_file = Path::new(scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let subject = if is_file {
@@ -155,13 +155,13 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
     Ok((section, outputs.name()))
 }
 
-/// What a program calls its log where nothing else is said.
+/// Default names of log files.
 const LOGS: [&str; 2] = ["log.lammps", "log.liggghts"];
 
-/// Files that `deck` writes for a program and that are no output.
+/// Files that `deck` writes as input of a program.
 const INPUTS: [&str; 4] = ["in.lammps", "in.liggghts", "data.grains", "wall-*.stl"];
 
-/// Judges the outputs in the folders of cases and of their variants. Content decides what an output is.
+/// Checks all outputs in the folders of cases and variants. The content of a file decides whether it is output.
 fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     let mut ignored: Vec<Pattern> =
         arguments.ignore.iter().map(|name| pattern::read("--ignore", name)).collect::<Result<_, _>>()?;
@@ -216,7 +216,7 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     Ok(sections)
 }
 
-/// A red row for each file that was not judged, with the reason.
+/// Returns a section with a red result for each file that was not checked, and the reason.
 fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section {
     let row = |(path, reason): &(PathBuf, String)| {
         let name = path.strip_prefix(folder).unwrap_or(path).to_string_lossy();
@@ -240,7 +240,7 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
     }
 }
 
-/// Most rows that a snapshot can have: a grain has a dozen contacts at most, and walls.
+/// Returns the largest number of rows of a snapshot: 16 contacts per grain, and one per grain and wall.
 fn most_rows(subject: &Subject<'_>) -> Result<u64, Fault> {
     let of = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
     let most = match subject {
@@ -253,7 +253,7 @@ fn most_rows(subject: &Subject<'_>) -> Result<u64, Fault> {
     Ok(most as u64)
 }
 
-/// A line a row, and how many passed.
+/// Returns the results of a report, and the number for each outcome.
 pub(crate) fn rows(report: &Report) -> String {
     let rows = report.sections.iter().flat_map(|section| &section.verdicts);
     let count = |outcome| rows.clone().filter(|row| row.outcome == outcome).count();

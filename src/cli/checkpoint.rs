@@ -1,4 +1,4 @@
-//! Checkpoints as files.
+//! Checkpoint files.
 
 use super::exit::Fault;
 use grainbench::reports::write_file;
@@ -7,15 +7,15 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Where checkpoints go, each in the place of the one before.
+/// File for checkpoints; each checkpoint replaces the previous one.
 pub(crate) struct Store {
     pub(crate) path: PathBuf,
-    /// Steps from one to the next.
+    /// Number of steps between checkpoints.
     pub(crate) every: u64,
 }
 
 impl Store {
-    /// Refuses a place where something else stands than a checkpoint of ours: it would be replaced.
+    /// Rejects a path at which anything other than our checkpoint exists, because it would be replaced.
     pub(crate) fn refuse_others(&self) -> Result<(), Fault> {
         let refused = |found: &str| {
             let there = self.path.display();
@@ -35,7 +35,7 @@ impl Store {
         }
     }
 
-    /// Stores a checkpoint, whole or not at all.
+    /// Stores a checkpoint atomically.
     pub(crate) fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
         write_file(&self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))
     }

@@ -1,4 +1,4 @@
-//! `grainbench compare`: two outputs against each other.
+//! `grainbench compare`: compares two outputs.
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Compares and writes the report.
+/// Compares the outputs and writes the report.
 pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     if arguments.dt.len() > 2 {
@@ -96,25 +96,26 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// Names of columns that sort grains into kinds: that they are alike is no comparison.
+/// Columns that classify grains. Their agreement alone does not count as a comparison.
 const LABELS: [&str; 3] = ["type", "mol", "proc"];
 
 fn is_label(row: &Verdict) -> bool {
     LABELS.iter().any(|label| row.quantity == quantity(label))
 }
 
-/// What the row of a column is called.
+/// Returns the quantity of a column's result.
 fn quantity(column: &str) -> String {
     format!("column {column}, worst")
 }
 
-/// The fault of a file that cannot be read; one that is cut off can, as far as it goes.
+/// Returns the error of an unreadable file. For a truncated file, the error names the option that compares its whole
+/// frames.
 fn unreadable(error: ReadError) -> Fault {
     let hint = if error.is_cut() { " (--partial compares the whole frames in front of it)" } else { "" };
     Fault::input(format!("{error}{hint}"))
 }
 
-/// What the two outputs are called: as their files are, or with their folders where those are called alike.
+/// Returns the names of the outputs: the file names, or the paths if the file names are equal.
 fn names(arguments: &Arguments) -> [String; 2] {
     let paths: [&Path; 2] = [&arguments.a, &arguments.b];
     let short = paths.map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned());
@@ -146,7 +147,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     }
 }
 
-/// How many samples were compared, in words.
+/// Returns the number of compared samples, in words.
 fn counts(comparison: &Comparison) -> String {
     let Comparison { compared, interpolated, samples: [a, b], key, .. } = comparison;
     let between = if *interpolated > 0 { format!(", {interpolated} of them interpolated") } else { String::new() };
@@ -154,7 +155,7 @@ fn counts(comparison: &Comparison) -> String {
     format!("{compared} {noun} compared by {}{between}, of {a} and {b}", key.word())
 }
 
-/// How much of both was compared: every sample of the one with fewer, to the end of the longer.
+/// Returns the results for coverage: the number of compared samples, and the last of them.
 fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Verdict; 2] {
     let unit = if comparison.key == Key::Time { "s" } else { "1" };
     let row = |quantity: String, unit: &str, value: f64, least: f64, slack: f64| {
@@ -174,9 +175,10 @@ fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Ve
         row
     };
     let fewest = comparison.samples[0].min(comparison.samples[1]) as f64;
-    // Of the one that ends later all but less than an interval: a whole one is a sample that is missing.
+    // The last compared sample may be up to one interval before the later end. If it is a whole interval before, a
+    // sample is missing.
     let (end, slack) = (comparison.last[0].max(comparison.last[1]), (1.0 - 1e-6) * comparison.interval);
-    // Of a file that is sampled at other times, those of the first are what counts.
+    // If sampling times differ, the samples of the first file count.
     let least = if comparison.key == Key::Time { comparison.samples[0] as f64 } else { fewest };
     [
         cut(comparison, row("samples that were compared".to_owned(), "1", comparison.compared as f64, least, 0.0)),
@@ -184,7 +186,7 @@ fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Ve
     ]
 }
 
-/// The row of the samples, which is not green where a file is cut off.
+/// Makes the result of the samples amber if a file is truncated.
 fn cut(comparison: &Comparison, row: Verdict) -> Verdict {
     match comparison.cuts.iter().flatten().next() {
         Some(cut) if row.outcome == verdict::Outcome::Pass => {
@@ -194,7 +196,7 @@ fn cut(comparison: &Comparison, row: Verdict) -> Verdict {
     }
 }
 
-/// A row for each column that one of the outputs has alone.
+/// Returns a result for each column that only one output has.
 fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
     let names =
         comparison.lonely.iter().zip([a, b]).flat_map(|(names, file)| names.iter().map(move |name| (name, file)));
@@ -236,7 +238,7 @@ fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
     }
 }
 
-/// How the differences grow.
+/// Plots the growth of the differences.
 fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     const MOST: usize = 6;
     let mut curves = Vec::new();

@@ -1,4 +1,4 @@
-//! `grainbench completions` and `grainbench man`: what shells and readers of manuals need, made from the commands themselves.
+//! `grainbench completions` and `grainbench man`: shell completions and manual pages, generated from the commands.
 
 use super::exit::{Fault, Outcome, check_folder, print};
 use grainbench::reports::StagedDir;
@@ -20,7 +20,7 @@ pub(crate) struct ManArguments {
     out: Option<PathBuf>,
 }
 
-/// Prints the script of a shell.
+/// Prints the completion script of a shell.
 pub(crate) fn completions(arguments: &Arguments, mut command: clap::Command) -> Outcome {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "grainbench", &mut script);
@@ -28,7 +28,7 @@ pub(crate) fn completions(arguments: &Arguments, mut command: clap::Command) -> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the page of the program, or leaves one for each command.
+/// Prints the manual page of the program, or writes one page for each command.
 pub(crate) fn man(arguments: &ManArguments, mut command: clap::Command) -> Outcome {
     command.build();
     let page = |command: clap::Command| {

@@ -1,4 +1,4 @@
-//! `grainbench conform`: what every solver owes, whatever its method.
+//! `grainbench conform`: tests the conformance properties that every solver must satisfy.
 
 use super::cache;
 use super::cores::{at_once, share};
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Tries the solvers and writes the report.
+/// Tests the solvers and writes the report.
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     check_writable(&arguments.out)?;
@@ -65,10 +65,10 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
 }
 
-/// A solver with what it owes.
+/// Solver with the terms of its conformance.
 pub(crate) type Owing = (Arc<dyn Solver>, Terms);
 
-/// The solvers and manifests named, with what they owe; all of ours when none is named.
+/// Returns the named solvers and external solvers with their terms; all our solvers if none is named.
 pub(crate) fn owing(named: &[String]) -> Result<Vec<Owing>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
@@ -81,8 +81,8 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<Owing>, Fault> {
     Ok(solvers)
 }
 
-/// What every solver owes, of the solvers and manifests named; of all of ours when none is. Finished runs of ours are taken from
-/// a cache where there is one.
+/// Tests the conformance of the named solvers; of all our solvers if none is named. Finished runs of our solvers come
+/// from the cache if there is one. Returns `None` if no solver matches.
 pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
     let solvers = owing(named)?;
     let ours = solvers.len() - named.iter().filter(|name| solver::is_manifest(name)).count();
@@ -94,7 +94,7 @@ pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result
         || true,
         |number| {
             let (solver, terms) = &solvers[number];
-            // A program of another's may bear the name of a solver of ours.
+            // An external solver may have the name of one of our solvers.
             let of_cache = if number < ours { kept.find(&solver.name()) } else { None };
             let of_cache = of_cache.as_ref().unwrap_or(solver);
             judged[number].get_or_init(|| conformance::judge_kept(&**solver, &**of_cache, terms));
@@ -104,7 +104,7 @@ pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result
     Ok((!solvers.is_empty()).then(|| section_of(verdicts.concat(), controls.concat())))
 }
 
-/// The section of some rows.
+/// Returns the section of some conformance results.
 pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
     Section {
         name: "conformance".to_owned(),

@@ -1,17 +1,17 @@
-//! The cores of this machine, and work that shares them.
+//! Number of cores, and parallel work.
 
 pub(crate) use grainbench::campaign::share::share;
 use std::num::NonZeroUsize;
 
-/// Most threads that can be asked for.
+/// Largest accepted number of threads.
 pub(crate) const MOST_THREADS: u16 = 1024;
 
-/// How many threads this machine runs at once.
+/// Returns the number of threads that can run at the same time.
 pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// How many runs of so many threads each this machine has cores for.
+/// Returns the number of runs with `threads` threads each that can run at the same time; at least 1.
 pub(crate) fn at_once(threads: usize) -> usize {
     (cores() / threads).max(1)
 }

@@ -1,4 +1,4 @@
-//! `grainbench cost`: what accuracy costs.
+//! `grainbench cost`: measures error against computing time.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::keep::keep_study;
@@ -54,10 +54,10 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Laps of what a step costs.
+/// Rounds of the measurement of a step.
 pub(crate) const ROUNDS: u32 = 5;
 
-/// Measures and writes the report, after every quantity as far as it is.
+/// Measures the points and writes the report. The report is updated after each target quantity.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let subjects = subjects(&arguments.cases)?;
     let (solvers, named) = WithStrangers::read(&arguments.solver)?;
@@ -115,14 +115,14 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     Ok(if is_worse || !measures { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
-/// Compares a study with the points of another session, which stand at a path.
+/// Compares a study with the points of an earlier session from the file `path`.
 pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
     let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
     study.changes = compare(old, &new);
     study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
 }
 
-/// The subjects of the cases named, in the order of the registry.
+/// Returns the target quantities of the named cases, in the order of the registry.
 pub(crate) fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
@@ -144,7 +144,7 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
     Ok(found)
 }
 
-/// The options that are not the default, in words.
+/// Returns the command and its options that differ from the default.
 pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["cost".to_owned()];
     words.extend(arguments.cases.iter().cloned());
@@ -155,12 +155,12 @@ pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     words
 }
 
-/// Hashes of the sources of solvers, by their names.
+/// Returns hashes of the solvers' sources, by solver name.
 pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
-/// The sentences, and what changed.
+/// Returns the sentences of the study, and the changes since an earlier session.
 pub(crate) fn text(study: &Study, out: &Path) -> String {
     let mut text = String::new();
     for diagram in &study.diagrams {
@@ -183,7 +183,7 @@ pub(crate) fn text(study: &Study, out: &Path) -> String {
     text + &format!("{}\n", out.join("index.html").display())
 }
 
-/// Shows how far a study is, and counts what was reused.
+/// Progress of a study, with the number of reused results.
 pub(crate) struct Follower {
     progress: Option<Progress>,
     reused: u64,
@@ -194,12 +194,12 @@ impl Follower {
         Self { progress: Some(Progress::new(pieces, what)), reused: 0 }
     }
 
-    /// Nobody is shown anything.
+    /// Creates a follower without display.
     pub(crate) const fn none() -> Self {
         Self { progress: None, reused: 0 }
     }
 
-    /// Takes the bar away; how many pieces were reused.
+    /// Removes the progress bar, and returns the number of reused results.
     pub(crate) fn end(&mut self) -> u64 {
         self.progress = None;
         self.reused

@@ -1,4 +1,4 @@
-//! `grainbench deck`: the input of another program for a scene of ours.
+//! `grainbench deck`: writes the input of another program for a scene.
 
 use super::exit::{Fault, Outcome, check_folder, print};
 use super::subject;
@@ -9,7 +9,7 @@ use grainbench::scene::solver::Resolution;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Time step of scenes that are no case, as a fraction of the critical one.
+/// Default time step of the user's scenes, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
 /// Arguments of the command.
@@ -77,7 +77,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A word as a shell takes it for one, whatever it is made of.
+/// Quotes a word for a shell.
 fn shell_word(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:@,".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
