@@ -1,4 +1,4 @@
-//! What an earlier run left: which rows and controls ended how.
+//! Outcomes of an earlier run.
 
 use super::exit::Fault;
 use grainbench::harness::claim::Claim;
@@ -9,10 +9,10 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What tells a row from all others.
+/// Key that identifies a result: case, variant, solver, resolution and quantity.
 type Name = [String; 5];
 
-/// The rows and controls of a `results.json`.
+/// Results and controls from a `results.json` file.
 #[derive(Deserialize)]
 pub(crate) struct Earlier {
     verdicts: Vec<Verdict>,
@@ -24,7 +24,7 @@ fn name(row: &Verdict) -> Name {
 }
 
 impl Earlier {
-    /// Reads the directory of a report, or its `results.json`. `place` is what it was given to.
+    /// Reads the directory of a report, or its `results.json`. `place` is the option that names the path.
     pub(crate) fn read(place: &str, path: &Path) -> Result<Self, Fault> {
         let file = if path.is_dir() { path.join("results.json") } else { path.to_owned() };
         let fault = |found: String| {
@@ -38,7 +38,7 @@ impl Earlier {
         serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
     }
 
-    /// Whether a claim of a case was red: its row by this solver, or its control, which stayed green.
+    /// Returns true if a claim of a case was red: its result with this solver was red, or its control stayed green.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
@@ -53,9 +53,10 @@ impl Earlier {
         rows.any(is_red) || controls.any(|control| !control.turned_red)
     }
 
-    /// What is otherwise in a report, a line a row or control: what turned red first.
+    /// Returns the differences of a report from the earlier one, one line per result or control. Lines that turned red
+    /// come first.
     ///
-    /// Results of cases that the report does not have are gone only if it `is_whole`.
+    /// If `is_whole` is false, earlier results of cases that the report does not contain are ignored.
     pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
         let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
         let before: BTreeMap<Name, &Verdict> = self.verdicts.iter().map(|row| (name(row), row)).collect();

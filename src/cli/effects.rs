@@ -1,4 +1,4 @@
-//! `grainbench effects`: what each effect is worth.
+//! `grainbench effects`: measures the influence of each physical effect.
 
 use super::cost::Follower;
 use super::exit::{Fault, Outcome, RED, check_writable, print};
@@ -54,13 +54,13 @@ struct Yours {
     matters: f64,
 }
 
-/// Who runs it where nobody is named.
+/// Default solver for a scene of the user.
 const SOLVER: &str = "dem";
-/// What matters where nobody says it.
+/// Default of the smallest relevant change of a probe, as a fraction of its largest value.
 const MATTERS: f64 = 0.01;
 
 impl Yours {
-    /// Whether nothing was said that cases would not heed: they say themselves who runs them, in which steps, and what matters.
+    /// Returns true if all options have their defaults. Cases set these options themselves and would ignore them.
     fn is_usual(&self) -> bool {
         self.solver == SOLVER && self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq()
     }
@@ -74,7 +74,7 @@ impl Yours {
     }
 }
 
-/// Makes the ledger and writes the report, after every case as far as it is.
+/// Tests the effects and writes the report. The report is updated after each case.
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
         if arguments.cases.len() > 1 {
@@ -121,7 +121,7 @@ fn is_scene(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
 }
 
-/// The ledger of a scene of somebody's.
+/// Tests the effects of a scene of the user.
 fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let yours = &arguments.yours;
     let (scene, _) = subject::scene(name, &[])?;
@@ -155,7 +155,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     tell(&study, arguments, "")
 }
 
-/// Prints the ledger; red where an effect that is off is not inert.
+/// Prints the results. The outcome is red if an absent effect with a neutral value changes a result.
 fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     if arguments.json {
         print(&study_json(study).map_err(Fault::input)?)?;
@@ -173,7 +173,7 @@ fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     Ok(if red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
-/// The ledgers of the cases named, with their pieces.
+/// Returns the effects studies of the named cases, with their effects.
 fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<Piece>)>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Exit codes, messages, and what is printed.
+//! Exit codes, messages, and printing.
 
 use grainbench::scene::error::{SceneError, did_you_mean};
 use grainbench::scene::text::tamed;
@@ -8,36 +8,36 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What a command ends with.
+/// Result of a command.
 pub(crate) type Outcome = Result<ExitCode, Fault>;
 
-/// Why a command could not do what it was asked for.
+/// Error of a command.
 #[derive(Debug)]
 pub(crate) enum Fault {
     /// Bad input or usage: exit code 2.
     Input(String),
-    /// The same, with the names that are known, which are told one a line.
+    /// Bad input with an unknown name, and the known names, which are printed one per line; exit code 2.
     Unknown(String, Vec<String>),
-    /// A solver of ours broke: exit code 1.
+    /// Failure during a run, such as a crash of our solver or a full disk; exit code 1.
     Broken(String),
 }
 
-/// Exit code of a run with a row that fails, a control that stayed green, or a solver that broke.
+/// Exit code if a result fails, a control stays green, or a solver crashes.
 pub(crate) const RED: u8 = 1;
 
-/// More names than these are told one a line.
+/// Largest number of known names that are printed on one line.
 const MOST_ON_A_LINE: usize = 6;
 
-/// Exit code of bad input or usage, the same that clap has for its own.
+/// Exit code of bad input or usage; clap uses the same one.
 const BAD_INPUT: u8 = 2;
 
 impl Fault {
-    /// Bad input or usage.
+    /// Returns an error of input or usage.
     pub(crate) fn input(message: impl Display) -> Self {
         Self::Input(message.to_string())
     }
 
-    /// Something that could not be written. A full disk is no fault of the input.
+    /// Returns the error of a failed write. A full disk is not an input error.
     pub(crate) fn writing(error: impl std::error::Error + 'static) -> Self {
         let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
         while let Some(inner) = cause {
@@ -49,7 +49,7 @@ impl Fault {
         Self::input(error)
     }
 
-    /// A word that is none of those known.
+    /// Returns the error of a word that is not among the known ones.
     pub(crate) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Self {
         let mut names: Vec<&str> = known.clone().into_iter().collect();
         let mut seen = BTreeSet::new();
@@ -62,7 +62,7 @@ impl Fault {
         Self::Input(format!("expected {what}, one of {}; found `{word}`{help}", names.join(", ")))
     }
 
-    /// Says it on the standard error and gives the exit code.
+    /// Prints the error on the standard error and returns the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         let (message, names, code) = match self {
             Self::Input(message) => (message, &[][..], BAD_INPUT),
@@ -92,13 +92,13 @@ impl From<SceneError> for Fault {
     }
 }
 
-/// A line on the standard error. Nobody is left to tell when that is closed.
+/// Prints a line on the standard error. A closed standard error is ignored.
 pub(crate) fn say(kind: &str, message: &str) {
     let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&one_line, |_| false));
 }
 
-/// Prints text on the standard output. A reader who has seen enough, as `head` has, is no error.
+/// Prints text on the standard output. A reader that closes the pipe early, as `head` does, is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Fault> {
     let mut out = io::stdout().lock();
     match out.write_all(tamed(text, |character| matches!(character, '\n' | '\t')).as_bytes()).and_then(|()| out.flush())
@@ -116,14 +116,14 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
     print(&(text + "\n"))
 }
 
-/// Refuses an output directory for files beside those of the user that cannot be written.
+/// Rejects an output directory that cannot be written. It may contain other files of the user.
 pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
-    // Made and dropped at once, so that a run that is interrupted leaves nothing beside the directory either.
+    // The test directory is removed at once, so that an interrupted run leaves nothing next to the output directory.
     grainbench::reports::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
 }
 
-/// Refuses an output directory that cannot be written, or has a page or a manifest of another program, before anything is
-/// computed for it.
+/// Rejects an output directory before any computation. The directory must be writable and must not contain a page or
+/// manifest of another program.
 pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
     check_folder(out)?;
     grainbench::reports::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))

@@ -1,4 +1,4 @@
-//! `grainbench fields`: grains or material points read as a continuum, cell by cell.
+//! `grainbench fields`: computes continuum fields of grains or material points, cell by cell.
 
 use super::exit::{Fault, Outcome, check_writable, print, print_json, say};
 use super::value::{path_and_value, positive, whole};
@@ -101,11 +101,12 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Most cells of a grid, and of all frames together.
+/// Largest number of cells of a grid.
 const MOST_CELLS: f64 = 1e6;
+/// Largest number of cells in all frames together.
 const MOST_ELEMENTS: usize = 20_000_000;
 
-/// Reads the snapshots, takes means over the cells, and writes them.
+/// Reads the snapshots, averages them over the cells, and writes the fields.
 pub(crate) fn fields(arguments: &Arguments) -> Outcome {
     check_writable(&arguments.out)?;
     let mut course: Option<Course> = None;
@@ -163,7 +164,7 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The snapshots of a directory that `simulate` left.
+/// Reads the snapshots of a directory that `simulate` wrote.
 fn of_directory(
     dir: &Path,
     arguments: &Arguments,
@@ -186,7 +187,7 @@ fn of_directory(
     each_snapshot(dir, Fault::input, take)
 }
 
-/// The snapshots of a dump.
+/// Reads the snapshots of a dump.
 fn of_dump(
     path: &Path,
     arguments: &Arguments,
@@ -201,7 +202,7 @@ fn of_dump(
         partial: arguments.partial,
     };
     if (arguments.from.is_some() || arguments.to.is_some()) && arguments.time_step.is_none() {
-        // A dump may tell the time; where it does not, a window of times would silently hold nothing.
+        // In a dump without times, a time interval would select nothing without an error.
         let mut first = GrainDump::open(path, None, beside.clone()).map_err(Fault::input)?;
         if first.read().map_err(Fault::input)?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
             return Err(Fault::input("--from, --to: expected a dump that tells the time, or `--time-step` beside it"));
@@ -217,20 +218,22 @@ fn of_dump(
     Ok(())
 }
 
-/// The fault of a dump that cannot be read; one that is cut off can, as far as it goes.
+/// Returns the error of an unreadable dump. For a truncated dump, the error names the option that accepts its whole
+/// frames.
 fn unreadable(error: ReadError) -> Fault {
     let hint = if error.is_cut() { " (--partial takes the whole frames in front of it)" } else { "" };
     Fault::input(format!("{error}{hint}"))
 }
 
-/// Whether a snapshot of ours is of a plane: nothing is beside z = 0, in a box from −½ to ½.
+/// Returns true if a snapshot of our solvers is two-dimensional: all positions have z = 0, and the box extends from −½
+/// to ½ along z.
 fn is_plane(snapshot: &Snapshot) -> bool {
     let grains = snapshot.grains.iter().map(|grain| grain.position.z);
     let mut heights = grains.chain(snapshot.points.iter().map(|point| point.position.z));
     (snapshot.bounds.0.z, snapshot.bounds.1.z) == (-0.5, 0.5) && heights.all(|height| height == 0.0)
 }
 
-/// The grid over the first snapshot, and what is left out.
+/// Creates the grid over the first snapshot, and the masks.
 fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     let space = match arguments.dimension {
         Some(2) => Dimension::Two,
@@ -281,7 +284,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     Ok(course)
 }
 
-/// The size of a cell (m) as it was asked for, if the box from `low` to `high` (m) holds one.
+/// Returns the requested cell size (m), if it fits into the box from `low` to `high` (m).
 fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension: usize) -> Result<Vector3<f64>, Fault> {
     let size = match *given {
         [all] => Vector3::repeat(all),
@@ -309,7 +312,7 @@ fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension:
     Ok(size)
 }
 
-/// Reads `x=0,z=0,r=7.5`.
+/// Reads the centre and radius of an orifice, such as `x=0,z=0,r=7.5`.
 fn orifice(text: &str) -> Result<Orifice, Fault> {
     let fault =
         || Fault::input(format!("--orifice: expected places and a reach such as x=0,z=0,r=7.5, found `{text}`"));
@@ -329,10 +332,10 @@ fn orifice(text: &str) -> Result<Orifice, Fault> {
     Ok(Orifice { middle, reach })
 }
 
-/// The quantities that are printed.
+/// Number of quantities in the printed summary.
 const PRINTED: usize = 11;
 
-/// The summary for people.
+/// Returns the printed summary.
 fn told(summary: &Summary, out: &Path) -> String {
     let [x, y, z] = summary.cell.map(|size| number::significant(size, 4));
     let mut text = format!("{}\ncells of {x} × {y} × {z} m\n\n", summary.words());

@@ -1,4 +1,4 @@
-//! `--filter`: which rows of the cases named are meant, by what they are and how they end.
+//! `--filter`: selects results by their properties and outcomes.
 
 use super::exit::Fault;
 use glob::{MatchOptions, Pattern};
@@ -7,14 +7,14 @@ use grainbench::harness::evidence::Evidence;
 use grainbench::harness::verdict::Outcome;
 use grainbench::reports::headline::OUTCOMES;
 
-/// Small and capital letters are alike, and `*` goes over everything.
+/// Options of patterns: letter case is ignored, and `*` matches any text.
 const LOOSE: MatchOptions =
     MatchOptions { case_sensitive: false, require_literal_separator: false, require_literal_leading_dot: false };
 
-/// What rows are chosen by.
+/// Keys of filters.
 const KEYS: [&str; 4] = ["quantity", "source", "evidence", "outcome"];
 
-/// One `--filter KEY=WHAT`.
+/// Filter `KEY=WHAT`.
 #[derive(Clone, Debug)]
 enum Filter {
     Quantity(Pattern),
@@ -23,17 +23,17 @@ enum Filter {
     Outcome(Outcome),
 }
 
-/// All of them: a row is meant that is meant by one of each key.
+/// All filters. A result is selected if, for each key, one of the filters matches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Filters(Vec<Filter>);
 
 impl Filters {
-    /// Reads `KEY=WHAT`, several of them.
+    /// Reads filters of the form `KEY=WHAT`.
     pub(crate) fn read(texts: &[String]) -> Result<Self, Fault> {
         texts.iter().map(|text| read(text)).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Whether a claim is to be judged: what is known of it beforehand is meant.
+    /// Returns true if the claim is selected by the properties that are known before it runs.
     pub(crate) fn means(&self, claim: &Claim) -> bool {
         self.of_one_key(|filter| match filter {
             Filter::Quantity(pattern) => Some(pattern.matches_with(&claim.quantity, LOOSE)),
@@ -47,7 +47,7 @@ impl Filters {
         })
     }
 
-    /// The outcomes that are asked for; none where all are shown.
+    /// Returns the requested outcomes; empty if all are requested.
     pub(crate) fn outcomes(&self) -> Vec<Outcome> {
         let outcome = |filter: &Filter| match filter {
             Filter::Outcome(outcome) => Some(*outcome),
@@ -56,7 +56,7 @@ impl Filters {
         self.0.iter().filter_map(outcome).collect()
     }
 
-    /// Whether one of the filters of a key lets pass, or there is none of that key.
+    /// Returns true if one of the filters of a key matches, or if no filter has this key.
     fn of_one_key(&self, passes: impl Fn(&Filter) -> Option<bool>) -> bool {
         let mut answers = self.0.iter().filter_map(passes).peekable();
         answers.peek().is_none() || answers.any(|passes| passes)
@@ -85,7 +85,7 @@ fn read(text: &str) -> Result<Filter, Fault> {
     }
 }
 
-/// A pattern of the shell; words without `*`, `?` and `[` are looked for anywhere.
+/// Reads a shell pattern. Text without `*`, `?` and `[` matches anywhere.
 fn pattern(what: &str) -> Result<Pattern, Fault> {
     let text = if super::pattern::is_one(what) { what.to_owned() } else { format!("*{what}*") };
     super::pattern::read("--filter", &text)

@@ -1,4 +1,4 @@
-//! Within a job on GitHub: a summary of the report, and its red rows as annotations.
+//! Job summary and annotations of red results on GitHub.
 
 use super::exit::{Fault, print};
 use grainbench::reports::Report;
@@ -7,8 +7,8 @@ use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Adds to the job's summary, and prints annotations where standard output is not asked for by a program. Elsewhere it does
-/// nothing.
+/// Appends to the job summary, and prints annotations unless the standard output is JSON. Does nothing outside GitHub
+/// jobs.
 pub(crate) fn tell(report: &Report, is_json: bool) -> Result<(), Fault> {
     if let Some(path) = env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) {
         let file = OpenOptions::new().create(true).append(true).open(&path);

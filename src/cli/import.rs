@@ -1,5 +1,5 @@
-//! `grainbench reference import`: what published data of others, that the user has, says: derived numbers, what it says of
-//! itself, and every code's curve. The data stays where it is.
+//! `grainbench reference import`: derives numbers and curves from the user's copy of third-party data. The data itself
+//! is not copied.
 
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
@@ -29,16 +29,17 @@ pub(crate) struct Import {
     out: PathBuf,
 }
 
-/// Endings of tables.
+/// File extensions of tables.
 const ENDINGS: [&str; 4] = [".csv", ".csv.gz", ".csv.zst", ".parquet"];
-/// The codes and beds that stand for no draw of the others: a code that lies far off, a bed that is another, and one whose ball
-/// was released at rest.
+/// Codes and beds that are not comparable with the others. Yade is an outlier, which the authors exclude too, and no
+/// other code has bed 1 of MUSEN. In bed 10 of LIGGGHTS, the ball was released at rest.
 const LEFT_OUT: [(&str, Option<usize>); 3] = [("Yade", None), ("MUSEN", Some(1)), ("LIGGGHTS", Some(10))];
 /// Times at which heights are derived (ms).
 const TIMES: [u32; 7] = [25, 28, 30, 32, 35, 40, 50];
-/// When heights are derived of runs that are alone in their file (ms): past the first impact, and at rest in a deep bed.
+/// Times at which heights are derived from files with a single run (ms): after the first impact, and at rest in a deep
+/// bed.
 const TIMES_ALONE: [u32; 2] = [30, 60];
-/// When the ball rebounds (s).
+/// Time interval of the rebound (s).
 const REBOUND: [f64; 2] = [0.038, 0.050];
 
 pub(crate) fn import(arguments: &Import) -> Outcome {
@@ -94,7 +95,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The tables of a directory, by name; others' are passed over.
+/// Reads the tables of a directory, in the order of their names; other files are skipped.
 fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
     let shown = directory.display();
     let unreadable =
@@ -118,7 +119,7 @@ fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
     Ok(tables)
 }
 
-/// The drum's shared start, where the directory has one file of that kind.
+/// Reads the initial state of the drum; `None` if the directory has no such file.
 fn start(directory: &Path) -> Result<Option<Start>, Fault> {
     let path = start_in(directory).map_err(|error| Fault::input(format!("{}: {error}", directory.display())))?;
     path.map(|path| read_start(&path).map_err(Fault::input)).transpose()
@@ -128,7 +129,7 @@ fn is_kept(course: &Course) -> bool {
     !LEFT_OUT.iter().any(|(code, bed)| course.code == *code && bed.is_none_or(|bed| bed == course.bed))
 }
 
-/// Numbers as the provenance of the work has them.
+/// Returns the derived numbers of the impact in the format of the provenance file.
 fn values(impact: &Impact) -> String {
     let mut lines = String::new();
     let mut add = |key: &str, what: &str, unit: &str, spread: Option<Spread>| {
@@ -160,7 +161,7 @@ fn values(impact: &Impact) -> String {
     lines
 }
 
-/// Numbers of silo and drum as the provenance of the work has them.
+/// Returns the derived numbers of silo and drum in the format of the provenance file.
 fn numbers(pairs: &[Quantity]) -> String {
     let mut lines = String::new();
     for Quantity { key, what, pair, .. } in pairs.iter().filter(|quantity| quantity.time.is_none()) {
@@ -177,14 +178,14 @@ fn numbers(pairs: &[Quantity]) -> String {
     lines
 }
 
-/// A course of silo or drum: mean and half the difference at every time.
+/// Returns a time series of silo or drum as CSV lines: mean and half the difference.
 fn over_time(pairs: &[Quantity], name: &str) -> String {
     let of = pairs.iter().filter(|quantity| quantity.key == name);
     of.filter_map(|quantity| Some(format!("{:.1},{},{}\n", quantity.time?, quantity.pair.mean, quantity.pair.half?)))
         .collect()
 }
 
-/// Mean and deviations at every time.
+/// Returns mean and standard deviations of the height over time as CSV.
 fn course(impact: &Impact) -> String {
     let mut lines = "t,mean,code,bed\n".to_owned();
     for &time in &impact.times {
@@ -196,7 +197,7 @@ fn course(impact: &Impact) -> String {
     lines
 }
 
-/// Every code's curve: the mean of its beds.
+/// Plots the mean height over the beds for each code.
 fn heights(name: &str, impact: &Impact) -> Figure {
     let mut codes: Vec<&str> = Vec::new();
     for course in &impact.courses {
@@ -235,7 +236,7 @@ fn leaving(name: &str, silo: &Silo) -> String {
     })
 }
 
-/// Heights of a run that is alone in its file, by its own clock less what that is ahead by in its first sample.
+/// Returns the heights of a single run. Its times are corrected by the fall of the ball before the first sample.
 fn alone(name: &str, impact: &Impact) -> String {
     let [course] = &impact.courses[..] else { return String::new() };
     let key = name.replace('-', "_");

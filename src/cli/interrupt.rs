@@ -1,20 +1,20 @@
-//! Ctrl-C: the first ends what is going on after the pieces that are at work, the second ends the program.
+//! Ctrl-C: the first stops the work after the current items, and the second ends the program.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether somebody wants the work to end.
+/// Flag that is set by an interrupt.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Listens from now on. Where signals cannot be caught they end the program as they always did.
+    /// Starts to listen for signals. If signals cannot be caught, they end the program as by default.
     pub(crate) fn listen() -> Self {
         let asked = Self::default();
         for signal in [SIGINT, SIGTERM] {
-            // In this order: what was asked for once before ends the program.
+            // This order ensures that the second signal ends the program.
             let again = flag::register_conditional_default(signal, Arc::clone(&asked.0));
             if again.is_ok() {
                 let _ = flag::register(signal, Arc::clone(&asked.0));
@@ -23,7 +23,7 @@ impl Interrupt {
         asked
     }
 
-    /// Whether it was asked for.
+    /// Returns true if an interrupt was received.
     pub(crate) fn is_asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

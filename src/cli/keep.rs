@@ -1,5 +1,5 @@
-//! What is kept: by `run --keep` the rows of a program beside its manifest, to which `--as-kept` holds it, and by `cost --keep`
-//! and `stability --keep` a study in the tree.
+//! Stored results. `run --keep` stores the results of an external solver next to its manifest, and `--as-kept` compares
+//! with them. `cost --keep` and `stability --keep` store a study in the source tree.
 
 use super::exit::Fault;
 use super::select::Selected;
@@ -9,12 +9,12 @@ use grainbench::reports::study::{Study, kept_text};
 use grainbench::reports::{Report, write_file};
 use std::fs;
 
-/// The file with what is kept.
+/// File of stored results.
 const KEEPS: &str = "judged.json";
-/// The version of a program that names none.
+/// Version of a program that reports none.
 const UNKNOWN: &str = "not told";
 
-/// The one program that was selected.
+/// Returns the only selected external solver.
 pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
     let mut programs = selected.iter().map(|of| of.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
@@ -24,7 +24,7 @@ pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
     if programs.all(is_it) { Ok(program) } else { Err(Fault::input("--keep: expected one program, found several")) }
 }
 
-/// What is kept of a program.
+/// Reads the stored results of an external solver.
 pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
     let path = program.folder().join(KEEPS);
     let wrong = |found: String| {
@@ -34,7 +34,7 @@ pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
     Judged::read(&text).map_err(|error| wrong(error.to_string()))
 }
 
-/// The name and version of a program where they are not those of the stored rows.
+/// Returns the name and version of an external solver if they differ from the stored ones.
 pub(crate) fn other_program(program: &Outside, kept: &Judged) -> Vec<String> {
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let pairs = [("name", &program.manifest().name, &kept.program), ("version", &version, &kept.version)];
@@ -42,13 +42,13 @@ pub(crate) fn other_program(program: &Outside, kept: &Judged) -> Vec<String> {
     other.map(|(what, is, was)| format!("{what} {is}; kept: {was}")).collect()
 }
 
-/// Keeps a study in the tree, for the first screen of a page.
+/// Stores a study in the source tree, for the first screen of the page.
 pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
     let text = kept_text(study).map_err(Fault::input)?;
     write_file(grainbench::studies::kept::place(name), text.as_bytes()).map_err(Fault::writing)
 }
 
-/// Keeps the rows of a program beside its manifest.
+/// Stores the results of an external solver next to its manifest.
 pub(crate) fn keep(program: &Outside, report: &Report) -> Result<(), Fault> {
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();

@@ -1,4 +1,4 @@
-//! `grainbench reference keep`: does the runs whose tables are kept with their cases.
+//! `grainbench reference keep`: does the runs whose results are stored with their cases.
 
 use super::checkpoint::read;
 use super::cores::MOST_THREADS;
@@ -50,7 +50,7 @@ pub(crate) struct Keep {
 /// Number of steps between checkpoints.
 const EVERY: u64 = 20_000;
 
-/// Does the runs whose tables are kept with their cases. Each is left whole before the next begins.
+/// Does the runs and stores their results. Each result is complete before the next run begins.
 pub(crate) fn keep(arguments: &Keep) -> Outcome {
     let known = kept::cases();
     let names = || known.iter().map(|case| case.name);
@@ -119,22 +119,22 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
     if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(ExitCode::SUCCESS) }
 }
 
-/// One run on its way to be kept.
+/// Run whose result is to be stored.
 struct Keeping<'a> {
     arguments: &'a Keep,
     runner: &'a Runner,
     wanted: &'a Wanted,
     given: Arc<Scene>,
-    /// Which it is, for who watches.
+    /// Description of the run for the progress bar.
     words: String,
     interrupt: &'a Interrupt,
 }
 
 impl Keeping<'_> {
-    /// Does it and keeps it; the checkpoint goes once it is kept.
+    /// Does the run, stores the result, and then deletes the checkpoint.
     fn done(&self) -> Result<(), Fault> {
         let Self { wanted, runner, .. } = self;
-        // A reader of snapshots sees each once: what it has seen is in no checkpoint.
+        // A snapshot reader sees each snapshot once, and checkpoints do not contain its state.
         let is_resumable = wanted.run.reading.is_none() && !solvers::is_program(wanted.run.solver);
         let done = if is_resumable {
             self.resumed()?
@@ -154,7 +154,7 @@ impl Keeping<'_> {
         }
         out.commit().map_err(Fault::writing)?;
         if is_resumable {
-            // There is none of a run that was shorter than the way to its first; the folder goes with its last.
+            // A short run has no checkpoint. The directory is deleted if it is empty.
             let _ = fs::remove_file(self.checkpoint());
             let _ = fs::remove_dir(&self.arguments.checkpoints);
         }
@@ -166,7 +166,7 @@ impl Keeping<'_> {
         self.arguments.checkpoints.join(format!("{}-{id}.checkpoint", case.name))
     }
 
-    /// The run, from its checkpoint where there is one.
+    /// Does the run, from its checkpoint if there is one.
     fn resumed(&self) -> Result<Done, Fault> {
         let run = &self.wanted.run;
         let solver = solvers::by_name(run.solver)
@@ -193,11 +193,11 @@ impl Keeping<'_> {
     }
 }
 
-/// Tells how far a run is.
+/// Observer that shows the progress of a run.
 struct Watcher<'a> {
     of: &'a Keeping<'a>,
     progress: Option<Progress>,
-    /// Whether nothing has been told yet.
+    /// True before the first report of progress.
     is_new: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `grainbench list`: which cases there are.
+//! `grainbench list`: lists the cases.
 
 use super::exit::{Outcome, print, print_json};
 use super::select;
@@ -21,20 +21,20 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// One row that is fair to any solver.
+/// Solver-independent claim.
 #[derive(Serialize)]
 struct Row {
     case: &'static str,
     variant: &'static str,
     quantity: String,
     unit: &'static str,
-    /// The wrong physics that must turn it red.
+    /// Wrong physics of the negative control.
     control: &'static str,
-    /// Kind of solvers that it is asked of: `any`, `continuum` or `springs`.
+    /// Kind of solvers that the claim applies to: `any`, `continuum` or `springs`.
     solvers: &'static str,
 }
 
-/// One case of the list.
+/// Entry of a case.
 #[derive(Serialize)]
 struct Entry {
     name: &'static str,
@@ -61,7 +61,7 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the rows that `run --solver SOLVER.toml` judges.
+/// Prints the claims that `run --solver SOLVER.toml` evaluates.
 fn list_rows(arguments: &Arguments) -> Outcome {
     let mut rows = Vec::new();
     for selected in select::select_fair(&arguments.cases, &[])? {
