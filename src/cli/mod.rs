@@ -1,4 +1,4 @@
-//! The commands of the program.
+//! Commands of the program.
 
 mod cache;
 mod campaign;
@@ -44,7 +44,7 @@ use exit::Fault;
 use grainbench::lanes::Processor;
 use std::process::ExitCode;
 
-/// The version, with the commit that the program is built from.
+/// Version, and the commit that the program is built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")");
 
 /// Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.

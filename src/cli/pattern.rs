@@ -1,24 +1,24 @@
-//! Names with `*`, `?` and `[…]`, as the shell has them.
+//! Patterns with `*`, `?` and `[…]`, as in a shell.
 
 use super::exit::Fault;
 use glob::{MatchOptions, Pattern};
 use grainbench::cases::registry::CASES;
 
-/// Whether a word is a pattern and not a name.
+/// Returns true if a word is a pattern.
 pub(crate) fn is_one(word: &str) -> bool {
     word.contains(['*', '?', '['])
 }
 
-/// Reads a pattern; `place` is what it was given to.
+/// Reads a pattern; `place` is the option or argument that contains it.
 pub(crate) fn read(place: &str, text: &str) -> Result<Pattern, Fault> {
     Pattern::new(text)
         .map_err(|error| Fault::input(format!("{place}: expected a pattern, found `{text}`: {}", error.msg)))
 }
 
-/// Cases and variants with patterns among them, each pattern replaced by the names of the registry that it stands for:
-/// `incline-*` for cases, `*/60deg*` for variants.
+/// Replaces each pattern by the matching names of the registry: `incline-*` selects cases, and `*/60deg*` selects
+/// variants.
 pub(crate) fn expanded(names: &[String]) -> Result<Vec<String>, Fault> {
-    /// `*` ends at the `/` between a case and its variant.
+    /// Options of patterns: `*` does not match the `/` between a case and its variant.
     const IN_PARTS: MatchOptions =
         MatchOptions { case_sensitive: true, require_literal_separator: true, require_literal_leading_dot: false };
     let mut all = Vec::new();

@@ -1,15 +1,15 @@
-//! Progress for people who watch a terminal; silence for files and pipes.
+//! Progress bar for terminals; files and pipes get none.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// A bar on the standard error, or nothing when that is no terminal.
+/// Progress bar on the standard error; empty if this is not a terminal.
 pub(crate) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// A bar of a number of things to do; `what` is what they are called.
+    /// Creates a bar for `total` items; `what` is their name in the plural.
     pub(crate) fn new(total: u64, what: &str) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self(None);
@@ -25,14 +25,14 @@ impl Progress {
         Self(Some(bar))
     }
 
-    /// What is being done now.
+    /// Shows the current item.
     pub(crate) fn now(&self, what: &str) {
         if let Some(bar) = &self.0 {
             bar.set_message(what.to_owned());
         }
     }
 
-    /// Says something that stays, above the bar where there is one.
+    /// Prints a permanent line, above the bar if there is one.
     pub(crate) fn tell(&self, line: &str) {
         match &self.0 {
             Some(bar) => bar.println(line),
@@ -40,14 +40,14 @@ impl Progress {
         }
     }
 
-    /// One more is done.
+    /// Counts one more finished item.
     pub(crate) fn advance(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);
         }
     }
 
-    /// So many were done before: the time that is left is reckoned from here.
+    /// Sets the number of items that were finished before. The remaining time is estimated from here.
     pub(crate) fn from(&self, done: u64) {
         if let Some(bar) = &self.0 {
             bar.set_position(done);
@@ -55,7 +55,7 @@ impl Progress {
         }
     }
 
-    /// How many are done, of how many.
+    /// Sets the number of finished items and the total.
     pub(crate) fn set(&self, done: u64, total: u64) {
         if let Some(bar) = &self.0 {
             bar.set_length(total);
@@ -64,7 +64,7 @@ impl Progress {
     }
 }
 
-/// How long it will take yet, in words: while anything is left it is never no time.
+/// Returns the remaining time in words. Unfinished work never shows zero time.
 fn left(done: u64, estimate: Duration) -> String {
     match estimate.as_secs() {
         _ if done == 0 => "time left not known yet".to_owned(),

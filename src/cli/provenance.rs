@@ -1,11 +1,11 @@
-//! What ran, where and when.
+//! Provenance: program, date and machine.
 
 use super::cores::cores;
 use grainbench::lanes::Processor;
 use grainbench::reports::Provenance;
 use std::fs;
 
-/// The provenance of a run that took `wall_seconds`, with its options in words.
+/// Returns the provenance of a run that took `wall_seconds`, with its options in words.
 pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance {
     Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -18,14 +18,14 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
     }
 }
 
-/// Processor, cores, operating system, and what of the processor our solvers use.
+/// Returns processor, cores, operating system, and the vector instructions that our solvers use.
 fn machine() -> String {
     let cores = cores();
     let plural = if cores == 1 { "" } else { "s" };
     format!("{}, {cores} core{plural}, {}, loops for {}", processor(), system(), Processor::new().name())
 }
 
-/// The value of the first line `key … separator value` of a file of the system.
+/// Returns the value of the first line `key … separator value` in a system file.
 fn setting(file: &str, key: &str, separator: char) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let line = text.lines().find(|line| line.starts_with(key))?;

@@ -1,4 +1,4 @@
-//! `grainbench race`: how fast solvers are, beside other programs on the same scenes in turn.
+//! `grainbench race`: measures the throughput of solvers and of other programs on the same scenes in turn.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
@@ -16,24 +16,25 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Scenes that are run where none is named: dense in the plane and in space, sparse, with Hertz contacts, few grains, and a bed
-/// of 25,000 that a ball falls into.
+/// Default benchmark scenes: dense in the plane and in space, sparse, with Hertz contacts, few grains, and the impact
+/// of a ball on a bed of 25,000 grains.
 const TRACKS: [&str; 7] =
     ["plane-shear", "cooling-gas", "nine-discs/kappa-1", "discs-400", "spheres", "hertz", "impact-bed/late"];
-/// Those that are no case.
+/// Benchmark scenes that are not cases.
 const SCENES: [(&str, &str); 3] = [
     ("discs-400", include_str!("../../benches/race/discs-400.toml")),
     ("spheres", include_str!("../../benches/race/spheres.toml")),
     ("hertz", include_str!("../../benches/race/hertz.toml")),
 ];
-/// Our solver in the convention of a program, and the program.
+/// Our solver in the contact convention of a program, and the program.
 const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
-/// Particle-steps of a long run, unless steps are asked for: some seconds of any program.
+/// Default number of particle-steps of the long run, which takes any program some seconds.
 const WORK: u64 = 30_000_000;
-/// Most steps of one: of few grains what a step costs by itself is felt early.
+/// Largest default number of steps of the long run. With few grains, the cost per step dominates early.
 const MOST_STEPS: u64 = 600_000;
 
-/// Most steps of a short one, at whose end kinetic energies are compared: further on collisions have made much of the last bit.
+/// Largest default number of steps of the short run. Kinetic energies are compared at its end, and later collisions
+/// amplify rounding errors.
 const MOST_TO_COMPARE: u64 = 1000;
 
 /// Arguments of the command.
@@ -59,7 +60,7 @@ pub(crate) struct Arguments {
     out: PathBuf,
 }
 
-/// Two numbers of steps.
+/// Reads the numbers of steps of the short and the long run.
 fn steps(text: &str) -> Result<[u64; 2], String> {
     let expected = || format!("expected two numbers of steps, the second larger, found `{text}`");
     let (short, long) = text.split_once(',').ok_or_else(expected)?;
@@ -69,7 +70,7 @@ fn steps(text: &str) -> Result<[u64; 2], String> {
     }
 }
 
-/// Runs the race and leaves its table.
+/// Runs the benchmark and writes its table.
 pub(crate) fn race(arguments: &Arguments) -> Outcome {
     let known = PAIRS.as_flattened();
     let (manifests, named): (Vec<&String>, Vec<&String>) =
@@ -118,7 +119,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     Ok(if has_run { ExitCode::SUCCESS } else { ExitCode::from(RED) })
 }
 
-/// A scene that grains on springs can run, at the step that its case takes for them.
+/// Returns a benchmark scene with grains, at the time step of its case for contact springs.
 fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
     let (scene, case) = match SCENES.iter().find(|(known, _)| *known == name) {
         Some((known, text)) => (SceneSource::from_text(known, Path::new(""), text).scene(&read_grains)?, None),

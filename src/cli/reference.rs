@@ -1,4 +1,4 @@
-//! `grainbench reference`: makes the stored runs of other programs, and sees whether these still give them.
+//! `grainbench reference`: makes stored runs of other programs, and checks that the installed programs reproduce them.
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
@@ -74,7 +74,7 @@ pub(crate) struct Verify {
     json: bool,
 }
 
-/// Does what is asked for.
+/// Runs the subcommand.
 pub(crate) fn reference(command: &Command) -> Outcome {
     match command {
         Command::Build(arguments) => build(arguments),
@@ -85,7 +85,7 @@ pub(crate) fn reference(command: &Command) -> Outcome {
     }
 }
 
-/// The runs of some names.
+/// Returns the stored runs with the given names.
 fn named(ids: &[String]) -> Result<Vec<Reference>, Fault> {
     let all = stored::all();
     let full = |of: &Reference| format!("{}/{}", of.program.name(), of.id);
@@ -141,7 +141,7 @@ fn build(arguments: &Build) -> Outcome {
     if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(ExitCode::SUCCESS) }
 }
 
-/// Estimates anew what is stored of the rows of some cases whose tolerance is an estimate.
+/// Estimates the discretization errors of some cases again, for claims with an estimated tolerance.
 fn uncertainty(arguments: &Uncertainty) -> Outcome {
     let set = if arguments.long { Set::Long } else { Set::Tests };
     let known = || CASES.iter().map(|case| case.name);
@@ -185,7 +185,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What stands in the files, so that a reader needs no other.
+/// Rule in the stored files, so that a file can be understood alone.
 const RULE: &str = "three levels of resolution, each half as fine as the one before; observed order p, \
                     U = F_s |f1 - f2|/(2^p - 1) with F_s = 1.25 near the order of the method and 3 elsewhere (ASME V&V 20-2009)";
 

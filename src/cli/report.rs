@@ -1,4 +1,4 @@
-//! `grainbench report`: a page made from what a run left.
+//! `grainbench report`: writes a page from stored results.
 
 use super::exit::{Fault, Outcome, print};
 use super::run;
@@ -34,13 +34,13 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Whether pictures are asked for in a way of their own.
+    /// Returns true if an option about figures is given.
     const fn is_of_pictures(&self) -> bool {
         !self.beside.is_empty() || self.fringe_stress.is_some() || self.window.is_some() || self.frames.is_some()
     }
 }
 
-/// Reads `FROM..TO`.
+/// Reads a time interval `FROM..TO`.
 fn window(text: &str) -> Result<(f64, f64), String> {
     let expected = || format!("expected two times in seconds with `..` between them, such as `.2..1`, found `{text}`");
     let (from, to) = text.split_once("..").ok_or_else(expected)?;
@@ -56,7 +56,7 @@ fn window(text: &str) -> Result<(f64, f64), String> {
     if from <= to { Ok((from, to)) } else { Err(format!("expected a time and a later one, found `{text}`")) }
 }
 
-/// Reads what stands in a directory and writes page, figures and result files again. Ends as the run ended.
+/// Reads a directory and writes page, figures and result files again. The exit code is that of the run.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
     let page = format!("{}\n", arguments.dir.join("index.html").display());
     for dir in std::iter::once(&arguments.dir).chain(&arguments.beside) {
@@ -93,7 +93,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     Ok(run::exit_code(&report, false))
 }
 
-/// Pictures of a simulation, and of others beside it.
+/// Draws the figures of a simulation and of the simulations beside it.
 fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> =
@@ -117,7 +117,7 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
 }
 
-/// What tells a record from the others: nothing, the solver, or solver and resolution.
+/// Returns the name that distinguishes a record from the other records: none, the solver, or solver and resolution.
 fn name(record: &Record, all: &[Record]) -> String {
     let from = &record.provenance;
     let alike = all.iter().filter(|other| other.provenance.solver == from.solver).count();

@@ -1,4 +1,4 @@
-//! `grainbench run`: judge the gates of cases and write the report.
+//! `grainbench run`: evaluates the claims of cases and writes the report.
 
 use super::cache;
 use super::conform;
@@ -112,7 +112,7 @@ pub(crate) struct Options {
     verbose: bool,
 }
 
-/// Runs the named cases, all when none is named.
+/// Runs the named cases; all cases if none is named.
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let filters = Filters::read(&options.filter)?;
     let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
@@ -132,7 +132,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let interrupt = Interrupt::listen();
     let cache = cache::open(options.fresh);
     let (mut sections, left) = judge(&selected, options, thorough, cache.as_ref(), &interrupt);
-    // What every solver owes belongs to the whole registry, and not to a case.
+    // Conformance belongs to the whole registry, and not to a single case.
     let is_whole = cases.is_empty() && options.filter.is_empty() && !options.rerun_failed;
     if is_whole && (options.levels.is_empty() || thorough) && left == 0 {
         sections.extend(conform::section(&options.solver, cache.as_ref())?);
@@ -183,7 +183,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
 }
 
-/// Refuses data that no row begins with, that holds nothing of what rows need, or something in its place that cannot be used.
+/// Rejects a data directory if no claim uses it, if it contains none of the needed data, or if the data is damaged.
 fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault> {
     let runs = selected.iter().flat_map(|of| &of.claims).flat_map(|claim| &claim.runs);
     let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
@@ -204,7 +204,8 @@ fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault>
     Ok(())
 }
 
-/// A report; beside the whole registry stands what is kept of programs and of costs, and not beside a case of it.
+/// Returns a report. If it covers the whole registry, it includes the stored results of external solvers and stored
+/// measurements.
 pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: bool) -> Result<Report, Fault> {
     let (judged, measured) = if is_whole {
         (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
@@ -214,7 +215,8 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     Ok(Report { provenance, sections, judged, shown: Vec::new(), measured })
 }
 
-/// Leaves the claims that filters mean and, where that is asked for, that were red in the report that `--out` holds.
+/// Removes claims that the filters exclude. With `--rerun-failed`, it also removes claims that were not red in the
+/// report in `--out`.
 pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
     let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
@@ -235,7 +237,7 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
     Ok(())
 }
 
-/// What is printed of a report.
+/// Returns the printed text of a report.
 fn summary(report: &Report, options: &Options) -> String {
     let page = options.out.join("index.html");
     if !options.quiet {
@@ -245,7 +247,8 @@ fn summary(report: &Report, options: &Options) -> String {
     format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
-/// Success, or red when a row is red, a control stayed green, or nothing was judged; with `strict`, also when a row is amber.
+/// Returns success, or red if a result is red, a control stayed green, or nothing was evaluated. With `strict`, amber
+/// results are red too.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     let least = if strict { Severity::Amber } else { Severity::Red };
     let red_row = |verdict: &Verdict| verdict.outcome.severity() >= least;
@@ -255,19 +258,19 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
-/// Whether a row says something of its quantity: a solver that refuses the scene does, what is not there does not.
+/// Returns true if a result describes its quantity. An unsupported scene counts, and a missing solver does not.
 pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
     use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
     matches!(verdict.outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
 }
 
-/// Whether no row says anything of a quantity: of a program that was asked for, what it cannot express does not.
+/// Returns true if no result describes its quantity. Here, an unsupported scene does not count.
 pub(crate) fn says_nothing(report: &Report) -> bool {
     let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
     rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))
 }
 
-/// The options that are not the default, in words.
+/// Returns the options that differ from the default, in words.
 pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
     let mut words = cases.to_vec();
     words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
@@ -290,7 +293,7 @@ pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
     words
 }
 
-/// One case at work. Every answer has its own place, so that the order in which they come does not matter.
+/// Work on one case. Each result has its own place, so the order of completion does not matter.
 struct Work<'a> {
     selected: &'a Selected,
     solvers: Arc<dyn Solvers>,
@@ -300,14 +303,14 @@ struct Work<'a> {
     figures: OnceLock<Result<Vec<Figure>, RunError>>,
 }
 
-/// One piece of work, by places in the list of cases and in the claims of the case.
+/// Work item, with indices of the case and of the claim within the case.
 enum Task {
     Judge(usize, usize),
     Control(usize, usize),
     Draw(usize),
 }
 
-/// Sections of what was done, and how many checks were left out because somebody asked to end.
+/// Returns the sections of the finished checks, and the number of checks that an interrupt left out.
 fn judge(
     selected: &[Selected],
     options: &Options,
@@ -327,9 +330,9 @@ fn judge(
     (work.into_iter().map(Work::section).collect(), left)
 }
 
-/// First the gates that ask for a run that none before them asks for, then the others; and all cases go forward evenly: two
-/// threads are seldom at one case, where they would wait for the same scene or the same run. Figures last, when what they show
-/// has been run.
+/// Returns the work items in order. Claims that need a new run come before claims that only need earlier runs. All
+/// cases progress evenly, so two threads are seldom at one case, where they would wait for the same scene or run.
+/// Figures come last, because they use finished runs.
 fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
     for (case, selected) in selected.iter().enumerate() {
@@ -415,11 +418,11 @@ impl<'a> Work<'a> {
     }
 }
 
-/// A runner of a case as it was selected.
+/// Returns the runner of a selected case.
 pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Runner {
     let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
     let runner = runner.controlled(!options.no_controls).with_data(options.data.as_deref());
-    // All levels are asked for: what is kept of runs is done anew too.
+    // With all levels, runs with stored results are repeated too.
     let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
     let runner = match &selected.stranger {
         Some(stranger) => runner.with_solver(Arc::<Outside>::clone(stranger)),
@@ -428,19 +431,19 @@ pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, sol
     runner.threads(usize::from(options.threads))
 }
 
-/// What a case has drawn of the claims that were selected.
+/// Draws the figures of a case for the selected claims.
 ///
 /// # Errors
-/// When a run fails that is drawn.
+/// When a run of a figure fails.
 pub(crate) fn draw(selected: &Selected, runner: &Runner) -> Result<Vec<Figure>, RunError> {
     if selected.stranger.is_some() || selected.is_part {
-        // The case's own figures ask for runs that none of these claims does.
+        // The case's own figures may need runs that none of these claims uses.
         return course::figures(runner, &selected.claims);
     }
     course::of_case(selected.case, runner, &selected.claims)
 }
 
-/// The section of a case in which nothing was done yet.
+/// Returns the section of a case without results.
 pub(crate) fn blank(selected: &Selected) -> Section {
     let case = selected.case;
     Section {
@@ -459,7 +462,7 @@ pub(crate) fn blank(selected: &Selected) -> Section {
     }
 }
 
-/// What a run took.
+/// Returns the cost of a run.
 pub(crate) fn cost(run: &Run, done: &Done) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {

@@ -1,4 +1,4 @@
-//! `grainbench scene`: a scene as programs are given it.
+//! `grainbench scene`: prints the resolved scene that external solvers receive.
 
 use super::exit::{Fault, Outcome, print};
 use super::step::Step;
@@ -34,7 +34,7 @@ enum Format {
     Toml,
 }
 
-/// Prints the scene.
+/// Prints the resolved scene.
 pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let (scene, _) = subject::scene(&arguments.scene, &arguments.set)?;
     let resolution = arguments

@@ -1,4 +1,4 @@
-//! `grainbench schema`.
+//! `grainbench schema`: prints JSON schemas.
 
 use super::exit::{Outcome, print_json};
 use grainbench::reference::outside;

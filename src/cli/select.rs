@@ -1,4 +1,4 @@
-//! Which claims a command line means.
+//! Claims that the command line selects.
 
 use super::exit::Fault;
 use super::pattern;
@@ -11,19 +11,20 @@ use grainbench::harness::run::{Run, Set};
 use grainbench::reference::outside::Outside;
 use std::sync::Arc;
 
-/// The claims of one case that are to be judged.
+/// Selected claims of one case.
 pub(crate) struct Selected {
     /// The case.
     pub(crate) case: &'static Case,
-    /// Its claims, in their order; never empty.
+    /// Selected claims in the order of the case; never empty.
     pub(crate) claims: Vec<Claim>,
-    /// The program that is put in the place of the solvers that they name.
+    /// External solver that replaces the solvers of the claims.
     pub(crate) stranger: Option<Arc<Outside>>,
-    /// Whether some of them were left out afterwards: of a part is drawn what its claims show alone.
+    /// True if some claims of the case were removed. Then only the figures of the remaining claims are drawn.
     pub(crate) is_part: bool,
 }
 
-/// The claims of the cases named, of solvers and of programs by their manifests: what is judged of each.
+/// Selects the claims of the named cases for the named solvers and levels. An external solver gets the
+/// solver-independent claims.
 pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
     let (manifests, names): (Vec<&String>, Vec<&String>) = solvers.iter().partition(|name| solver::is_manifest(name));
     let names: Vec<String> = names.into_iter().cloned().collect();
@@ -45,7 +46,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
     Ok(selected)
 }
 
-/// The claims of the cases that are fair to any solver.
+/// Selects the solver-independent claims of the cases.
 pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
     let mut selected = of_registry(cases, &[], levels)?;
     for of_case in &mut selected {
@@ -54,8 +55,9 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Sel
     Ok(selected)
 }
 
-/// The claims of the cases (`CASE`, `CASE/VARIANT` or a folder; all of the registry when none is named) whose rows are of one
-/// of the solvers and that need one of the levels, in the order of the registry.
+/// Selects claims of the registry and of folders, in the order of the registry. The cases have the form `CASE`,
+/// `CASE/VARIANT` or a folder; none means the whole registry. A claim is selected if its result belongs to one of the
+/// solvers and it needs one of the levels.
 fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
     let cases = pattern::expanded(cases)?;
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
@@ -79,7 +81,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     for Selected { case, claims, .. } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
-            // A program is asked for by rows that compare ours with it.
+            // A program also selects the claims that compare our solver with it.
             let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
             claims.retain(|claim| row(claim).is_some_and(wanted) || claim.runs.iter().any(asked));
         }
@@ -90,7 +92,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
-    // A selection without a row would end green without having looked at anything.
+    // A selection without claims would end green without any check.
     if selected.is_empty() {
         return Err(Fault::input(
             "expected at least one gate, found none that is of the cases, solvers and levels named",
@@ -99,7 +101,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     Ok(selected)
 }
 
-/// The run that names a claim's row.
+/// Returns the run whose variant and solver identify the result of a claim.
 fn row(claim: &Claim) -> Option<&Run> {
     claim.runs.first()
 }
@@ -116,15 +118,15 @@ fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(),
     }
 }
 
-/// Which levels are wanted.
+/// Selected levels.
 enum Levels {
-    /// What the main job runs.
+    /// Claims of the quick tier, which the main CI job runs.
     Default,
     All,
     Named(Vec<String>),
 }
 
-/// The levels asked for, each one that a selected case has.
+/// Returns the selected levels; each must exist in a selected case.
 fn wanted_levels(selected: &[Selected], names: &[String]) -> Result<Levels, Fault> {
     if names.iter().any(|name| name == "all") {
         return Ok(Levels::All);
@@ -149,7 +151,7 @@ fn is_at(case: &Case, run: &Run, levels: &[String]) -> bool {
     [level_of(case, run), run.resolution.to_string()].iter().any(|name| levels.contains(&unified(name)))
 }
 
-/// `dt=.1` and `dt=0.1` are one level.
+/// Returns a unified spelling, because `dt=.1` and `dt=0.1` are the same level.
 fn unified(name: &str) -> String {
     match name.split_once('=') {
         Some((knob, value)) if value.starts_with('.') => format!("{knob}=0{value}"),
@@ -157,13 +159,13 @@ fn unified(name: &str) -> String {
     }
 }
 
-/// Name of the level of a run: that of the case, or the resolution in words.
+/// Returns the level name of a run: the name in the case, or the resolution in words.
 pub(crate) fn level_of(case: &Case, run: &Run) -> String {
     let level = case.levels.iter().find(|level| level.resolution == run.resolution);
     level.map_or_else(|| run.resolution.to_string(), |level| level.name.to_owned())
 }
 
-/// Names of the levels of a case: its own, then what its claims have beside it.
+/// Returns the level names of a case: its own levels, and then further ones of its claims.
 pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
     let mut names: Vec<String> = case.levels.iter().map(|level| level.name.to_owned()).collect();
     for run in claims.iter().flat_map(|claim| &claim.runs) {
@@ -172,7 +174,7 @@ pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
     names
 }
 
-/// Names of the variants of a case, the plain scene among them where a claim looks at it.
+/// Returns the variants of a case. The plain scene is included if a claim uses it.
 pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
     let mut names = case.variants()?;
     if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
@@ -181,7 +183,7 @@ pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fau
     Ok(names)
 }
 
-/// Solvers that claims name their rows by, and programs that they are compared with, each once, in their order.
+/// Returns the solvers that identify results of claims, and then the programs that they are compared with, each once.
 pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
     let mut names = Vec::new();
     for run in claims.iter().filter_map(row) {

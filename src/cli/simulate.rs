@@ -1,4 +1,4 @@
-//! `grainbench simulate`: one scene, one solver, one record.
+//! `grainbench simulate`: simulates one scene with one solver and writes its record.
 
 use super::checkpoint::{self, Store};
 use super::cores::{MOST_THREADS, cores};
@@ -96,7 +96,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// An option that says how finely solvers of another kind work is a mistake, and never dropped.
+    /// Rejects resolution options that belong to another kind of solver, because they would have no effect.
     fn refuse_others(&self, method: Method) -> Result<(), Fault> {
         let given = [
             ("--time-step or --time-step-fraction", !self.step.is_usual(), Method::Dem),
@@ -120,7 +120,7 @@ impl Arguments {
         )))
     }
 
-    /// Whether neither the command nor the scene asks for snapshots: a large run is then told in short.
+    /// Returns true if neither the command nor the scene requests snapshots. A large run then stores no rows.
     fn asks_for_no_snapshots(&self, scene: &Scene) -> bool {
         self.write.as_ref().map_or_else(
             || scene.snapshots == 0 && scene.snapshot_times.is_empty(),
@@ -149,7 +149,7 @@ impl Written {
     }
 }
 
-/// Most keys that are overridden on a command line.
+/// Largest number of scene keys that a command line may override.
 const MOST_OVERRIDES: usize = 1000;
 
 /// Simulates a scene and writes its record.
@@ -220,7 +220,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         Ok(record) => record,
         Err(error) => return Err(left(&error, remains.as_ref(), snapshots, arguments)),
     };
-    // Of solvers that hand over all at the end.
+    // Some solvers return all snapshots at the end.
     for snapshot in record.snapshots.drain(..) {
         snapshots.add(snapshot).map_err(Fault::writing)?;
     }
@@ -241,7 +241,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Why there is no record; what there is of a run that broke or was ended is left all the same.
+/// Returns the error of a run. The output of a crashed or interrupted run is written nevertheless.
 fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore, arguments: &Arguments) -> Fault {
     let Some(series) = remains else { return fault(error) };
     let formats = formats(&snapshots, arguments);
@@ -259,7 +259,7 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
     })
 }
 
-/// The formats that were asked for, or those that are usual.
+/// Returns the requested formats, or the default ones.
 fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format> {
     match &arguments.write {
         Some(asked) => asked.iter().filter_map(|format| format.format()).collect(),
@@ -267,7 +267,8 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
     }
 }
 
-/// The resolution asked for, unless it is above the critical step and nobody said that this is meant.
+/// Returns the requested resolution. A time step at or above the critical one is rejected unless it is allowed
+/// explicitly.
 fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Result<Resolution, Fault> {
     if Method::of(&arguments.solver) == Some(Method::Rigid) {
         arguments.refuse_others(Method::Rigid)?;
@@ -277,7 +278,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
             iterations: arguments.iterations.unwrap_or(Resolution::RIGID_ITERATIONS),
         });
     }
-    // A program that has springs too is given cells where nothing else would do.
+    // An external solver with springs too gets cells only if the scene needs deformable bodies.
     if solver.deforms() && (!solver.has_springs() || scene.needs_deformable().is_some()) {
         arguments.refuse_others(Method::Grid)?;
         let cells = arguments.cells.unwrap_or(Resolution::CELLS);
@@ -324,7 +325,7 @@ fn fault(error: &RunError) -> Fault {
     }
 }
 
-/// What is known before the first step.
+/// Returns the information that is known before the first step.
 fn header(scene: &Scene, solver: &dyn Solver) -> String {
     let effects = Effects::words(scene);
     let effects = match (effects.is_empty(), scene.grains.is_empty()) {
@@ -340,7 +341,7 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
             Duration::Seconds(time) => comers.len() - scene.stays.entered_by(time),
             Duration::Cycles(_) => 0,
         };
-        // What all groups are poured needs no word.
+        // If all grains are poured, their number is not repeated.
         let words = match (comers.len(), late) {
             (0, _) => String::new(),
             (some, 0) if some == scene.grains.len() => String::new(),
@@ -362,7 +363,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
     let evaluations = cost
         .contact_evaluations
         .map_or(String::new(), |count| format!(", {} contact evaluations", number::count(count)));
-    // Text is what everybody finds; anything else is told.
+    // Text output is easy to find, so only other formats are reported.
     let bulk = if formats.contains(&Format::Dump) || snapshots.is_empty() {
         String::new()
     } else {
@@ -379,7 +380,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
     format!("took       {}{evaluations}\n{bulk}{}\n", number::seconds(cost.wall_seconds), arguments.out.display())
 }
 
-/// Tells people what runs, once the solver has taken it up, and how far it is.
+/// Observer that prints the header once the solver accepts the run, shows the progress, and stores the output.
 struct Watcher {
     threads: usize,
     method: Option<Method>,
@@ -388,24 +389,25 @@ struct Watcher {
     progress: Option<Progress>,
     store: Option<Store>,
     snapshots: SnapshotStore,
-    /// The series of a run that broke or was ended.
+    /// Time series of a crashed or interrupted run.
     remains: Option<Series>,
-    /// Whether the state at the end is wanted, and that.
+    /// True if the final state is requested.
     wants_state: bool,
+    /// Final state.
     state: Option<EndState>,
-    /// Whether the run goes on where its time step is above the critical one.
+    /// True if time steps at or above the critical one are allowed.
     allow_unstable: bool,
     interrupt: Interrupt,
 }
 
 impl Watcher {
-    /// How long a run may take, where that is long.
+    /// Returns the estimated duration of a run (s); `None` below 10 s.
     fn estimate(&self, ahead: Ahead) -> Option<f64> {
         let seconds = ahead.steps as f64 * ahead.particles as f64 / A_SECOND;
         (seconds >= 10.0).then_some(seconds)
     }
 
-    /// What makes a run last for hours, and what would make it shorter.
+    /// Returns a warning about a long run, with its cause and possible remedies.
     fn warning(&self, ahead: Ahead, seconds: f64) -> String {
         let shorter = match self.method {
             Some(Method::Grid) => {
@@ -424,12 +426,12 @@ impl Watcher {
     }
 }
 
-/// Particle-steps a second that our solvers take about on one thread.
+/// Approximate speed of our solvers on one thread (particle-steps per second).
 const A_SECOND: f64 = 1e7;
-/// From here on a person is warned (s).
+/// Estimated duration above which the user is warned (s).
 const LONG: f64 = 3600.0;
 
-/// A time in round numbers.
+/// Returns a duration with two significant digits and a suitable unit.
 fn rough(seconds: f64) -> String {
     let (size, unit) = match seconds {
         ..600.0 => (seconds, "s"),
@@ -462,7 +464,7 @@ impl Watch for Watcher {
                 Some(Method::Grid) => format!("points     {}\n", number::count(ahead.particles)),
                 _ => String::new(),
             };
-            // A header that nobody reads any more is no reason to give up the run.
+            // A closed standard output does not end the run.
             let _ = print(&format!(
                 "{header}{points}time step  {time_step:.6e} s, {of_critical}\nsteps      {steps}{estimate}\n"
             ));
@@ -524,13 +526,13 @@ impl Watch for Watcher {
     }
 
     fn broke(&mut self, remains: Remains) {
-        // A disk that refuses now is told when what remains is written.
+        // A write error at this point is reported when the rest of the output is written.
         let _ = self.snapshots.add_last(remains.end);
         self.remains = Some(remains.series);
     }
 }
 
-/// A run in short, for programs.
+/// JSON summary of a run.
 #[derive(Serialize)]
 struct Summary<'a> {
     provenance: &'a Provenance,

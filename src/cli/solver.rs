@@ -1,4 +1,4 @@
-//! The solver that a command line names: one of the registry, or a program by its manifest.
+//! Solver of a command line: one of the registry, or an external solver by its manifest.
 
 use super::exit::Fault;
 use grainbench::cases::solvers;
@@ -7,7 +7,7 @@ use grainbench::scene::solver::Solver;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The solver of a name, or of the manifest at a path.
+/// Returns the solver with a name, or the external solver of a manifest.
 pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
     if is_manifest(name) {
         return Ok(outside(name)?);
@@ -22,12 +22,13 @@ pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
     Ok(Arc::from(solver))
 }
 
-/// Whether it is the path of a manifest and not a name.
+/// Returns true if the text is the path of a manifest.
 pub(crate) fn is_manifest(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
 }
 
-/// The program of the manifest at a path. Its name must be its own: rows are told apart by names.
+/// Returns the external solver of a manifest. Its name must differ from those of our solvers, because names identify
+/// results.
 pub(crate) fn outside(path: &str) -> Result<Arc<Outside>, Fault> {
     let outside = Outside::read(Path::new(path)).map_err(Fault::input)?;
     let name = outside.manifest().name.as_str();

@@ -1,4 +1,4 @@
-//! `grainbench stability`: the largest stable steps, and hard cases.
+//! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
 use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
@@ -21,11 +21,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Name of the case in which the method with a grid is asked for its limit.
+/// Case in which the limit of the method with a grid is measured.
 const BAR: &str = "vibrating-bar";
-/// Cells over its length.
+/// Numbers of cells along the bar.
 const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
-/// The report is written at most this often.
+/// Shortest time between two updates of the report.
 const EVERY: Duration = Duration::from_secs(5);
 
 /// Arguments of the command.
@@ -51,14 +51,14 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// One piece of work.
+/// Work item: a limit or a hard case with its solver.
 pub(crate) enum Piece<'a> {
     Assembly(&'a Assembly, &'a str),
     Bar(&'static str, f64),
     Hard(&'a HardCase, &'a str),
 }
 
-/// Finds the limits, tries the hard cases and writes the report, now and then as far as it is.
+/// Finds the limits, runs the hard cases and writes the report. The report is updated from time to time.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let assemblies = assembly::all()?;
     let hard = hard::all();
@@ -108,7 +108,7 @@ fn measures_nothing(study: &Study) -> bool {
     study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(is_run)
 }
 
-/// The options that are not the default, in words.
+/// Returns the command and its options that differ from the default.
 pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["stability".to_owned()];
     words.extend(arguments.cases.iter().cloned());
@@ -116,7 +116,7 @@ pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     words
 }
 
-/// Hashes of the sources of the solvers that were asked.
+/// Returns the hashes of the sources of all solvers in the study.
 pub(crate) fn sources_of(study: &Study) -> BTreeMap<String, String> {
     let limits = study.limits.iter().map(|row| row.solver.clone());
     let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
@@ -169,8 +169,8 @@ pub(crate) fn do_piece(
     }
 }
 
-/// What the command line means, of the solvers named and the programs among them: names are those of assemblies, with `-` for
-/// spaces, of the bar, and of hard cases.
+/// Returns the selected work items. Cases are prefixes of names: of assemblies, with `-` for spaces, of the bar, and of
+/// hard cases. `solvers` holds the selected names, and `strangers` the external solvers.
 pub(crate) fn select<'a>(
     cases: &[String],
     [solvers, strangers]: [&'a [String]; 2],

@@ -1,4 +1,4 @@
-//! The time step of a command line.
+//! Time step options.
 
 use super::value::positive;
 use grainbench::scene::solver::Resolution;
@@ -22,12 +22,12 @@ pub(crate) struct Step {
 }
 
 impl Step {
-    /// Whether it is the one that is taken where none is given.
+    /// Returns true if the time step is the default.
     pub(crate) fn is_usual(&self) -> bool {
         self.resolution() == Resolution::CriticalFraction(Resolution::FRACTION)
     }
 
-    /// As solvers take it.
+    /// Returns the time step as a resolution.
     pub(crate) fn resolution(&self) -> Resolution {
         self.time_step.map_or(Resolution::CriticalFraction(self.time_step_fraction), Resolution::TimeStep)
     }

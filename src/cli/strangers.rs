@@ -1,4 +1,4 @@
-//! The solvers of the registry, and programs by their manifests beside them.
+//! Solvers of the registry, and external solvers by their manifests.
 
 use super::exit::Fault;
 use super::solver;
@@ -18,14 +18,16 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// Solvers that a command line may name.
 pub(crate) struct WithStrangers {
     strangers: Vec<Arc<Outside>>,
-    /// When they were read: what they did before need not be what they do now.
+    /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
+    /// results.
     read: String,
-    /// Whether they are known by the files that they are made of, and not by when they were read.
+    /// True if the contents of its files identify an external solver, and not the time of reading.
     by_content: bool,
 }
 
 impl WithStrangers {
-    /// Reads the manifests among some names; gives the solvers, and the names with those of the programs in their places.
+    /// Reads the manifests among some names. Returns the solvers, and the names with manifests replaced by solver
+    /// names.
     pub(crate) fn read(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
         let (mut strangers, mut known) = (Vec::new(), Vec::new());
         for name in names {
@@ -43,12 +45,13 @@ impl WithStrangers {
         Ok((Self { strangers, read, by_content: false }, known))
     }
 
-    /// The same of work that several processes share: programs are what their files are.
+    /// Reads the manifests for work that several processes share. The contents of its files identify an external
+    /// solver.
     pub(crate) fn read_by_content(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
         Self::read(names).map(|(solvers, known)| (Self { by_content: true, ..solvers }, known))
     }
 
-    /// Names of the programs.
+    /// Returns the names of the external solvers.
     pub(crate) fn names(&self) -> Vec<String> {
         self.strangers.iter().map(|stranger| stranger.name()).collect()
     }
@@ -65,7 +68,7 @@ impl Solvers for WithStrangers {
     }
 
     fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
-        // What a program may take stands in its manifest.
+        // The manifest of an external solver sets its time limit.
         if self.stranger(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
     }
 

@@ -1,4 +1,4 @@
-//! The scene that a command is about: of a case, or of a file.
+//! Scene of a command: from a case or from a file.
 
 use super::exit::{self, Fault};
 use super::select;
@@ -11,16 +11,16 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// A case and one of its variants.
+/// Case with an optional variant.
 #[derive(Clone, Copy)]
 pub(crate) struct Variant<'a> {
     pub(crate) case: &'static Case,
-    /// The plain scene, or the first variant that gates look at, where none is named.
+    /// Name of the variant; `None` for the plain scene or, in [`exact_scene`], for the first suitable variant.
     pub(crate) variant: Option<&'a str>,
 }
 
 impl<'a> Variant<'a> {
-    /// Reads `CASE`, `CASE/VARIANT`, or the path of a folder with a case in it.
+    /// Reads `CASE`, `CASE/VARIANT`, or the path of a folder with a case.
     pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
         let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
         if is_named || !Path::new(text).is_dir() {
@@ -52,7 +52,7 @@ impl<'a> Variant<'a> {
         Ok(Self { case, variant })
     }
 
-    /// The scene's text.
+    /// Returns the scene's source text.
     pub(crate) fn source(&self) -> SceneSource {
         match self.variant {
             None | Some(PLAIN) => self.case.source(),
@@ -61,7 +61,7 @@ impl<'a> Variant<'a> {
     }
 }
 
-/// The scene of `CASE`, `CASE/VARIANT` or a file that ends in `.toml`, some of its keys overridden.
+/// Reads the scene of `CASE`, `CASE/VARIANT` or a file that ends in `.toml`, with some of its keys overridden.
 pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Option<&'static Case>), Fault> {
     let is_file = Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let (mut source, case) = if is_file {
@@ -76,7 +76,7 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
     Ok((source.scene(&read_grains)?, case))
 }
 
-/// The scene of the first gate of a case or variant that is fair to any solver, and its resolution.
+/// Returns the scene of the first solver-independent claim of a case or variant, and its resolution.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let named = Variant::read(text)?;
     let fair = |claim: &Claim| claim.scope.is_of_grains() && claim.runs.len() == 1;
@@ -85,7 +85,7 @@ pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
         .filter(fair)
         .filter_map(|claim| claim.runs.into_iter().next())
         .filter(|run| named.variant.is_none_or(|variant| variant == run.variant));
-    // What is stepped in time first: a grid's cells are no time step that a deck could have.
+    // Claims with a time step come first, because a deck cannot use the cells of a grid.
     let run =
         run.min_by_key(|run| !matches!(run.resolution, Resolution::TimeStep(_) | Resolution::CriticalFraction(_)));
     let Some(run) = run else {

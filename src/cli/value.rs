@@ -1,15 +1,15 @@
-//! Values of options: what they are read as, and what is said of those that are none.
+//! Parsers of option values, with their error messages.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// A key and its value.
+/// Reads a key and its value.
 pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
     let (path, value) = text.split_once('=').ok_or("expected path=value, found no `=`")?;
     Ok((path.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// A number above zero.
+/// Reads a positive number.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -17,7 +17,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A whole number from one to another.
+/// Returns a parser of whole numbers from `low` to `high`.
 pub(crate) fn whole<T>(low: T, high: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
