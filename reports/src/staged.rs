@@ -251,15 +251,16 @@ impl StagedDir {
     }
 }
 
-/// The page of a report.
+/// Page of a report.
 const PAGE: &str = "index.html";
-/// What every page of ours has in its head.
+/// Start of the title of all pages of this project.
 const TITLE: &str = "<title>grainbench";
 
-/// Refuses a directory in which a page or a manifest of another program would be replaced. Ours are recognised by their content.
+/// Refuses a directory in which a page or a manifest of another program would be replaced. Files of this project are
+/// recognized by their content.
 ///
 /// # Errors
-/// When there is one.
+/// When the directory contains such a file of another program.
 pub fn refuse_other_programs(directory: &Path) -> Result<(), WriteError> {
     refuse_foreign(directory, &[PAGE, MANIFEST])
 }
@@ -283,7 +284,7 @@ fn refuse_foreign(directory: &Path, names: &[&str]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// The first link between a directory and a folder inside it.
+/// Returns the first link between a directory and a folder inside it.
 fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
     let mut parts: Vec<&Path> = folder.ancestors().filter(|part| !part.as_os_str().is_empty()).collect();
     parts.reverse();
@@ -348,8 +349,8 @@ mod tests {
         assert_eq!(fs::read_dir(dir.path().join("deep")).unwrap().count(), 1);
     }
 
-    /// As many files as a long run has snapshots, twice over the same folder: with a search through all names for each file this
-    /// takes minutes.
+    /// A long run writes one file per snapshot, and a second run replaces all of them. With a search through all names
+    /// for each file, this test would take minutes.
     #[test]
     fn many_files_are_written_in_proportion() {
         let dir = tempfile::tempdir().unwrap();

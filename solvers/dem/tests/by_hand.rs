@@ -243,8 +243,8 @@ fn spinning_grains_have_their_energy() {
     }
 }
 
-/// Global damping takes the same from a spin as from a velocity, (1 − αΔt/2)/(1 + αΔt/2) in each step. That holds with
-/// friction, where grains turn by their torques, and without.
+/// Global damping reduces a spin by the same factor as a velocity, (1 − αΔt/2)/(1 + αΔt/2) in each step. This holds
+/// with friction, when torques change the spins, and without friction.
 #[test]
 fn spins_are_damped_as_velocities_are() {
     for (dimension, vector, spin, omega) in
@@ -260,7 +260,7 @@ fn spins_are_damped_as_velocities_are() {
             );
             let record = run_at(&text, Convention::DEFAULT, &Resolution::TimeStep(0.01));
             let expected = 3.0 * (0.99_f64 / 1.01).powi(40);
-            // What is shown between two half steps is their mean: 1 − (αΔt/2)² of it.
+            // The reported value is the mean of two half steps, with a relative error of (αΔt/2)².
             for column in ["g.vx", omega] {
                 assert!((last(&record, column) / expected - 1.0).abs() < 1.1e-4, "{dimension}, {column}");
             }
@@ -348,10 +348,10 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
     }
 }
 
-/// A turntable and the sphere on it turn about their normal at Ω = 200 rad/s, and the sphere rolls at ω = 1 rad/s about an axis
-/// that stays: the rolling angle grows by ω Δt along x in each step, and turns with the contact. What it was j steps ago has
-/// turned by jφ, with the step of a rotation tan φ/2 = Ω Δt/2. M = −k_r θ, k_r = 2.25 k μ_r² R², beside the torque R e × F of
-/// friction.
+/// A sphere and the turntable below it rotate about their common normal at Ω = 200 rad/s. The sphere rolls at ω = 1
+/// rad/s about a fixed axis. In each step the rolling angle grows by ω Δt along x and rotates with the contact. Its
+/// part from j steps ago has rotated by jφ, with tan φ/2 = Ω Δt/2 for one step. The moment is M = −k_r θ with k_r =
+/// 2.25 k μ_r² R². Friction adds the torque R e × F.
 #[test]
 fn a_rolling_spring_turns_with_its_contact() {
     let text = "materials.h.density = 1.0e20\n\
@@ -374,8 +374,9 @@ fn a_rolling_spring_turns_with_its_contact() {
     );
 }
 
-/// A disc that comes down on a floor and spins: the moment has yielded at μ_r R F_n, and F_n is what the Coulomb limit of the
-/// convention takes, in 1979 that of the spring, k δ, by default that of spring and dashpot, k δ + β k v.
+/// A spinning disc approaches a floor. The rolling moment has yielded at μ_r R F_n, with F_n as in the Coulomb limit of
+/// the convention. In the convention of 1979 it is the force of the spring, k δ. By default it is the force of spring
+/// and dashpot, k δ + β k v.
 #[test]
 fn a_rolling_spring_yields_at_the_normal_force_of_the_convention() {
     for (convention, dashpot) in [(Convention::CUNDALL_STRACK, 0.0), (Convention::DEFAULT, 1.0)] {

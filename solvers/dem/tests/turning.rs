@@ -270,8 +270,9 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     assert!((found - lost).abs() < 0.0025 * lost, "{found} for {lost}");
 }
 
-/// So is one of a ball on a driven ball, which is as heavy as a wall: the critical step is that of the lighter of the two. With
-/// R* = R/2 and δ = R/25 it is √2 times as stiff as what the critical step of the scene is taken of.
+/// A ball rests on a driven ball, which counts as infinitely heavy. The run must end with an error above the critical
+/// time step of the lighter ball. With R* = R/2 and δ = R/25, the contact is √2 times as stiff as in the critical time
+/// step of the scene.
 #[test]
 fn a_contact_is_as_stiff_as_its_lighter_grain_bears() {
     let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));

@@ -157,7 +157,7 @@ fn an_incline_in_a_moving_frame_is_an_incline() {
     assert!((way_faster - speed * end - way_at_rest).abs() / rigid > 0.03, "{}", (way_faster - way_moving) / rigid);
 }
 
-/// The torque on a disc is that about its own centre, wherever the disc is: eight radii farther along the wall it is the same.
+/// The torque on a disc refers to its own centre at any position: eight radii farther along the wall it is the same.
 #[test]
 fn a_torque_does_not_depend_on_the_place() {
     let torque = |place: &str| {

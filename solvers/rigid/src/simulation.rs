@@ -277,7 +277,8 @@ mod tests {
         }
     }
 
-    /// Whichever side an engine names first: forces on grains and walls are the same, and opposite on the two sides.
+    /// Forces on grains and walls do not depend on the side that the engine names first. They are opposite on the two
+    /// sides.
     #[test]
     fn a_contact_is_the_same_from_both_sides() {
         let text = "title = 't'\ndimension = 2\nduration = 1.0\nlargest_initial_overlap = 0.3\nmaterials.m.density = 1.0\n\

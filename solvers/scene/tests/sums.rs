@@ -108,8 +108,9 @@ fn mean_stress_and_coordination() {
     }
 }
 
-/// What a contact adds to V σ of its two grains is together the force times the vector from one centre to the other, R₁ + R₂ − δ
-/// long: of spheres of .5 and .3 m that overlap by .1 m, .7 m along x times −10 N and 4 N. Half of the shear is in σ_xy.
+/// A contact adds the product of its force and the vector l between the centres to V σ of its grains. The length of l
+/// is R₁ + R₂ − δ. Spheres of .5 and .3 m that overlap by .1 m have l = .7 m along x, times −10 N and 4 N. Half of the
+/// shear is in σ_xy.
 #[test]
 fn both_grains_of_a_contact_share_the_vector_between_them() {
     let contact = ContactState {
@@ -129,7 +130,7 @@ fn both_grains_of_a_contact_share_the_vector_between_them() {
     }
 }
 
-/// A snapshot is taken at the step whose time is nearest to the one that is asked for.
+/// A snapshot is taken at the step nearest to the requested time.
 #[test]
 fn a_snapshot_is_taken_at_the_nearest_step() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
