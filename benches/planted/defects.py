@@ -1,4 +1,4 @@
-"""Which defects can be planted where: a sign, a factor, an index, a term that is dropped."""
+"""Possible defects of a source text: changed signs, factors and indices, and dropped terms."""
 
 import re
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ KINDS = ["sign", "factor", "index", "term"]
 SIGNS = {"+": "-", "-": "+", "+=": "-=", "-=": "+="}
 FACTORS = {"*": "/", "/": "*", "*=": "/=", "/=": "*="}
 INDICES = {"0": "1", "1": "0", "2": "1", "x": "y", "y": "x", "z": "y"}
-# What a term ends at, where it is not inside brackets of its own.
+# Tokens that end a term outside its own brackets.
 ENDS = {"+", "-", ",", ";", ")", "]", "}", "{", "<", ">", "<=", ">=", "==", "!=", "&&", "||", "=>", "..", "..=", "=", "|"}
 
 
 @dataclass(frozen=True)
 class Defect:
-    """One thing that is wrong: in which file, inside which body, and what stands instead of what."""
+    """Defect: a replaced part of a file, inside a function body."""
 
     file: str
     line: int
@@ -32,13 +32,13 @@ class Defect:
 
 
 def is_value(token):
-    """Whether an expression can end with this, so that a sign after it joins two."""
+    """Returns True if an expression can end with this token, so that a sign after it is binary."""
     return token.kind in ("word", "float", "integer") and token.text not in ("return", "in", "else", "match", "if") or \
         token.text in (")", "]")
 
 
 def changes(tokens, closes, at):
-    """What can be wrong at a token: kind, from where to where, and what stands there instead."""
+    """Yields the possible defects at a token: kind, start, end, and replacement."""
     token, before = tokens[at], tokens[at - 1]
     after = tokens[at + 1]
     binary = is_value(before) and before.end < token.start
@@ -48,7 +48,7 @@ def changes(tokens, closes, at):
             last = at + 1
             while last < len(tokens) and tokens[last].text not in ENDS:
                 last = closes.get(last, last) + 1
-            # What is left is what stood before.
+            # The term before it remains.
             yield "term", before.end, tokens[last - 1].end, ""
         else:
             yield "term", token.end, token.end, " 0.0 *"
@@ -67,7 +67,7 @@ def changes(tokens, closes, at):
 
 
 def of_file(name, text):
-    """Every defect that can be planted in a file, each with the body of the innermost function around it."""
+    """Returns all possible defects of a file, each with the body of the innermost function around it."""
     tokens = rust_source.tokens(text[:rust_source.tests_begin(text)])
     closes = rust_source.pairs(tokens)
     all_bodies = rust_source.bodies(tokens, closes)
@@ -88,7 +88,7 @@ def of_file(name, text):
 
 
 def draw(random, candidates, count):
-    """So many by lot: kinds in turn as far as there are any, and no two in bodies that lie within each other."""
+    """Returns `count` random defects, with kinds in turn. No two lie in nested bodies."""
     by_kind = {kind: [defect for defect in candidates if defect.kind == kind] for kind in KINDS}
     for some in by_kind.values():
         random.shuffle(some)
@@ -104,13 +104,15 @@ def draw(random, candidates, count):
 
 
 def overlaps(a, b):
-    """Whether one body lies within another."""
+    """Returns True if one body lies within the other."""
     return a.file == b.file and a.body != b.body and a.body[0] < b.body[1] and b.body[0] < a.body[1]
 
 
 def planted(text, numbered, ask):
-    """A file in which each body is there once for each of its defects, and the number asked for chooses among them.
-    Also, for each defect, the lines in which it stands alone, and those of its function."""
+    """Returns a file with a copy of each body for each of its defects, selected by number.
+
+    Also returns, for each defect, the lines of its copy and the lines of all copies of its function.
+    """
     by_body = {}
     for number, defect in numbered:
         by_body.setdefault(defect.body, []).append((number, defect))

@@ -38,13 +38,13 @@ pub fn on(number: u32) -> bool {
     *CHOSEN.get_or_init(|| std::env::var("PLANTED").ok().and_then(|text| text.parse().ok()).unwrap_or(0)) == number
 }
 '''
-# What a run may take: a defect may ask for any amount.
+# Memory limit of a run (bytes), because a defect may request any amount.
 MEMORY = 12 << 30
 RED = ("fail", "broken", "stale")
 
 
 def command(words, where, **more):
-    """Runs a program to its end, and ends this one where it fails."""
+    """Runs a program and returns its output. If the program fails, this script ends."""
     done = subprocess.run(words, cwd=where, text=True, **more)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}: {done.returncode}\n{(done.stderr or '')[-3000:]}")
@@ -52,7 +52,7 @@ def command(words, where, **more):
 
 
 def bounded(seconds):
-    """Processor time and memory that a program may take: a machine that is busy with other things is no defect."""
+    """Returns a function that limits processor time and memory. A busy machine must not count as a defect."""
     def limit():
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
@@ -61,7 +61,10 @@ def bounded(seconds):
 
 
 def attempt(words, where, number, seconds, more=None):
-    """Exit code, output and processor time of a program in which a defect acts; a code of None where it was stopped."""
+    """Runs a program with an active defect.
+
+    Returns its exit code (None if it was stopped), output and processor time (s).
+    """
     environment = {**os.environ, "PLANTED": str(number), "INSTA_UPDATE": "no", "CI": "true", **(more or {})}
     begun, seconds = spent(), int(seconds) + 1
     with subprocess.Popen(words, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -69,7 +72,7 @@ def attempt(words, where, number, seconds, more=None):
         try:
             said, code = child.communicate(timeout=20 * seconds + 600)[0], child.returncode
         except subprocess.TimeoutExpired:
-            # With all that it started: they are a group of their own.
+            # Its child processes belong to the same process group and end too.
             os.killpg(child.pid, 9)
             said, code = child.communicate()[0], None
     took = spent() - begun
@@ -77,13 +80,13 @@ def attempt(words, where, number, seconds, more=None):
 
 
 def spent():
-    """Processor time of all programs that have ended (s)."""
+    """Returns the processor time of all ended child processes (s)."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 class Planting:
-    """A copy of the tree with defects in it."""
+    """Copy of the source tree with defects."""
 
     def __init__(self, work, seed, each):
         self.work, self.seed, self.each = work / f"seed-{seed}", seed, each
@@ -92,7 +95,7 @@ class Planting:
         self.environment = {**os.environ, "CARGO_TARGET_DIR": str(self.target)}
 
     def texts(self):
-        """The files of each class, as they are without defects."""
+        """Returns the texts of the files of each class without defects."""
         return {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
                                                                  self.tree, capture_output=True)
                        for path in sorted((self.tree / folder).rglob("*.rs"))
@@ -100,7 +103,7 @@ class Planting:
                 for name, folder in CLASSES.items()}
 
     def draw(self):
-        """Draws, plants, leaves out what does not compile, and numbers what is left."""
+        """Selects random defects, removes those that do not compile, and numbers the others."""
         known = self.work / "drawn.json"
         if known.exists():
             return json.loads(known.read_text())
@@ -126,7 +129,7 @@ class Planting:
         return rows
 
     def plant(self, texts, drawn):
-        """Writes all files; for each defect the file and the lines in which it stands."""
+        """Writes all files. Returns file and lines of each defect."""
         by_file, stands = {}, {}
         for number, (_, defect) in enumerate(flat(drawn), 1):
             by_file.setdefault(defect.file, []).append((number, defect))
@@ -142,7 +145,7 @@ class Planting:
         return stands
 
     def broken(self, stands):
-        """Which defects the compiler refuses: those on whose lines it complains, or whose function it does not take."""
+        """Returns the defects with compiler errors in their lines, or in the lines of their function."""
         packages = [word for name in ("scene", "dem", "mpm", "reference") for word in ("-p", f"grainbench-{name}")]
         said = subprocess.run(["cargo", "check", "--release", "--keep-going", "--message-format=json", *packages],
                               cwd=self.tree, env=self.environment, text=True, capture_output=True)
@@ -162,7 +165,7 @@ class Planting:
         return dropped
 
     def build(self):
-        """The program, and the tests as (name, executable, folder to run it in)."""
+        """Builds and returns the program, and the tests as (name, executable, working directory)."""
         command(["cargo", "build", "--release"], self.tree, env=self.environment)
         said = command(["cargo", "test", "--release", "--no-run", "--message-format=json"], self.tree,
                        env=self.environment, stdout=subprocess.PIPE)
@@ -180,13 +183,13 @@ def flat(drawn):
 
 
 def write(path, text):
-    """Leaves files that are as they should be alone, for what was compiled of them is."""
+    """Writes a file only if it changes, so that unchanged files are not compiled again."""
     if not path.exists() or path.read_text() != text:
         path.write_text(text)
 
 
 def results(folder):
-    """Rows and controls that a run left, without its times."""
+    """Returns the results and controls of a run without times; None if it wrote none."""
     try:
         left = json.loads((folder / "results.json").read_text())
     except (OSError, ValueError):
@@ -195,7 +198,10 @@ def results(folder):
 
 
 def none_chosen(program, work):
-    """Rows and controls with no defect chosen, and the time of the main job: they must be those of the plain build."""
+    """Returns the results and controls without an active defect, and the time of the main job.
+
+    The results must equal those of a build without defects.
+    """
     kept, out, judged = work / "plain.json", work / "out", {}
     if kept.exists():
         return json.loads(kept.read_text())
@@ -219,7 +225,7 @@ def row_name(row):
 
 
 def judge(program, work, number, seconds, plain):
-    """What the main job says of a defect: the first thing that is red, or nothing, and how many rows it moved."""
+    """Returns the first red result of the main job with a defect, if any, and the number of changed results."""
     out = work / "out"
     code, said, took = attempt([str(program), "run", "--out", str(out)], work, number, seconds)
     left = results(out) if code in (0, 1) else None
@@ -242,7 +248,7 @@ def judge(program, work, number, seconds, plain):
 
 
 def try_tests(tests, number):
-    """The first test that is red; none where all are green."""
+    """Returns the first failed test; None if all pass."""
     for name, executable, folder, usual in tests:
         more = {"CARGO_MANIFEST_DIR": str(folder)}
         code, said, _ = attempt([executable], folder, number, 4 * usual + 60, more)
@@ -255,8 +261,10 @@ def try_tests(tests, number):
 
 
 def measured(tests, kept, longest):
-    """The tests that pass with no defect within a time, quickest first; those that do not look at the text of the tree,
-    or judge the rows of the main job once more."""
+    """Returns the tests that pass without a defect within `longest` seconds, in order of duration.
+
+    Tests that read the source text fail here, and are left out with the slow ones.
+    """
     if kept.exists():
         times = json.loads(kept.read_text())
     else:

@@ -1,4 +1,4 @@
-"""Rust text as tokens, and the bodies of its functions: as much of the language as finding a place to change needs."""
+"""Tokens and function bodies of Rust text, as far as the search for defects needs them."""
 
 import re
 
@@ -17,7 +17,7 @@ CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
 class Token:
-    """A piece of the text: what kind it is, what it says, and from where to where it goes."""
+    """Token with its kind, text, start and end."""
 
     __slots__ = ("kind", "text", "start", "end")
 
@@ -28,13 +28,13 @@ class Token:
 
 
 def tokens(text):
-    """The tokens of a file, comments left out."""
+    """Returns the tokens of a file without comments."""
     found = (Token(match) for match in TOKEN.finditer(text))
     return [token for token in found if token.kind != "comment"]
 
 
 def pairs(all_tokens):
-    """For each opening bracket the place of the one that closes it."""
+    """Returns the index of the closing bracket for the index of each opening bracket."""
     closes, open_at = {}, []
     for at, token in enumerate(all_tokens):
         if token.kind == "sign" and token.text in CLOSING:
@@ -45,13 +45,13 @@ def pairs(all_tokens):
 
 
 def tests_begin(text):
-    """Where the unit tests of a file begin, which are at its end."""
+    """Returns the start of the unit tests, which are at the end of a file."""
     at = text.find("#[cfg(test)]\nmod ")
     return len(text) if at < 0 else at
 
 
 def bodies(all_tokens, closes):
-    """Of every function that can ask at run time: the tokens of the braces around its body."""
+    """Returns the indices of the braces around the body of each function that is not `const`."""
     found = []
     for at, token in enumerate(all_tokens):
         if token.text != "fn" or token.kind != "word" or all_tokens[at + 1].kind != "word":
@@ -60,7 +60,7 @@ def bodies(all_tokens, closes):
             continue
         place = at + 2
         while place < len(all_tokens) and all_tokens[place].text not in ("{", ";"):
-            # Arguments and lengths of arrays may hold braces and semicolons of their own.
+            # Arguments and array lengths may contain braces and semicolons.
             place = closes[place] if all_tokens[place].text in ("(", "[") else place
             place += 1
         if place < len(all_tokens) and all_tokens[place].text == "{" and place in closes:

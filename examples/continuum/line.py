@@ -1,4 +1,4 @@
-"""A column or a bar as a line of masses and springs, in one dimension, by central differences."""
+"""Column or bar as a chain of masses and springs in one dimension, with central differences."""
 import csv, json, math, sys
 
 scene, out = json.load(open(sys.argv[1])), sys.argv[2]
@@ -23,13 +23,13 @@ def forces():
 
 
 def push(time):
-    """Velocities over a time under the forces and the damping; the held end stays."""
+    """Updates the velocities over a time by forces and damping; a fixed end does not move."""
     for at in range(held, count + 1):
         v[at] = (v[at] + time * force[at] / mass[at]) / (1 + scene["global_damping"] * time)
 
 
 def at_point(stress, at):
-    """The stress at a place, between the middles of springs."""
+    """Returns the stress at a position, interpolated between the centres of springs."""
     place = (at[axis] - low) / h - 0.5
     left = min(max(math.floor(place), 0), count - 2)
     return stress[left] + (place - left) * (stress[left + 1] - stress[left])
@@ -44,7 +44,7 @@ with open(f"{out}/series.csv", "w", newline="") as file:
     table.writerow([f"{name}.{along}", f"{name}.v{along}"] + [f"{point}.sigma_{along}{along}" for point, _ in points])
     for step in range(steps["count"] + 1):
         stress, force = forces()
-        # The second half of the kick, so that a sample has velocities and places of one moment.
+        # The second half of the kick gives a sample velocities and positions of the same time.
         push(dt / 2 if step else 0.0)
         if step % steps["sample_every"] == 0 or step == steps["count"]:
             total = sum(mass)

@@ -1,4 +1,4 @@
-"""The program that this package comes with."""
+"""Path of the grainbench program, and calls of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def binary() -> str:
-    """The program `grainbench`: what `GRAINBENCH` names, what was installed with this package, or what `PATH` finds."""
+    """Returns the path of the program: from `GRAINBENCH`, from the installation of this package, or from `PATH`."""
     named = os.environ.get("GRAINBENCH")
     if named:
         return named
@@ -28,7 +28,10 @@ def binary() -> str:
 
 
 def run(words: Sequence[str]) -> str:
-    """What the program prints. Rows that are red are no error here; what cannot be done is."""
+    """Runs the program and returns its output. Red results are not an error.
+
+    Raises ValueError if the program cannot do what is asked.
+    """
     done = subprocess.run([binary(), *words], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1) or not done.stdout:
         raise ValueError(done.stderr.strip().removeprefix("error: ") or f"grainbench ended with {done.returncode}")

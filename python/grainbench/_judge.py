@@ -1,4 +1,4 @@
-"""Judging a function by the rows that are fair to any solver."""
+"""Tests of a solver function with the solver-independent claims."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._read import Results
 from ._serve import answer
 from ._solver import Solver
 
-# Hands what grainbench asks to the process of the function, and its answers back; it needs nothing that takes long to import.
+# Relays requests of grainbench to the process of the function, and its answers back. All its imports are fast.
 _RELAY = """
 import os, socket, sys, threading
 far = socket.socket(socket.AF_UNIX); far.connect(sys.argv[1])
@@ -34,7 +34,7 @@ for line in sys.stdin.buffer:
 
 
 class _Server(socketserver.ForkingMixIn, socketserver.UnixStreamServer):
-    """Every connection has a process of its own, in which the function is what it is here: a closure or a cell of a notebook too."""
+    """Server with one forked process per connection, so that the function may be a closure or a notebook cell."""
 
     solver: Solver
     max_children = 1024
@@ -44,14 +44,14 @@ class _Handler(socketserver.StreamRequestHandler):
     server: _Server
 
     def handle(self) -> None:
-        # Answers alone go to grainbench; what the function prints goes where errors go.
+        # Only answers go to grainbench. Output of the function goes to the standard error.
         os.dup2(2, 1)
         for line in self._lines():
             self.wfile.write((answer(self.server.solver, line) + "\n").encode())
             self.wfile.flush()
 
     def _lines(self) -> Iterator[str]:
-        """The requests. When the other side goes during a run, so does this process: grainbench does not wait for it any more."""
+        """Yields the requests. If grainbench closes the connection during a run, this process ends too."""
         pending: list[bytes] = []
         ready = threading.Condition()
 
@@ -73,7 +73,7 @@ class _Handler(socketserver.StreamRequestHandler):
 
 @contextmanager
 def _served(solver: Solver) -> Iterator[Path]:
-    """A manifest of the function, while it is served from this process."""
+    """Serves the function from this process and yields the path of its manifest."""
     with tempfile.TemporaryDirectory(prefix="grainbench-") as folder:
         address = os.path.join(folder, "socket")
         with _Server(address, _Handler) as server:
@@ -90,26 +90,26 @@ def _served(solver: Solver) -> Iterator[Path]:
 
 
 class Judgement(Results):
-    """Rows and controls of a function. It prints as a table, red where it is red."""
+    """Results and controls of a solver function. It prints as a table."""
 
     @property
     def passed(self) -> bool:
-        """Whether something passed, nothing failed or broke, and every control turned red."""
+        """True if at least one result is green, none is red, and each control failed as required."""
         severities = {row["severity"] for row in self.verdicts}
         controls = all(control["turned_red"] for control in self.of_controls)
         return "green" in severities and "red" not in severities and controls
 
     def require(self) -> Judgement:
-        """Itself, where it passed; else an AssertionError with the rows that did not."""
+        """Returns the judgement if it passed; otherwise raises an AssertionError with the red results."""
         if not self.passed:
             raise AssertionError("\n" + self.table(only_red=True))
         return self
 
 
 def judge(solver: Solver, cases: Sequence[str] = (), *, controls: bool = True) -> Judgement:
-    """Judges a solver by the rows of some cases (`CASE` or `CASE/VARIANT`), of all where none is named.
+    """Tests a solver with the claims of some cases (`CASE` or `CASE/VARIANT`); with all cases by default.
 
-    ValueError: there is no such case, or what the solver declares is wrong.
+    Raises ValueError if a case does not exist or a declaration of the solver is wrong.
     """
     if not isinstance(solver, Solver):
         raise TypeError(f"expected a function under @grainbench.solver, found {type(solver).__name__}")

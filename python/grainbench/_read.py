@@ -1,4 +1,4 @@
-"""Results and records that grainbench left, as dataframes and arrays."""
+"""Results and records of grainbench as dataframes and arrays."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHOWN = ("verdict", "case", "variant", "quantity", "value", "expected", "error"
 
 
 class Results:
-    """Rows of a run of gates and their controls."""
+    """Results of claims and their negative controls."""
 
     def __init__(self, results: dict[str, Any]) -> None:
         self.raw = results
@@ -28,16 +28,19 @@ class Results:
 
     @property
     def rows(self) -> Any:
-        """A row a gate, as a dataframe of pandas, polars or pyarrow, whichever is installed first in this order."""
+        """Dataframe with one row per claim, of the first installed library: pandas, polars or pyarrow."""
         return frame(self.verdicts)
 
     @property
     def controls(self) -> Any:
-        """A row a control of wrong physics, which must have turned red; as `rows`."""
+        """Dataframe with one row per negative control; each control must have failed."""
         return frame(self.of_controls)
 
     def table(self, *, only_red: bool = False) -> str:
-        """A line a row, and one for each control that stayed green."""
+        """Returns one line per result, and one for each control that stayed green.
+
+        With `only_red`, return only red results if there are any.
+        """
         rows = [row for row in self.verdicts if not only_red or row["severity"] == "red" or only_red and not self._any_red()]
         lines = [_line(row) for row in rows]
         green = [control for control in self.of_controls if not control["turned_red"]]
@@ -70,7 +73,7 @@ class Results:
 
 
 class Run:
-    """One run of a scene, as `grainbench simulate` leaves it."""
+    """Output of `grainbench simulate`."""
 
     def __init__(self, folder: Path) -> None:
         with open(folder / "record.json", encoding="utf-8") as file:
@@ -81,17 +84,17 @@ class Run:
             names, *rows = csv.reader(file)
         table = np.array(rows, dtype=np.float64).reshape((len(rows), len(names)))
         self.units = {name.split(" (")[0]: name.split(" (")[1].rstrip(")") for name in names if " (" in name}
-        """Unit of every column of the series."""
+        """Units of the columns of the series."""
         self.series: dict[str, Floats] = {name.split(" (")[0]: table[:, place] for place, name in enumerate(names)}
-        """The probes' columns and `step`, `time`, each of the shape (samples,), in SI."""
+        """Columns of the probes, `step` and `time` in SI units, each of shape (samples,)."""
         self.snapshots: list[dict[str, Any]] = _snapshots(folder)
-        """Of every snapshot `step`, `time` (s), `id` (grains,) and `position`, `velocity`, `spin` (grains, 3), in SI."""
+        """Snapshots: `step`, `time` (s), `id` (grains,) and `position`, `velocity`, `spin` (grains, 3), in SI."""
 
 
 def read(path: str | Path) -> Results | Run:
-    """What lies in a folder that grainbench left: results of gates, or a run.
+    """Reads a directory written by grainbench: results of claims, or a simulation.
 
-    ValueError: it is neither.
+    Raises ValueError if it contains neither.
     """
     folder = Path(path)
     if (folder / "results.json").is_file():
@@ -103,7 +106,7 @@ def read(path: str | Path) -> Results | Run:
 
 
 def frame(rows: list[dict[str, Any]]) -> Any:
-    """Rows as a dataframe of whatever is installed; numbers that are not told are missing."""
+    """Returns rows as a dataframe of an installed library. Numbers without a value are missing."""
     backend = next((name for name in _BACKENDS if importlib.util.find_spec(name)), None)
     if backend is None:
         raise ImportError("expected pandas, polars or pyarrow, found none; `raw` has everything without them")
@@ -113,7 +116,7 @@ def frame(rows: list[dict[str, Any]]) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """A bound is a text among numbers: columns hold one kind."""
+    """Returns lists and bounds as JSON text, because a column holds values of one type."""
     return json.dumps(value) if isinstance(value, (dict, list)) else value
 
 
@@ -132,7 +135,7 @@ def _line(row: dict[str, Any]) -> str:
 
 
 def _snapshots(folder: Path) -> list[dict[str, Any]]:
-    """The snapshots of a dump; none where they were written in another form."""
+    """Reads the snapshots of a dump; none if they were written in another format."""
     path = folder / "snapshots.dump"
     if not path.is_file():
         return []

@@ -1,4 +1,4 @@
-"""What a solver leaves: the grains at every sample."""
+"""Output of a solver: the grains at each sample."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from ._scene import Floats, Scene
 
 @dataclass(frozen=True)
 class Record:
-    """The grains at every sample, in the order of the scene."""
+    """Grains at each sample, in the order of the scene."""
 
     step: NDArray[np.int64]
-    """Steps taken, shape (samples,)."""
+    """Numbers of completed steps, shape (samples,)."""
     position: Floats
-    """(m), shape (samples, grains, 3)."""
+    """Positions (m), shape (samples, grains, 3)."""
     velocity: Floats | None = None
-    """(m/s), shape (samples, grains, 3)."""
+    """Velocities (m/s), shape (samples, grains, 3)."""
     spin: Floats | None = None
-    """(rad/s), shape (samples, grains, 3)."""
+    """Angular velocities (rad/s), shape (samples, grains, 3)."""
     seconds: float | None = None
-    """Time of the solution alone (s), where it is told."""
+    """Time of the solution without start and output (s); None if it was not measured."""
 
     def __post_init__(self) -> None:
         samples = np.shape(self.step)
@@ -39,7 +39,7 @@ class Record:
                 raise ValueError(f"{name}: expected the shape {shape} of the positions, found {np.shape(array)}")
 
     def write(self, folder: str | Path) -> None:
-        """Leaves `grains.npz` in a folder."""
+        """Writes `grains.npz` to a directory."""
         arrays: dict[str, ArrayLike] = {"step": np.asarray(self.step, dtype=np.int64), "position": _floats(self.position)}
         if self.velocity is not None:
             arrays["velocity"] = _floats(self.velocity)
@@ -54,7 +54,7 @@ def _floats(array: ArrayLike) -> Floats:
 
 
 class Recorder:
-    """Gathers samples: `take` after every step keeps those that the scene asks for."""
+    """Recorder of samples. Call `take` after each step; it stores the samples that the scene asks for."""
 
     def __init__(self, scene: Scene) -> None:
         self._steps = scene.steps
@@ -62,13 +62,13 @@ class Recorder:
         self._states: list[tuple[Floats, Floats, Floats]] = []
 
     def take(self, step: int, position: ArrayLike, velocity: ArrayLike, spin: ArrayLike) -> None:
-        """Takes the grains after so many steps, each an array of the shape (grains, 3), where a sample is due."""
+        """Stores the grains after `step` steps if a sample is due. Each array has the shape (grains, 3)."""
         if self._steps.is_sample(step):
             self._taken.append(step)
             self._states.append((_copy(position), _copy(velocity), _copy(spin)))
 
     def record(self) -> Record:
-        """All that was taken."""
+        """Returns the stored samples as a record."""
         position, velocity, spin = (np.array(part) for part in zip(*self._states, strict=True))
         return Record(np.array(self._taken, dtype=np.int64), position, velocity, spin)
 

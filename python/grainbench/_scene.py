@@ -1,4 +1,4 @@
-"""The scene that a solver is given: everything definite, in SI, as arrays."""
+"""Resolved scene that a solver receives, as arrays in SI units."""
 
 from __future__ import annotations
 
@@ -15,56 +15,56 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Steps:
-    """Time step, number of steps, and when samples are taken."""
+    """Time step, number of steps, and steps between samples."""
 
     time_step: float
     """Δt (s)."""
     count: int
-    """How many steps."""
+    """Number of steps."""
     sample_every: int
-    """Steps between samples. There is one at the start, and one at the end."""
+    """Steps between samples. The first sample is at the start and the last at the end."""
     critical_time_step: float | None
-    """2√(m_min/k_max) (s), where there is one."""
+    """Critical time step 2√(m_min/k_max) (s); None if the scene has none."""
 
     def is_sample(self, step: int) -> bool:
-        """Whether a sample is taken after so many steps."""
+        """Returns True if a sample is due after `step` steps."""
         return step % self.sample_every == 0 or step == self.count
 
     @property
     def samples(self) -> NDArray[np.int64]:
-        """The steps of all samples, shape (samples,)."""
+        """Steps of all samples, shape (samples,)."""
         steps = list(range(0, self.count, self.sample_every))
         return np.array([*steps, self.count], dtype=np.int64)
 
 
 @dataclass(frozen=True)
 class Law:
-    """The law of a contact between two materials. Keys that a law does not have are zero."""
+    """Contact law of two materials. Parameters that the law does not use are zero."""
 
     kind: str
     """`linear`, `hertz-mindlin` or `coulomb`."""
     normal_stiffness: float
-    """k_n (N/m), of linear springs."""
+    """Normal stiffness k_n of linear springs (N/m)."""
     tangential_stiffness: float
-    """k_s (N/m), of linear springs."""
+    """Tangential stiffness k_s of linear springs (N/m)."""
     effective_modulus: float
-    """E* (Pa), of Hertz's law."""
+    """Effective Young's modulus E* of Hertz contacts (Pa)."""
     effective_shear_modulus: float
-    """G* (Pa), of Mindlin's."""
+    """Effective shear modulus G* of Mindlin contacts (Pa)."""
     friction: float
-    """μ."""
+    """Friction coefficient μ."""
     cohesion: float
-    """c (N): |F_s| ≤ μ F_n + c."""
+    """Cohesion c (N) with |F_s| ≤ μ F_n + c."""
     stiffness_damping: float
-    """β (s): dashpots β k_n and β k_s."""
+    """Damping time β (s) of the dashpots β k_n and β k_s."""
     normal_damping: float
-    """γ_n (1/s): a dashpot γ_n m_eff."""
+    """Normal damping rate γ_n (1/s) of the dashpot γ_n m_eff."""
     tangential_damping: float
-    """γ_t (1/s): a dashpot γ_t m_eff."""
+    """Tangential damping rate γ_t (1/s) of the dashpot γ_t m_eff."""
     restitution: float
-    """e; 1 where the scene gives none."""
+    """Coefficient of restitution e; 1 if the scene has none."""
     rolling_friction: float
-    """μ_r: a moment of at most μ_r R_eff F_n."""
+    """Rolling friction coefficient μ_r; the rolling moment is at most μ_r R_eff F_n."""
     rolling_damping: float
     """Damping ratio of the rolling spring."""
 
@@ -77,19 +77,25 @@ class Law:
 
 @dataclass(frozen=True)
 class Wall:
-    """A wall, at the start."""
+    """Wall in its initial state."""
 
     name: str
     material: str
     shape: str
     """`plane`, `segment`, `rectangle`, `round` or `mesh`."""
     geometry: dict[str, Floats]
-    """Of a plane `point` (3,) (m) and `normal` (3,), out of the solid; of a segment `ends` (2, 3); of a rectangle `corner` (3,) and
-    `edges` (2, 3); of a round one `axis` (2, 3) and `radii` (2,); of a mesh `triangles` (n, 3, 3)."""
+    """Geometry of the shape, with lengths in m.
+
+    A plane has `point` (3,) and `normal` (3,) out of the solid; a segment `ends` (2, 3); a rectangle `corner` (3,) and
+    `edges` (2, 3); a round wall `axis` (2, 3) and `radii` (2,); a mesh `triangles` (n, 3, 3).
+    """
     centre: Floats
-    """Centre of rotation (m), shape (3,); it moves with the wall."""
+    """Centre of rotation (m), shape (3,). It moves with the wall."""
     motion: list[dict[str, Any]]
-    """Phases that add up: `velocity` (m/s), `spin` (rad/s), `start` (s) and, where it ends before the run, `stop` (s)."""
+    """Superposed motions with `velocity` (m/s), `spin` (rad/s) and `start` (s).
+
+    A motion that ends before the run also has `stop` (s).
+    """
 
     @classmethod
     def _of(cls, wall: dict[str, Any]) -> Wall:
@@ -103,51 +109,53 @@ class Wall:
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene. Lengths in m, times in s, masses in kg (of discs per metre of depth), angles in rad; vectors have three components, of
-    which scenes in the plane use x and y for places and z for spins."""
+    """Resolved scene in SI units; masses of discs are per metre of depth.
+
+    Vectors have three components. Two-dimensional scenes use x and y for positions, and z for spins.
+    """
 
     title: str
     dimension: int
     grain_shape: str
     """`disc` or `sphere`."""
     effects: list[str]
-    """What the scene calls for: `friction`, `contact-damping`, …"""
+    """Effects that the scene needs, such as `friction` or `contact-damping`."""
     gravity: Floats
-    """(m/s²), shape (3,)."""
+    """Gravitational acceleration (m/s²), shape (3,)."""
     global_damping: float
-    """α (1/s): a force −α m v and a torque −α I ω on every grain."""
+    """Global damping rate α (1/s), with a force −α m v and a torque −α I ω on each grain."""
     domain: dict[str, Any] | None
-    """`low` and `high` (m), and which axes are `periodic`, where there is a box."""
+    """Box with corners `low` and `high` (m) and the `periodic` axes; None without a box."""
     radius: Floats
-    """(m), shape (grains,)."""
+    """Radii (m), shape (grains,)."""
     mass: Floats
-    """(kg), shape (grains,)."""
+    """Masses (kg), shape (grains,)."""
     inertia: Floats
-    """(kg m²), shape (grains,)."""
+    """Moments of inertia (kg m²), shape (grains,)."""
     position: Floats
-    """(m), shape (grains, 3)."""
+    """Initial positions (m), shape (grains, 3)."""
     velocity: Floats
-    """(m/s), shape (grains, 3)."""
+    """Initial velocities (m/s), shape (grains, 3)."""
     spin: Floats
-    """(rad/s), shape (grains, 3)."""
+    """Initial angular velocities (rad/s), shape (grains, 3)."""
     material: list[str]
-    """Of each grain."""
+    """Material of each grain."""
     walls: list[Wall]
     laws: dict[frozenset[str], Law]
-    """By the materials of a contact: see `law`."""
+    """Contact laws by pair of materials; see `law`."""
     driven: list[dict[str, Any]]
-    """Groups that are moved whatever the forces on them: `grains` by their numbers from 1, `velocity` (m/s)."""
+    """Groups with prescribed motion: `grains` by number from 1, and `velocity` (m/s)."""
     steps: Steps
     raw: dict[str, Any]
-    """All that the file says: `grainbench schema --resolved`."""
+    """Complete content of the file; `grainbench schema --resolved` describes it."""
 
     def law(self, first: str, second: str) -> Law:
-        """The law between two materials."""
+        """Returns the contact law of two materials."""
         return self.laws[frozenset((first, second))]
 
     @classmethod
     def read(cls, path: str | Path) -> Scene:
-        """Reads a scene as `grainbench scene CASE` prints it."""
+        """Reads a resolved scene, as `grainbench scene CASE` prints it."""
         with open(path, encoding="utf-8") as file:
             raw = json.load(file)
         if raw.get("format") != 1:

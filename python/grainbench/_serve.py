@@ -1,4 +1,4 @@
-"""Answers requests for runs, a line each."""
+"""Answers to run requests, one per line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._solver import Broken, Cannot, Solver
 
 
 def answer(solver: Solver, line: str) -> str:
-    """Does the run of a request and says how it ended; files go where the request says."""
+    """Does a requested run, writes its files to the requested directory, and returns its outcome as JSON."""
     request = json.loads(line)
     return json.dumps(_run(solver, request["scene"], request["out"]))
 
@@ -32,7 +32,7 @@ def _run(solver: Solver, scene_file: str, out: str) -> dict[str, Any]:
         return {"cannot": str(reason) or "it gave no reason"}
     except Broken as broken:
         return {"failed": {"when": broken.when, "where": broken.where, "why": broken.why}}
-    except Exception as error:  # Whatever it is, it is the solver's, and said in the row.
+    except Exception as error:  # Any error belongs to the solver, and its result reports it.
         traceback.print_exc()
         last = traceback.extract_tb(error.__traceback__)[-1]
         return _failed(f"{type(error).__name__}: {error}", f"{last.filename}:{last.lineno}")

@@ -1,4 +1,4 @@
-"""A function as a solver, with what it declares that it can."""
+"""Solver function with its declared capabilities."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ Function = Callable[[Scene, Steps], Record]
 
 
 class Cannot(Exception):
-    """A scene cannot be expressed; the reason stands in the row."""
+    """Error for a scene that the solver does not support. Its text is the reason in the result."""
 
 
 class Broken(Exception):
-    """A run broke: when, where and why."""
+    """Error for a failed run, with time, place and reason."""
 
     def __init__(self, why: str, when: Any = None, where: Any = None) -> None:
         super().__init__(why)
@@ -26,7 +26,7 @@ class Broken(Exception):
 
 @dataclass(frozen=True)
 class Solver:
-    """A function, and what it declares."""
+    """Solver function and its declarations."""
 
     function: Function
     name: str
@@ -44,8 +44,8 @@ class Solver:
         return self.function(scene, steps)
 
     def manifest(self, worker: Sequence[str]) -> str:
-        """`SOLVER.toml` of the function behind a command that takes a run a line."""
-        # A list of strings and numbers is written in TOML as in JSON.
+        """Returns the `SOLVER.toml` for a command that reads one run request per line."""
+        # Lists of strings and numbers are written in TOML as in JSON.
         import json
 
         def line(key: str, value: Any) -> str:
@@ -79,14 +79,14 @@ def solver(
     memory_mib: int | None = None,
     critical_fraction: Sequence[float] = (),
 ) -> Callable[[Function], Solver]:
-    """Makes a solver of a function of a scene and its steps.
+    """Makes a solver from a function of a scene and its steps.
 
-    What is not declared is not asked for: such a row reads `unsupported`, with the reason.
+    Claims that need an undeclared capability are `unsupported`, with the reason.
 
-    dimension: 2, 3 or both. laws: `linear`, `hertz-mindlin`, `coulomb`. walls: `plane`, `segment`, `rectangle`, `round`, `mesh`.
-    effects: `friction`, `contact-damping`, `rolling-resistance`, … as `grainbench scene CASE` names them; gravity is everybody's.
-    driven: whether grains can be driven. seconds and memory_mib: what a run may take. critical_fraction: time steps, as parts of the
-    critical one, at which it is seen how the error falls and what it costs.
+    dimension: 2, 3 or both. laws: `linear`, `hertz-mindlin`, `coulomb`. walls: `plane`, `segment`, `rectangle`, `round`,
+    `mesh`. effects: `friction`, `contact-damping`, `rolling-resistance`, … as `grainbench scene CASE` names them. Each
+    solver must support gravity. driven: True if grains can have a prescribed motion. seconds, memory_mib: limits of a
+    run. critical_fraction: time steps of the cost-accuracy study, as fractions of the critical one.
     """
 
     def make(function: Function) -> Solver:

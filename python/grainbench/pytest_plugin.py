@@ -1,4 +1,7 @@
-"""`pytest --grainbench MODULE:NAME` or `FILE.py:NAME`: an item a row that is fair to any solver, and one for its control."""
+"""Plugin for `pytest --grainbench MODULE:NAME` or `FILE.py:NAME`.
+
+It adds one item for each solver-independent claim, and one for its negative control.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +22,14 @@ _NOTHING: pytest.StashKey[bool] = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Options of the plugin."""
+    """Adds the options of the plugin."""
     group = parser.getgroup("grainbench", "solvers of grains, judged by grainbench")
     group.addoption("--grainbench", metavar="MODULE:NAME", help="judge the function under @grainbench.solver of this name")
     group.addoption("--grainbench-cases", metavar="CASE,…", default="", help="by these cases alone (CASE or CASE/VARIANT)")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Checks the name before anything is collected."""
+    """Checks the name before the collection."""
     target: str | None = config.getoption("--grainbench")
     if target is not None and ":" not in target:
         raise pytest.UsageError(f"--grainbench: expected MODULE:NAME or FILE.py:NAME, found {target!r}")
@@ -34,7 +37,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Adds the rows, before `-k` and `-m` choose among the items."""
+    """Adds the items before `-k` and `-m` select among them."""
     target: str | None = config.getoption("--grainbench")
     if target is None:
         return
@@ -45,7 +48,7 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
     except (SystemExit, ValueError, FileNotFoundError) as error:
         raise pytest.UsageError(str(error)) from None
     if not any(config.args_source is source for source in (config.ArgsSource.ARGS,)):
-        # Nothing else was asked for.
+        # No other tests were requested.
         items.clear()
     folder = config._tmp_path_factory.mktemp("grainbench") if hasattr(config, "_tmp_path_factory") else None
     judged = _Judged(solver.manifest([sys.executable, "-m", "grainbench.worker", _absolute(target, config)]), folder, config)
@@ -59,7 +62,7 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Fails where rows were asked for and none was judged."""
+    """Fails if claims were requested and none was evaluated."""
     if session.config.getoption("--grainbench") is None or exitstatus not in (0, 5) or session.config.option.collectonly:
         return
     if not any(isinstance(item, _Row) and item.is_judged for item in session.items):
@@ -68,19 +71,19 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    """Says why it fails where every row was skipped."""
+    """Reports the reason for the failure if all items were skipped."""
     if config.stash.get(_NOTHING, False):
         terminalreporter.write_line("grainbench: no row was judged: the run fails", red=True)
 
 
 def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Item]) -> str | None:
-    """How many items are rows and controls."""
+    """Returns the number of claims and controls among the items."""
     rows = sum(isinstance(item, _Row) for item in items)
     return f"grainbench: {rows} rows and controls of {config.getoption('--grainbench')}" if rows else None
 
 
 def _absolute(target: str, config: pytest.Config) -> str:
-    """A file is named from where pytest was started: the solver runs elsewhere."""
+    """Returns the target with an absolute path, because the solver runs in another directory."""
     place, _, name = target.rpartition(":")
     path = Path(config.invocation_params.dir) / place
     return f"{path}:{name}" if place.endswith(".py") else target
@@ -92,7 +95,7 @@ def _name(row: dict[str, Any], control: str | None) -> str:
 
 
 class _Judged:
-    """Results of the cases that items were asked of, each judged when its first item is."""
+    """Results by case; each case runs when its first item runs."""
 
     def __init__(self, manifest: str, folder: Path | None, config: pytest.Config) -> None:
         import tempfile
@@ -104,7 +107,7 @@ class _Judged:
         self._results: dict[str, dict[str, Any]] = {}
 
     def of(self, case: str) -> dict[str, Any]:
-        """Results of a case."""
+        """Returns the results of a case."""
         if case not in self._results:
             words = ["run", case, "--solver", str(self._folder / "SOLVER.toml"), "--json"]
             self._results[case] = json.loads(run([*words, "--out", str(self._folder / case)]))
@@ -112,7 +115,7 @@ class _Judged:
 
 
 class _Row(pytest.Item):
-    """A row, or its control."""
+    """Item of a claim or of its control."""
 
     def __init__(self, *, judged: _Judged, key: tuple[str, str, str, int], control: str | None, solvers: str, **words: Any) -> None:
         super().__init__(**words)
@@ -120,7 +123,7 @@ class _Row(pytest.Item):
         self.is_judged = False
 
     def runtest(self) -> None:
-        """Green where the row passed, or its control turned red."""
+        """Passes if the claim passed, or if its control failed as required."""
         case, variant, quantity, place = self._key
         results = self._judged.of(case)
 
@@ -135,7 +138,7 @@ class _Row(pytest.Item):
         if row["severity"] == "amber":
             pytest.skip(f"{row['verdict']}: {row.get('detail') or ''}")
         if self._control is not None:
-            # A control is left out where the row is red and the solver cannot express its wrong scene.
+            # A control is missing if the result is red and the solver does not support the wrong scene.
             controls = found("controls")
             if place >= len(controls) and row["severity"] == "red":
                 pytest.skip("the row is red, and its control cannot be expressed")
@@ -150,15 +153,15 @@ class _Row(pytest.Item):
             raise _Red(_line(row) + (f"\n{row['detail']}" if row.get("detail") else ""))
 
     def repr_failure(self, excinfo: Any, style: Any = None) -> Any:
-        """The row in words; what else went wrong with its place."""
+        """Returns the result in words; for other errors, the traceback."""
         if isinstance(excinfo.value, (_Red, ValueError)):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[str, int | None, str]:
-        """Where it is listed."""
+        """Returns the place under which the item is listed."""
         return ("grainbench", None, self.name)
 
 
 class _Red(Exception):
-    """A row that is red."""
+    """Error for a red result."""

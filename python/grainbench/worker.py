@@ -1,6 +1,6 @@
-"""`python -m grainbench.worker MODULE:NAME` or `FILE.py:NAME`: a solver as a program that stays.
+"""Worker `python -m grainbench.worker MODULE:NAME` or `FILE.py:NAME`: a solver that keeps running between runs.
 
-It is what `worker` of a `SOLVER.toml` names.
+The key `worker` of a `SOLVER.toml` names this command.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ._solver import Solver
 
 
 def load(target: str) -> Solver:
-    """The solver of `MODULE:NAME` or `FILE.py:NAME`."""
+    """Returns the solver `MODULE:NAME` or `FILE.py:NAME`."""
     place, colon, name = target.rpartition(":")
     if not colon:
         raise SystemExit(f"expected MODULE:NAME or FILE.py:NAME, found {target!r}")
@@ -39,7 +39,7 @@ def load(target: str) -> Solver:
 
 
 def main() -> None:
-    """Answers requests until there are no more. What the solver prints goes to the errors: answers alone go out."""
+    """Answers requests until the input ends. Output of the solver goes to the standard error."""
     if len(sys.argv) != 2:
         raise SystemExit("usage: python -m grainbench.worker MODULE:NAME")
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The package as its users have it: installed, with the program beside it."""
+"""Tests of the installed package with its program."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grainbench._binary import binary
 EXAMPLE = Path(__file__).parents[2] / "examples" / "python" / "sphere.py"
 CASES = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"]
 
-# Each line of the example's physics, and the same spoiled.
+# Lines of the example's physics, each with a defective version.
 SPOILED = [
     ("force, torque = mass * scene.gravity", "force, torque = 0.99 * mass * scene.gravity"),
     ("overlap, arm = radius - ", "overlap, arm = 0.99 * radius - "),
@@ -136,7 +136,7 @@ def test_a_closure_is_judged_where_it_is() -> None:
 
     @gb.solver(dimension=[2, 3], laws=["linear"], effects=["friction", "contact-damping"])
     def free(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
-        """Falls through everything, at half its weight."""
+        """Lets the grains fall at half their weight through everything."""
         time = steps.samples * steps.time_step
         fall = slower * scene.gravity * time[:, None]
         velocity = scene.velocity + fall[:, None, :]
@@ -204,7 +204,7 @@ def test_what_grainbench_left_is_read(tmp_path: Path) -> None:
     subprocess.run([binary(), *words], check=True, capture_output=True)
     record = gb.read(run)
     assert isinstance(record, gb.Run)
-    # A sphere that was set down with ten turns a second rolls on at two sevenths of its rim's speed.
+    # A sphere that is set down with ten revolutions per second ends rolling at two sevenths of its rim speed.
     radius = record.snapshots[0]["position"][0, 2]
     rim = abs(record.snapshots[0]["spin"][0]).max() * radius
     assert record.snapshots[-1]["velocity"][0, 0] == pytest.approx(2 / 7 * rim, rel=2e-3)
@@ -225,8 +225,10 @@ def test_a_scene_is_read_as_it_is_printed(tmp_path: Path) -> None:
 
 
 def test_the_guide_shows_what_runs(tmp_path: Path) -> None:
-    """Blocks of Python in the guide that are typed there and not included, in a Python of their own: here `sphere` may be a
-    module that another test spoiled."""
+    """Runs the Python blocks that are typed in the guide and not included.
+
+    They run in a new process, because `sphere` may be a module that another test has changed.
+    """
     text = (Path(__file__).parents[2] / "guide" / "src" / "judge.md").read_text(encoding="utf-8")
     blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
     typed = [block for block in blocks if "{{#include" not in block]
