@@ -27,19 +27,20 @@ pub(crate) struct Arguments {
     /// Case, variant of a case, or your own scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
     scene: Option<String>,
-    /// Override one key of the scene if your run has other numbers than the case; exact solutions follow. Repeatable.
+    /// Override one key of the scene if your run has other parameters than the case; exact solutions are adjusted.
+    /// Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Output files, plain, gzip or zstd: dumps of grains and of contacts (`dump local`) at the same steps, VTK files (`.vtk`,
-    /// `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`), NumPy arrays (`.npz`), CSV tables of grains as ParaView writes them (one a time, or
-    /// one of all times), or one CSV table of probes.
+    /// Output files, plain, gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at the same steps;
+    /// VTK files (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`); NumPy arrays (`.npz`); CSV tables of grains from
+    /// ParaView, one per time or one for all times; one CSV table of probes.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
     /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
-    /// File that `--all` does not judge, by its name or a pattern in quotes such as `'*.log'`. Any other file that is no output
-    /// is red. Repeatable.
+    /// File that `--all` ignores, by name or by a quoted pattern such as `'*.log'`; repeatable. Any other file that is
+    /// not output is red.
     #[arg(long, value_name = "NAME", requires = "all")]
     ignore: Vec<String>,
     /// Log of the run; by default `log.lammps` or `log.liggghts` next to the first dump.
@@ -51,12 +52,14 @@ pub(crate) struct Arguments {
     /// Time between files or frames in seconds, if their numbers count frames and nothing gives their times.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     frame_interval: Option<f64>,
-    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first grain) and an
-    /// optional `tangential_x`; `WALL.force_x` is the force of a wall on a grain, and `angle` the angle of a disc.
+    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first
+    /// grain) and an optional `tangential_x`. `WALL.force_x` is the force of a wall on a grain, and `angle` is the
+    /// angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Accept output that ends before the run does, or whose samples are more than a tenth of the run and more than the sampling
-    /// interval of the scene apart: amber instead of red. The whole frames of a truncated file are judged.
+    /// Accept incomplete output: amber instead of red. The output may end early, and the time between samples may
+    /// exceed both a tenth of the run and the sampling interval of the scene. The whole frames of a truncated file are
+    /// judged.
     #[arg(long)]
     partial: bool,
     /// Accept a time step above the critical one.

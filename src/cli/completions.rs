@@ -5,14 +5,14 @@ use grainbench::reports::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What `completions` takes.
+/// Arguments of `completions`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Shell.
     shell: clap_complete::Shell,
 }
 
-/// What `man` takes.
+/// Arguments of `man`.
 #[derive(clap::Args)]
 pub(crate) struct ManArguments {
     /// Directory for the pages of all commands; by default the page of `grainbench` is printed.

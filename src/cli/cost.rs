@@ -33,8 +33,8 @@ pub(crate) struct Arguments {
     /// Include points that take more than twenty seconds.
     #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     pub(crate) levels: String,
-    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains; always measured if no
-    /// case is named.
+    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains. Without named
+    /// cases these are always measured.
     #[arg(long)]
     pub(crate) prices: bool,
     /// Measure finished points again.

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// How a scene of somebody's is run.
+/// Options for a scene of the user.
 #[derive(clap::Args)]
 struct Yours {
     /// Solver for your own scene file.

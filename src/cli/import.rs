@@ -13,15 +13,15 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Import {
     /// Publication: `dosta-2024`, the round robin of bulk processes.
     #[arg(value_name = "WORK", value_parser = ["dosta-2024"])]
     work: String,
-    /// Directory of CSV or Parquet tables: ball height (m) by code and bed `t,CODE_ICn,…`, one run `t,z`, grains in the zones of
-    /// the drum `t,z1_m1,z1_m2,z2_m1,z2_m2`, grains left in the silo `t,count`; and the initial state of the drum as an `xyz`
-    /// file.
+    /// Directory of CSV or Parquet tables. Columns: `t,CODE_ICn,…` for the ball height (m) by code and bed; `t,z` for
+    /// one run; `t,z1_m1,z1_m2,z2_m1,z2_m2` for the grains in the zones of the drum; `t,count` for the remaining grains
+    /// in the silo. The initial state of the drum is an `xyz` file.
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Directory for numbers and curves.

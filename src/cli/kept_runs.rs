@@ -19,30 +19,31 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// What `keep` takes.
+/// Arguments of `keep`.
 #[derive(clap::Args)]
 pub(crate) struct Keep {
-    /// Cases; all that keep something when none is named.
+    /// Cases; all cases with stored results by default.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Runs too that are kept already.
+    /// Repeat also the runs with a valid stored result.
     #[arg(long)]
     anew: bool,
-    /// Runs too of scenes as large as those of a paper, which take hours.
+    /// Include full-scale runs, which take hours.
     #[arg(long)]
     paper_size: bool,
-    /// Only runs in whose names, as the command lists them, these letters stand.
+    /// Select runs whose name contains these letters; the command prints the names.
     #[arg(long, value_name = "LETTERS")]
     run: Option<String>,
-    /// Directory in which you have data of others that runs begin with, as `import` reads it; without it those are left out.
+    /// Directory with your copy of third-party data, as for `reference import`; without it the runs that need the data
+    /// are skipped.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Threads of a run.
+    /// Threads of each run.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
-    /// Directory for checkpoints: a run that was ended goes on from its own, `CASE-RUN.checkpoint`, which goes when the run is
-    /// kept. One that `simulate --checkpoint` left of the same run may stand there in its place. Of runs whose snapshots are read
-    /// as they come there is none.
+    /// Directory for checkpoints. An interrupted run continues from `CASE-RUN.checkpoint`, which is deleted when the
+    /// result is stored. A checkpoint of the same run by `simulate --checkpoint` can be used too. Runs that are read
+    /// snapshot by snapshot have no checkpoints.
     #[arg(long, value_name = "DIR", default_value = "grainbench-checkpoints")]
     checkpoints: PathBuf,
 }

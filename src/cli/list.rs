@@ -10,7 +10,7 @@ use std::process::ExitCode;
 /// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases whose rows are listed; all by default.
+    /// Cases whose claims are listed; all by default.
     #[arg(value_name = "CASE|CASE/VARIANT", requires = "rows")]
     cases: Vec<String>,
     /// List the solver-independent claims with their controls instead of the cases.

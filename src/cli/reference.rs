@@ -38,7 +38,7 @@ pub(crate) enum Command {
     Import(Import),
 }
 
-/// What `uncertainty` takes.
+/// Arguments of `uncertainty`.
 #[derive(clap::Args)]
 pub(crate) struct Uncertainty {
     /// Cases; all by default.
@@ -49,7 +49,7 @@ pub(crate) struct Uncertainty {
     long: bool,
 }
 
-/// What `build` takes.
+/// Arguments of `build`.
 #[derive(clap::Args)]
 pub(crate) struct Build {
     /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.
@@ -60,7 +60,7 @@ pub(crate) struct Build {
     out: Option<PathBuf>,
 }
 
-/// What `verify` takes.
+/// Arguments of `verify`.
 #[derive(clap::Args)]
 pub(crate) struct Verify {
     /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.

@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// Resolution levels for `run`; for `cost`, `all` includes points that take more than twenty seconds.
     #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Rows for `run`, as its option `--filter`.
+    /// Filter for `run`, as its option `--filter`.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…")]
     pub(crate) filter: Vec<String>,
     /// Skip the negative controls, for `run`.
