@@ -144,8 +144,8 @@ pub(crate) trait Geometry: Space {
 
     /// Returns the part of a spin along the normal; zero in the plane.
     fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
-    /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the mean normal over the
-    /// step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane, the
+    /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the
+    /// middle of the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane, the
     /// scalar does not change.
     fn turned<X: Number>(
         tangent: Self::Tangents<X>,
@@ -273,9 +273,9 @@ fn cross<X: Number>(Components(a): Components<X, 3>, Components(b): Components<X
 }
 
 /// Transports a vector ξ that is perpendicular to the normal e at the start of a step to the end of the step. It is
-/// reflected in the plane perpendicular to the mean normal m, which maps e to −e': ξ' = ξ − 2 (ξ·m) m/(m·m). Then it is
+/// reflected in the plane perpendicular to the middle normal m, which maps e to −e': ξ' = ξ − 2 (ξ·m) m. Then it is
 /// rotated about e' by an angle φ with t = tan φ/2: ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both steps conserve its
-/// length.
+/// length. The factor 1/(1 + t²) is (1 − t²)(1 + t⁴) with an error of t⁸, less than rounding for φ < .02.
 #[inline(always)]
 fn turned<X: Number>(
     vector: Components<X, 3>,
@@ -283,10 +283,10 @@ fn turned<X: Number>(
     normal: Components<X, 3>,
     half_twist: X,
 ) -> Components<X, 3> {
-    let one = half_twist.like(1.0);
-    let tilted = vector - middle * (vector.dot(middle) * 2.0 / middle.dot(middle));
     let square = half_twist * half_twist;
-    (tilted * (one - square) + cross(normal, tilted) * (half_twist * 2.0)) * (one / (one + square))
+    let inverse = (-square + 1.0) * (square * square + 1.0);
+    let tilted = vector - middle * (vector.dot(middle) * 2.0);
+    tilted * ((-square + 1.0) * inverse) + cross(normal, tilted) * (half_twist * 2.0 * inverse)
 }
 
 impl Geometry for Solid {

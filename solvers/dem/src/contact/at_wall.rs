@@ -5,7 +5,7 @@ use super::normal::Normal;
 use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{MEMORY, Memory, Touch, Turn, mean_normal, stiffness_ratio};
+use super::{MEMORY, Memory, Middle, Touch, Turn, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 
@@ -40,8 +40,10 @@ impl<S: Geometry> AtWall<'_, S> {
         memory: &mut Memory<f64>,
     ) -> Answer<S, f64> {
         let (options, elapsed, overlap) = (evaluation.options, evaluation.elapsed, self.radius - self.distance);
-        let middle = self.middle_normal(memory);
-        let velocity_normal = if options.mid_step && T::MAY_BE_MID_STEP { middle } else { self.normal };
+        let middle = self.middle(memory);
+        let is_mid_step = options.mid_step && T::MAY_BE_MID_STEP;
+        let velocity_normal = if is_mid_step { middle.normal } else { self.normal };
+        let chord = if is_mid_step { middle.chord } else { 1.0 };
         let turns = T::TURNED && S::DIMENSION == 3;
         let touch = Touch {
             law: self.law,
@@ -50,9 +52,9 @@ impl<S: Geometry> AtWall<'_, S> {
             normal: self.normal,
             overlap,
             velocity_normal,
-            turn: self.spin.filter(|_| turns).map(|spin| Turn::new(middle, spin + self.wall_spin, elapsed)),
+            turn: self.spin.filter(|_| turns).map(|spin| Turn::new(middle.normal, spin + self.wall_spin, elapsed)),
             stiffness_ratio: if N::CURVED && T::ACTIVE {
-                stiffness_ratio(overlap, self.velocity.dot(middle), elapsed)
+                stiffness_ratio(1.0 / overlap, self.velocity.dot(middle.normal), elapsed)
             } else {
                 1.0
             },
@@ -63,21 +65,25 @@ impl<S: Geometry> AtWall<'_, S> {
         let arms = [self.radius - overlap * options.arm_reduction, 0.0];
         let rolling = if R::ACTIVE && options.rolls_by_surface { arms[0] / self.distance } else { 1.0 };
         let turning = self.spin.map(|spin| Turning {
-            surface: spin * arms[0],
+            surface: spin * (arms[0] * chord),
             relative: spin * rolling - self.wall_spin * options.wall_spin,
             inertia: self.inertia + touch.effective_mass * self.radius * self.radius,
         });
         stages::<S, N, T, R, f64>(&touch, arms, turning, evaluation, memory)
     }
 
-    /// Returns the mean of the unit normals of the previous and the present evaluation, and stores the present one. At
+    /// Returns the middle between the normals of the previous and the present evaluation, and stores the present one. At
     /// a new contact, it is the present normal. This also holds for a contact that continues on another face, more than
     /// a quarter turn away.
     #[inline(always)]
-    fn middle_normal(&self, memory: &mut Memory<f64>) -> S::Vectors<f64> {
+    fn middle(&self, memory: &mut Memory<f64>) -> Middle<S, f64> {
         let remembered = &mut memory[MEMORY - 3..];
         let before = S::Vectors::<f64>::read(remembered);
         self.normal.write(remembered);
-        if before.dot(self.normal) > 0.0 { mean_normal::<S, f64>(before, self.normal) } else { self.normal }
+        if before.dot(self.normal) > 0.0 {
+            Middle::of_normals(before, self.normal)
+        } else {
+            Middle::end(self.normal, self.distance)
+        }
     }
 }

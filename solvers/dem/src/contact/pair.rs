@@ -4,7 +4,7 @@ use super::chain::{Answer, Evaluation, Turning, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{Memory, Touch, Turn, middle_normal, stiffness_ratio};
+use super::{Memory, Middle, Touch, Turn, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
@@ -51,33 +51,41 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         let turns = T::TURNED && S::DIMENSION == 3;
         let changes = N::CURVED && T::ACTIVE && (T::TURNED || evaluation.record);
         let middle = if is_mid_step || turns || changes {
-            middle_normal::<S, X>((between, inverse_distance, normal), velocity, elapsed)
+            Middle::<S, X>::of_centres(normal, inverse_distance, velocity, elapsed)
         } else {
-            normal
+            Middle::end(normal, distance)
         };
+        // One division for the effective radius and the ratio of stiffnesses.
+        let inverse = if changes { distance.like(1.0) / (self.reach * overlap) } else { zero };
         let touch = Touch {
             law: self.law,
             between,
             inverse_distance,
             normal,
             overlap,
-            velocity_normal: if is_mid_step { middle } else { normal },
-            turn: self.spins.filter(|_| turns).map(|[a, b]| Turn::new(middle, a + b, elapsed)),
+            velocity_normal: if is_mid_step { middle.normal } else { normal },
+            turn: self.spins.filter(|_| turns).map(|[a, b]| Turn::new(middle.normal, a + b, elapsed)),
             stiffness_ratio: if changes {
-                stiffness_ratio(overlap, velocity.dot(middle), elapsed)
+                stiffness_ratio(inverse * self.reach, velocity.dot(middle.normal), elapsed)
             } else {
                 distance.like(1.0)
             },
             velocity,
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
-            effective_radius: if N::CURVED || R::ACTIVE { first * second / self.reach } else { zero },
+            effective_radius: match (changes, N::CURVED || R::ACTIVE) {
+                (true, _) => first * second * (inverse * overlap),
+                (false, true) => first * second / self.reach,
+                (false, false) => zero,
+            },
         };
         let off = overlap * evaluation.options.arm_reduction;
         let arms = [first - off, second - off];
         let turning = match self.spins {
             Some([a, b]) => {
                 let inertia = if R::ACTIVE { harmonic(self.about_contact(0) + self.about_contact(1)) } else { zero };
-                Some(Turning { surface: a * arms[0] + b * arms[1], relative: a - b, inertia })
+                let surface = a * arms[0] + b * arms[1];
+                let surface = if is_mid_step { surface * middle.chord } else { surface };
+                Some(Turning { surface, relative: a - b, inertia })
             }
             None => None,
         };
