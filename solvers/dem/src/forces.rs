@@ -170,10 +170,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         }
         let mut near = std::mem::take(&mut wall.near);
         let mut touching = 0;
-        for (slot, memory) in &mut near {
+        for (entry, (slot, memory)) in near.iter_mut().enumerate() {
             let slot = *slot as usize;
             let facing = wall.facing(grains.position(slot));
-            if facing.distance >= grains.radius(slot) {
+            let is_covered = wall.covered.get(entry).is_some_and(|covered| *covered);
+            if is_covered || facing.distance >= grains.radius(slot) {
                 *memory = [0.0; MEMORY];
                 continue;
             }

@@ -28,6 +28,7 @@ mod end_state;
 mod forces;
 mod geometry;
 mod grains;
+mod joints;
 mod laws;
 mod listed;
 mod mean_virial;

@@ -9,6 +9,7 @@ use crate::contact::{MEMORY, Options};
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{ABSENT, Grains};
+use crate::joints::Joints;
 use crate::laws::Laws;
 use crate::listed::Pairs;
 use crate::mean_virial::MeanVirial;
@@ -45,6 +46,7 @@ pub(crate) struct Simulated<S: Geometry> {
     pub(crate) grains: Grains<S>,
     pub(crate) neighbours: Neighbours,
     pub(crate) walls: Vec<MovingWall>,
+    joints: Joints,
     /// Loops over contacts, compiled for the laws of the scene.
     pub(crate) forces: Box<dyn Forces<S>>,
     /// Instruction set for these loops.
@@ -112,6 +114,7 @@ impl<S: Geometry> Simulated<S> {
             grains: Grains::new(scene, forces.turn()),
             neighbours: Neighbours::new(skin::first(mean_radius)),
             walls: scene.walls.iter().map(|wall| MovingWall::new(wall, options.mid_step)).collect(),
+            joints: Joints::new(&scene.walls),
             forces,
             processor: Processor::new(),
             team,
@@ -335,6 +338,7 @@ impl<S: Geometry> Simulated<S> {
             grains,
             neighbours,
             walls,
+            joints,
             forces,
             processor,
             seen_at_walls,
@@ -355,6 +359,7 @@ impl<S: Geometry> Simulated<S> {
             *seen_at = Some(*step);
         }
         let (one_by_one, before) = (*one_by_one, cost.contact_evaluations);
+        joints.look(walls, grains);
         for (number, wall) in walls.iter_mut().enumerate() {
             cost.pair_tests += wall.pairs() as u64;
             let seen = record.then_some(&mut *seen_at_walls);

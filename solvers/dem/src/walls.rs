@@ -32,6 +32,8 @@ pub(crate) struct MovingWall {
     swing: [f64; 2],
     /// Grains near the wall, by slot.
     pub(crate) near: NearWall,
+    /// True for each entry of `near` whose contact belongs to a joined wall; empty without joints.
+    pub(crate) covered: Vec<bool>,
     /// Nearby grains of a mesh, which replace `near`.
     pub(crate) at_mesh: AtMesh,
     /// Force of the grains on the wall in the last force evaluation (N).
@@ -90,6 +92,7 @@ impl MovingWall {
             mid_step,
             swing: [1.0, 0.0],
             near: Vec::new(),
+            covered: Vec::new(),
             at_mesh: AtMesh::default(),
             force: Vector3::zeros(),
             pressed: [0.0; 2],

@@ -418,3 +418,97 @@ fn a_dashpot_shortens_the_stable_step() {
         close(damped, free * ((1.0 + ratio * ratio).sqrt() - ratio));
     }
 }
+
+/// A frictional disc slides over the seam of two segments as over one segment: one contact, and the spring goes on.
+/// Counted twice at the seam, the normal force would double; without its spring, the shear force would begin at zero.
+#[test]
+fn a_joint_of_two_segments_is_one_wall() {
+    let text = |walls: &str| {
+        format!(
+            "materials.f.density = 1000.0\ncontacts.f = {{ between = ['f', 'f'], normal_stiffness = 1.0e6, \
+             tangential_stiffness = 5.0e5, friction = 0.5 }}\n\
+             dimension = 2\nduration_cycles = 400\n\
+             [grains.g]\nmaterial = 'f'\nradius = 0.5\nposition = [0.0, 0.49]\nvelocity = [0.5, 0.0]\n\
+             {walls}[probes]\ng = {{ grain = 'g' }}\nall = {{ system = true }}\n"
+        )
+    };
+    let wall = |name: &str, from: f64, to: f64| {
+        format!("[walls.{name}]\nmaterial = 'f'\nsegment = [[{from}, 0.0], [{to}, 0.0]]\n")
+    };
+    let step = Resolution::TimeStep(1e-3);
+    let whole = run_at(&text(&wall("a", -2.0, 2.0)), Convention::DEFAULT, &step);
+    assert!(last(&whole, "g.x") > 0.05 && last(&whole, "g.omega").abs() > 0.01);
+    for order in [["a", "b"], ["b", "a"]] {
+        let walls = wall(order[0], -2.0, 0.02) + &wall(order[1], 0.02, 2.0);
+        let joined = run_at(&text(&walls), Convention::DEFAULT, &step);
+        for name in ["g.x", "g.y", "g.omega", "all.elastic_energy"] {
+            let scale = column(&whole, name).iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let pairs = column(&whole, name).iter().zip(column(&joined, name));
+            pairs.for_each(|(one, two)| assert!((one - two).abs() <= 1e-10 * scale, "{name}: {two} for {one}"));
+        }
+    }
+}
+
+/// A disc at the ridge of two segments, at the end of a segment below a plane, and at the common edge of two rectangles
+/// has one contact. A disc in a valley has two.
+#[test]
+fn joined_edges_have_one_contact() {
+    let force = |text: &str, dimension: u32| {
+        let record = heavy(
+            &format!("dimension = {dimension}\nduration_cycles = 1\n{text}[probes]\nall = {{ system = true }}\n"),
+            1e-3,
+        );
+        column(&record, "all.contacts")[0]
+    };
+    let disc = |x: f64, y: f64| format!("[grains.g]\nmaterial = 'h'\nradius = 0.5\nposition = [{x}, {y}]\n");
+    let segment = |name: &str, ends: [f64; 4]| {
+        let [a, b, c, d] = ends;
+        format!("[walls.{name}]\nmaterial = 'h'\nsegment = [[{a}, {b}], [{c}, {d}]]\n")
+    };
+    let roof = segment("left", [-1.0, -1.0, 0.0, 0.0]) + &segment("right", [0.0, 0.0, 1.0, -1.0]);
+    assert_eq!(force(&(disc(0.0, 0.49) + &roof), 2), 1.0);
+    let valley = segment("left", [-1.0, 1.0, 0.0, 0.0]) + &segment("right", [0.0, 0.0, 1.0, 1.0]);
+    assert_eq!(force(&(disc(0.0, 0.7) + &valley), 2), 2.0);
+    let floor = "[walls.floor]\nmaterial = 'h'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n".to_owned();
+    assert_eq!(force(&(disc(0.0, 0.49) + &floor + &segment("post", [0.0, 0.0, 0.0, -1.0])), 2), 1.0);
+    let apart = segment("left", [-1.0, 0.0, -0.01, 0.0]) + &segment("right", [0.01, 0.0, 1.0, 0.0]);
+    assert_eq!(force(&(disc(0.0, 0.49) + &apart), 2), 2.0);
+    let sphere = "[grains.g]\nmaterial = 'h'\nradius = 0.5\nposition = [0.0, 0.0, 0.49]\n".to_owned();
+    let plate = |name: &str, x: f64| {
+        format!(
+            "[walls.{name}]\nmaterial = 'h'\nrectangle = {{ corner = [{x}, -1.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }}\n"
+        )
+    };
+    assert_eq!(force(&(sphere + &plate("left", -1.0) + &plate("right", 0.0)), 3), 1.0);
+}
+
+/// Two discs that stick together rotate as one body and keep an unloaded spring: surfaces rotate along arcs and centres
+/// move along chords. With the arc for the chord, the slip is θ²/24 of the arc in each step.
+#[test]
+fn rigid_rotation_causes_no_slip() {
+    let (rate, step, distance) = (10.0, 1e-2, 1.0 - 1e-8);
+    let chord = 2.0 * (0.5_f64 * rate * step).sin() / step;
+    // The velocity belongs to half a step before the first position; heavy discs keep it for one step.
+    let angle = 0.5 * rate * step;
+    let velocity = [0.5 * distance * chord * angle.sin(), -0.5 * distance * chord * angle.cos()];
+    for dimension in [2, 3] {
+        let [z, spin] = if dimension == 3 { [", 0.0", "[0.0, 0.0, 10.0]"] } else { ["", "10.0"] };
+        let grain = |name: &str, x: f64, [u, v]: [f64; 2]| {
+            format!(
+                "[grains.{name}]\nmaterial = 'h'\nradius = 0.5\nposition = [{x}, 0.0{z}]\nvelocity = [{u}, {v}{z}]\n\
+                 spin = {spin}\n"
+            )
+        };
+        let text = format!(
+            "dimension = {dimension}\nduration_cycles = 1\n{}{}\
+             [probes]\nc = {{ contact = ['a', 'b'] }}\n",
+            grain("a", -0.5 * distance, velocity),
+            grain("b", 0.5 * distance, velocity.map(|v| -v))
+        );
+        let law = HEAVY.replace(", stiffness_damping = 0.02", "");
+        let record = run_at(&format!("{law}{text}"), Convention::DEFAULT, &Resolution::TimeStep(step));
+        let slip = last(&record, "c.shear_force") / 5.0e5;
+        let arc = rate * step * distance;
+        assert!(slip.abs() < 1e-3 * arc * (rate * step).powi(2) / 24.0, "{dimension}D: {slip} of {arc}");
+    }
+}

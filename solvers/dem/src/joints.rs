@@ -1,0 +1,131 @@
+//! Joints of walls: edges of segments and rectangles that lie on another wall. A grain at such an edge touches both walls
+//! at one point and has one contact there.
+
+use crate::contact::MEMORY;
+use crate::geometry::Geometry;
+use crate::grains::Grains;
+use crate::walls::MovingWall;
+use grainbench_scene::overlap::distance;
+use grainbench_scene::scene::{Wall, WallShape};
+use nalgebra::Vector3;
+
+/// Largest distance of an edge from a wall on which it lies, in lengths of the edge's wall.
+const ON_WALL: f64 = 1e-9;
+/// Relative difference of distances that rounding can cause.
+const ROUNDING: f64 = 1e-12;
+
+/// Edges of each wall that lie on other walls.
+#[derive(Debug, Default)]
+pub(crate) struct Joints {
+    /// For each wall, its joined edges: the index of the edge, and the walls on which it lies.
+    of: Vec<Vec<(usize, Vec<usize>)>>,
+}
+
+impl Joints {
+    /// Finds the joined edges. Walls that move differently have no joint.
+    pub(crate) fn new(walls: &[Wall]) -> Self {
+        let of = walls.iter().enumerate().map(|(number, wall)| {
+            let joined = |edge: &Edge| -> Vec<usize> {
+                let others = walls.iter().enumerate().filter(|(other, _)| *other != number);
+                let on = others.filter(|(_, other)| moves_alike(wall, other) && edge.lies_on(other));
+                on.map(|(other, _)| other).collect()
+            };
+            let edges = edges(&wall.shape).into_iter().enumerate().map(|(edge, of)| (edge, joined(&of)));
+            edges.filter(|(_, on)| !on.is_empty()).collect()
+        });
+        let of: Vec<Vec<(usize, Vec<usize>)>> = of.collect();
+        if of.iter().all(Vec::is_empty) { Self::default() } else { Self { of } }
+    }
+
+    /// Finds the grains at joined edges whose contact belongs to another wall, and passes their springs on to it, so
+    /// that a grain that moves over a joint keeps them.
+    pub(crate) fn look<S: Geometry>(&self, walls: &mut [MovingWall], grains: &Grains<S>) {
+        for (number, edges) in self.of.iter().enumerate().filter(|(_, edges)| !edges.is_empty()) {
+            let mut near = std::mem::take(&mut walls[number].near);
+            let mut covered = std::mem::take(&mut walls[number].covered);
+            covered.clear();
+            for (slot, memory) in &mut near {
+                let at = grains.position(*slot as usize);
+                let owner = owner(walls, number, edges, at);
+                covered.push(owner.is_some());
+                let Some(owner) = owner.filter(|_| *memory != [0.0; MEMORY]) else { continue };
+                let theirs = walls[owner].near.iter_mut().find(|(other, _)| other == slot);
+                if let Some((_, theirs)) = theirs.filter(|(_, theirs)| *theirs == [0.0; MEMORY]) {
+                    *theirs = *memory;
+                }
+                *memory = [0.0; MEMORY];
+            }
+            (walls[number].near, walls[number].covered) = (near, covered);
+        }
+    }
+}
+
+/// Returns the wall that has the contact of a grain at `at` instead of wall `number`: the nearer of two joined walls, or
+/// at the same distance the one with the smaller index.
+fn owner(walls: &[MovingWall], number: usize, edges: &[(usize, Vec<usize>)], at: Vector3<f64>) -> Option<usize> {
+    let wall = &walls[number];
+    let distance = wall.facing(at).distance;
+    let nearest = nearest_edges(&wall.shape, at);
+    let joined = edges.iter().filter(|(edge, _)| nearest.contains(&Some(*edge))).flat_map(|(_, on)| on);
+    let is_owner = |&&other: &&usize| {
+        let theirs = walls[other].facing(at).distance;
+        let is_nearer = theirs < distance * (1.0 - ROUNDING);
+        !walls[other].is_gone() && (is_nearer || (other < number && theirs <= distance * (1.0 + ROUNDING)))
+    };
+    joined.filter(is_owner).min().copied()
+}
+
+/// Edge of a wall, by its ends (m); both are equal for the end of a segment.
+struct Edge {
+    ends: [Vector3<f64>; 2],
+    /// Length (m) of the wall.
+    size: f64,
+}
+
+impl Edge {
+    fn lies_on(&self, wall: &Wall) -> bool {
+        let [first, last] = self.ends;
+        let on = |point: Vector3<f64>| distance(point, &wall.shape).abs() <= ON_WALL * self.size;
+        on(first) && on(last) && on((first + last) * 0.5)
+    }
+}
+
+/// Returns the edges of a wall: the ends of a segment, or the sides of a rectangle at the start and the end of each of
+/// its two directions.
+fn edges(shape: &WallShape) -> Vec<Edge> {
+    match shape {
+        WallShape::Segment { ends } => {
+            let size = (ends[1] - ends[0]).norm();
+            ends.iter().map(|&end| Edge { ends: [end; 2], size }).collect()
+        }
+        WallShape::Rectangle { corner, edges: [u, v] } => {
+            let size = u.norm().max(v.norm());
+            let sides = [
+                [*corner, corner + v],
+                [corner + u, corner + u + v],
+                [*corner, corner + u],
+                [corner + v, corner + u + v],
+            ];
+            sides.into_iter().map(|ends| Edge { ends, size }).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the edges at which the point of a wall nearest to `at` lies; none if it is inside.
+fn nearest_edges(shape: &WallShape, at: Vector3<f64>) -> [Option<usize>; 2] {
+    let end = |from: &Vector3<f64>, along: Vector3<f64>, first: usize| {
+        let part = (at - from).dot(&along) / along.norm_squared();
+        if part <= 0.0 { Some(first) } else { (part >= 1.0).then_some(first + 1) }
+    };
+    match shape {
+        WallShape::Segment { ends } => [end(&ends[0], ends[1] - ends[0], 0), None],
+        WallShape::Rectangle { corner, edges } => [end(corner, edges[0], 0), end(corner, edges[1], 2)],
+        _ => [None; 2],
+    }
+}
+
+/// Returns true if two walls keep their relative position. Pistons move by forces.
+fn moves_alike(wall: &Wall, other: &Wall) -> bool {
+    wall.motion == other.motion && wall.piston.is_none() && other.piston.is_none()
+}
