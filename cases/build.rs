@@ -100,7 +100,10 @@ fn registry(root: &Path) -> Result<String, Failure> {
     for name in &names {
         let module = name.replace('-', "_");
         let file = root.join(name).join("case.rs");
-        writeln!(code, "#[path = {file:?}]\nmod {module};")?;
+        match of_claims(&root.join(name), name)? {
+            Some(case) => writeln!(code, "mod {module} {{\n{case}}}")?,
+            None => writeln!(code, "#[path = {file:?}]\nmod {module};")?,
+        }
     }
     writeln!(code, "/// Every case, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
     for name in &names {
@@ -109,6 +112,30 @@ fn registry(root: &Path) -> Result<String, Failure> {
     writeln!(code, "];")?;
     with_costs(root, &names, &mut code)?;
     Ok(code)
+}
+
+/// Returns the code of a case whose claims are in `claims.toml`; none for a case in Rust.
+fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
+    let file = folder.join("claims.toml");
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let wrong = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
+    let table: toml::Table = fs::read_to_string(&file)?.parse().map_err(|error| wrong(&error))?;
+    let text = |key: &str| {
+        let text = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
+        text.ok_or_else(|| wrong(&format!("expected a text `{key}`")))
+    };
+    let [title, claim, weakness] = [text("title")?, text("claim")?, text("weakness")?];
+    let [claims, scene, derivation] = ["claims.toml", "scene.toml", "derivation.md"].map(|name| folder.join(name));
+    Ok(Some(format!(
+        "static CLAIMS: std::sync::OnceLock<Vec<grainbench_harness::claim::Claim>> = std::sync::OnceLock::new();\n\
+         pub(crate) static CASE: crate::Case = crate::Case {{\n\
+         name: {name:?}, title: {title:?}, claim: {claim:?}, weakness: {weakness:?},\n\
+         scene: include_str!({scene:?}), derivation: include_str!({derivation:?}),\n\
+         claims: &|| CLAIMS.get_or_init(|| crate::folder::claims(&CASE, include_str!({claims:?}))).clone(),\n\
+         ..crate::folder::EMPTY }};\n"
+    )))
 }
 
 /// Adds the modules and the list of cases with their own target quantities of accuracy, in `cost.rs`.

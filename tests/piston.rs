@@ -125,4 +125,8 @@ fn a_run_with_a_lid_goes_on_to_the_same_bits_and_others_refuse_it() {
     std::fs::write(path.join("lid.toml"), turned).unwrap();
     let answer = simulate(&["dem", "--out", "no"]);
     assert!(answer.err.contains("walls.lid.piston: expected a plane that does not turn"), "{}", answer.err);
+    // A piston that is removed has no displacement to probe.
+    std::fs::write(path.join("lid.toml"), scene(0.01, 0.5, 5.0, 1.0, "until = 0.2")).unwrap();
+    let answer = simulate(&["dem", "--out", "no"]);
+    assert!(answer.err.contains("expected a piston without `until`"), "{}", answer.err);
 }

@@ -47,8 +47,10 @@ fn end(record: &Record) -> &Snapshot {
 fn a_grain_that_is_poured_falls_from_when_it_comes() {
     let feed = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.5, 0.0, -3.0]\n\
         poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 40.0], high = [0.0, 4.0, 40.0], start = 0.25 }\n";
-    let text = format!("{HEAD}{feed}");
+    // Without grains at the start, the coordination number is zero.
+    let text = format!("{HEAD}probes.stress = {{ stress = true }}\n{feed}");
     let record = run(&text, 1);
+    assert!(record.series.column("stress.coordination").unwrap().iter().all(|&number| number == 0.0));
     let scene = scene(&text);
     for snapshot in &record.snapshots {
         let there: Vec<u32> = snapshot.grains.iter().map(|grain| grain.id).collect();

@@ -42,7 +42,7 @@ fn claims() -> Vec<Claim> {
 fn level(floor: &'static str) -> Claim {
     let control = match floor {
         "two-triangles" => {
-            Control::scene("a contact with each side of the seam: two rectangles", floors::of_two_rectangles)
+            Control::scene("a contact with each side of the seam: two rectangles with a gap", floors::of_two_rectangles)
         }
         _ => Control::scene("a step of 1e-3 R at the seams along a line", floors::with_a_step),
     };

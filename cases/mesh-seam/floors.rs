@@ -49,14 +49,14 @@ pub(super) fn with_a_step(scene: &mut Scene) {
     }
 }
 
-/// Replaces the floor by two rectangles, for a control. Each is a separate wall; their common edge is on the sphere's
-/// path.
+/// Replaces the floor by two rectangles with a gap on the sphere's path, for a control. The gap of a millionth of a metre
+/// keeps them from being joined, so the sphere has a contact with each.
 pub(super) fn of_two_rectangles(scene: &mut Scene) {
     let Some(mut second) = scene.walls.first().cloned() else { return };
     second.name.push_str(", again");
     let half =
         |x: f64| WallShape::Rectangle { corner: Vector3::new(x, -1.0, 0.0), edges: [Vector3::x(), Vector3::y() * 2.0] };
-    scene.walls[0].shape = half(-1.0);
+    scene.walls[0].shape = half(-1.0 - 1e-6);
     second.shape = half(0.0);
     scene.walls.push(second);
 }

@@ -1,4 +1,4 @@
-//! A user's case without Rust: a folder with `scene.toml` and `claims.toml`.
+//! A case without Rust: a folder with `scene.toml` and `claims.toml`, in the registry or of a user.
 //!
 //! A claim states the quantity, the expected value and its source, the tolerance and its reason, and the negative
 //! control. It has the same parts as a claim in Rust. Expected values are arithmetic over the numbers of the scene.
@@ -15,7 +15,7 @@ pub use numbers::Numbers;
 pub use read::Read;
 
 use crate::registry::HOME;
-use claims_file::ClaimsFile;
+use claims_file::{Claimed, ClaimsFile};
 use grainbench_harness::case::{Case, Home, fraction};
 use grainbench_harness::claim::Claim;
 use grainbench_harness::course::no_more;
@@ -77,16 +77,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
         return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
     }
     let source = SceneSource::read(&folder.join(SCENE)).map_err(|error| no_case(error.to_string()))?;
-    let reader = Reader { folder, source: &source };
-    let mut rows: Vec<Claim> = Vec::new();
-    for (place, claimed) in claims.claims.into_iter().enumerate() {
-        let quantity = claimed.quantity.clone();
-        let row = reader.claim(claimed).map_err(|wrong| match wrong {
-            Wrong::Key(key, what) => no_case(format!("claim {} ({quantity}): {key}: {what}", place + 1)),
-            Wrong::Scene(what) => no_case(format!("claim {} ({quantity}): {what}", place + 1)),
-        })?;
-        rows.push(row);
-    }
+    let rows = rows(claims.claims, &Reader { folder, source: &source }).map_err(no_case)?;
     let whole = fs::canonicalize(folder).map_err(|error| no_case(error.to_string()))?;
     let is_plain = |name: &&std::ffi::OsStr| !name.to_string_lossy().chars().any(char::is_control);
     let (Some(name), Some(parent)) = (whole.file_name().filter(is_plain), whole.parent()) else {
@@ -102,12 +93,48 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
         scene: kept(source.text().to_owned()),
         derivation: kept(derivation),
         weakness: kept(claims.weakness),
-        levels: &[],
-        default_level: fraction("dt=.1", 0.1),
         claims: Box::leak(Box::new(move || rows.clone())),
-        figures: no_more,
         home: Box::leak(Box::new(home)),
+        ..EMPTY
     })))
+}
+
+/// Values of a case in the registry whose claims are in a file, except its texts and claims.
+pub(crate) const EMPTY: Case = Case {
+    name: "",
+    title: "",
+    claim: "",
+    scene: "",
+    derivation: "",
+    weakness: "",
+    levels: &[],
+    default_level: fraction("dt=.1", 0.1),
+    claims: &Vec::new,
+    figures: no_more,
+    home: &HOME,
+};
+
+/// Returns the claims of a case in the registry from the text of its file. A wrong file has no claims; the tests compare
+/// the number of claims with the file.
+pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
+    let (folder, source) = (case.directory(), case.source());
+    let claims = toml::from_str(text).map(|file: ClaimsFile| file.claims).unwrap_or_default();
+    rows(claims, &Reader { folder: &folder, source: &source }).unwrap_or_default()
+}
+
+/// Converts the claims of a file.
+///
+/// # Errors
+/// The message names the claim and the key, and gives the expected and the found text.
+fn rows(claims: Vec<Claimed>, reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
+    let row = |(place, claimed): (usize, Claimed)| {
+        let quantity = claimed.quantity.clone();
+        reader.claim(claimed).map_err(|wrong| match wrong {
+            Wrong::Key(key, what) => format!("claim {} ({quantity}): {key}: {what}", place + 1),
+            Wrong::Scene(what) => format!("claim {} ({quantity}): {what}", place + 1),
+        })
+    };
+    claims.into_iter().enumerate().map(row).collect()
 }
 
 /// Reads the text of a file.

@@ -95,7 +95,8 @@ fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
         contacts += 1;
     }
     let mut all: Vec<f64> = mean_stresses(dimension).iter().map(|&at| stress[at] / volume).collect();
-    all.push(2.0 * f64::from(contacts) / snapshot.grains.len() as f64);
+    // Without grains there are no contacts, and the coordination number is zero.
+    all.push(2.0 * f64::from(contacts) / snapshot.grains.len().max(1) as f64);
     all
 }
 

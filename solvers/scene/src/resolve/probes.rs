@@ -61,9 +61,10 @@ impl Resolver<'_> {
             let known = names.walls.iter().map(|wall| &wall.name);
             ProbeTarget::Wall(check.place_of(&key("wall"), wall, "a wall of this scene", known)?)
         } else if let Some(wall) = &spec.piston {
-            let pressed = names.walls.iter().map(|wall| wall.piston.map_or("", |_| wall.name.as_str()));
-            let known: Vec<String> = pressed.map(str::to_owned).collect();
-            ProbeTarget::Piston(check.place_of(&key("piston"), wall, "a wall that is pressed", known.iter())?)
+            let stays = |wall: &&Wall| wall.piston.is_some() && wall.until.is_none();
+            let pressed = names.walls.iter().map(|wall| if stays(&wall) { wall.name.clone() } else { String::new() });
+            let known: Vec<String> = pressed.collect();
+            ProbeTarget::Piston(check.place_of(&key("piston"), wall, "a piston without `until`", known.iter())?)
         } else if let Some(group) = &spec.driven {
             let known = names.driven.iter().map(|driven| &driven.name);
             ProbeTarget::Driven(check.place_of(&key("driven"), group, "a group of driven grains", known)?)
