@@ -24,6 +24,8 @@ use std::thread;
 
 /// Largest difference of two errors with the same cause, as a fraction of the error.
 const SAME: f64 = 0.05;
+/// Largest relative difference of two errors of the same run.
+const UNCHANGED: f64 = 1e-6;
 /// Largest number of candidates that a hint names.
 const MOST_NAMED: usize = 2;
 /// Largest number of steps times grains for a run with a wrong scene.
@@ -146,37 +148,32 @@ fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
 fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<'_>]) -> Vec<Candidate> {
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
-    let can: Vec<[bool; 3]> = judged
-        .iter()
-        .map(|judged| {
-            let [by_scene, by_method] = limits(&plain, judged.claim);
-            let is_right = || method_error(&right, judged).is_some_and(|error| error.abs() <= judged.row.allowed);
-            [true, by_scene, by_method && is_right()]
-        })
-        .collect();
+    let can: Vec<[bool; 2]> = judged.iter().map(|judged| limits(&plain, judged.claim)).collect();
+    // Errors without a mistake. A mistake that changes no error explains nothing.
+    let by_scene: Vec<Option<f64>> =
+        judged.iter().zip(&can).map(|(judged, can)| can[0].then(|| plain.judge(judged.claim).error)?).collect();
+    let by_method: Vec<Option<f64>> =
+        judged.iter().zip(&can).map(|(judged, can)| can[1].then(|| method_error(&right, judged))?).collect();
+    let is_right = |place: usize| by_method[place].is_some_and(|error| error.abs() <= judged[place].row.allowed);
+    let changed = |error: Option<f64>, without: Option<f64>| {
+        error.filter(|error| without.is_none_or(|without| (error - without).abs() > UNCHANGED * without.abs()))
+    };
     let errors = |mistake: &Mistake| -> Vec<Option<f64>> {
-        match mistake {
-            Mistake::Method(slip) => {
-                let runner = small(case, solvers, Some(*slip));
-                let of = |(judged, can): (&Judged<'_>, &[bool; 3])| can[2].then(|| method_error(&runner, judged))?;
-                judged.iter().zip(&can).map(of).collect()
+        let runner = match mistake {
+            Mistake::Method(slip) => small(case, solvers, Some(*slip)),
+            Mistake::Scene(_) | Mistake::Control(_) => Runner::new(case, Arc::clone(solvers)),
+        };
+        let of = |(place, judged): (usize, &Judged<'_>)| match mistake {
+            Mistake::Method(_) if is_right(place) => changed(method_error(&runner, judged), by_method[place]),
+            Mistake::Scene(control) if can[place][0] => {
+                changed(scene_error(&runner, judged.claim, control.clone()), by_scene[place])
             }
-            Mistake::Scene(control) => {
-                let runner = Runner::new(case, Arc::clone(solvers));
-                let of = |(judged, can): (&Judged<'_>, &[bool; 3])| {
-                    can[1].then(|| scene_error(&runner, judged.claim, control.clone()))?
-                };
-                judged.iter().zip(&can).map(of).collect()
+            Mistake::Control(name) if judged.claim.control.name == *name && is_own(judged.claim) => {
+                scene_error(&runner, judged.claim, judged.claim.control.clone())
             }
-            Mistake::Control(name) => {
-                let runner = Runner::new(case, Arc::clone(solvers));
-                let of = |judged: &Judged<'_>| {
-                    let is_it = judged.claim.control.name == *name && is_own(judged.claim);
-                    is_it.then(|| scene_error(&runner, judged.claim, judged.claim.control.clone()))?
-                };
-                judged.iter().map(of).collect()
-            }
-        }
+            _ => None,
+        };
+        judged.iter().enumerate().map(of).collect()
     };
     let mistakes = mistakes(&plain, judged);
     let count = thread::available_parallelism().map_or(1, usize::from);
