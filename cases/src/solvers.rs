@@ -91,6 +91,10 @@ impl Solvers for Registry {
         is_program(name)
     }
 
+    fn edition(&self, name: &str) -> String {
+        Program::by_name(name).map_or_else(String::new, |program| Live::find(program).edition())
+    }
+
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
     }

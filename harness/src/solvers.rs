@@ -63,7 +63,7 @@ pub trait Solvers: Send + Sync {
     }
 
     /// Returns a string that, together with the name, identifies finished runs. For a program that may change, it is a
-    /// hash of its files or the time when they were read.
+    /// hash of its files or executable, or the time when they were read.
     fn edition(&self, _name: &str) -> String {
         String::new()
     }

@@ -2,6 +2,7 @@
 
 use super::exit::Fault;
 use super::solver;
+use grainbench::campaign::plan::hash_of_file;
 use grainbench::cases::solvers::{self, Registry};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
@@ -11,6 +12,9 @@ use grainbench::reference::outside::Outside;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Defect, RunError, Solver};
+use std::collections::BTreeMap;
+use std::env;
+use std::path::Path;
 use std::process;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -48,7 +52,21 @@ impl WithStrangers {
     /// Reads the manifests for work that several processes share. The contents of its files identify an external
     /// solver.
     pub(crate) fn read_by_content(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
-        Self::read(names).map(|(solvers, known)| (Self { by_content: true, ..solvers }, known))
+        let (solvers, known) = Self::read(names)?;
+        // A fingerprint that fails must not change from process to process.
+        for stranger in &solvers.strangers {
+            stranger.edition().map_err(Fault::input)?;
+        }
+        Ok((Self { by_content: true, ..solvers }, known))
+    }
+
+    /// Returns the hashes of the files of the external solvers, by path. Paths in the current directory are relative.
+    pub(crate) fn inputs(&self) -> BTreeMap<String, String> {
+        let here = env::current_dir().unwrap_or_default();
+        // A folder that cannot be read is reported when the solvers are read.
+        let files = self.strangers.iter().flat_map(|stranger| stranger.files().unwrap_or_default());
+        let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).display().to_string();
+        files.map(|path| (shown(&path), hash_of_file(&path))).collect()
     }
 
     /// Returns the names of the external solvers.
@@ -96,8 +114,8 @@ impl Solvers for WithStrangers {
     }
 
     fn edition(&self, name: &str) -> String {
-        let Some(stranger) = self.stranger(name) else { return String::new() };
-        let content = if self.by_content { stranger.fingerprint().ok() } else { None };
+        let Some(stranger) = self.stranger(name) else { return Registry.edition(name) };
+        let content = if self.by_content { stranger.edition().ok() } else { None };
         content.unwrap_or_else(|| self.read.clone())
     }
 

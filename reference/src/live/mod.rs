@@ -1,9 +1,11 @@
 //! LAMMPS and LIGGGHTS as solvers, if they are installed. A run consists of deck, execution, dump and record.
 
+use std::collections::BTreeMap;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
 
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
@@ -72,6 +74,18 @@ impl Live {
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
+    }
+
+    /// Returns the hash of the executable, or an empty text if there is none.
+    #[must_use]
+    pub fn edition(&self) -> String {
+        /// Hashes by path and time of change, because a plan asks for each of its tasks.
+        static KNOWN: Mutex<BTreeMap<(PathBuf, SystemTime), String>> = Mutex::new(BTreeMap::new());
+        let Ok(path) = &self.executable else { return String::new() };
+        let changed = fs::metadata(path).and_then(|about| about.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let hash = || fs::read(path).map_or_else(|_| String::new(), |bytes| blake3::hash(&bytes).to_hex().to_string());
+        known.entry((path.clone(), changed)).or_insert_with(hash).clone()
     }
 
     fn executable(&self) -> Result<&Path, RunError> {

@@ -51,6 +51,10 @@ const FOR_VERSION: Duration = Duration::from_secs(20);
 const FOR_PREPARATION: Duration = Duration::from_secs(1800);
 /// Maximum size of the text that a program prints (B).
 const MOST_PRINTED: u64 = 16 << 20;
+/// Stored results, which `run --keep` writes next to the manifest.
+const KEPT: &str = "judged.json";
+/// Largest number of files in the folder of a manifest.
+const MOST_FILES: usize = 10_000;
 /// Resolution of the conformance tests, a fiftieth of the critical time step.
 const CONFORMING: Resolution = Resolution::CriticalFraction(0.02);
 
@@ -62,6 +66,7 @@ pub struct Outside {
     folder: PathBuf,
     prepared: OnceLock<Result<(), String>>,
     version: OnceLock<Option<String>>,
+    edition: OnceLock<Result<String, String>>,
     /// Worker processes that wait for a run.
     idle: Mutex<Vec<Worker>>,
     /// Time of a run with zero steps (s), by number of grains.
@@ -82,6 +87,7 @@ impl Outside {
             folder,
             prepared: OnceLock::new(),
             version: OnceLock::new(),
+            edition: OnceLock::new(),
             idle: Mutex::default(),
             start_up: Mutex::default(),
         })
@@ -172,21 +178,77 @@ impl Outside {
         &self.folder
     }
 
-    /// Returns a hash of the adapter. It covers the files in the folder of the manifest and the files named in the
-    /// manifest. Stored results (`.json`) are omitted.
+    /// Returns a hash of the adapter, which is the same on every machine. It covers the files in the folder of the
+    /// manifest and its subfolders, and the files named in the manifest. Stored results are omitted.
     ///
     /// # Errors
-    /// If a file cannot be read.
+    /// If a file cannot be read, or the folder has too many files.
     pub fn fingerprint(&self) -> io::Result<String> {
-        let entries = fs::read_dir(&self.folder)?.collect::<io::Result<Vec<_>>>()?;
-        let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
-        files.retain(|path| path.extension().is_none_or(|end| end != "json"));
+        self.hash(&self.own_files()?)
+    }
+
+    /// Returns a hash of the adapter and of the executables and other files that its commands name.
+    ///
+    /// The command before the first run is executed first, because it may write some of these files.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or the folder of the manifest has too many files. The error is a message.
+    pub fn edition(&self) -> Result<String, String> {
+        let ask = || {
+            // A program that cannot be prepared is reported by its runs.
+            let _ = self.prepare();
+            let hash = self.files().and_then(|files| self.hash(&files));
+            hash.map_err(|error| format!("{}: {error}", self.folder.display()))
+        };
+        self.edition.get_or_init(ask).clone()
+    }
+
+    /// Returns the files that [`Self::edition`] covers.
+    ///
+    /// # Errors
+    /// If a folder cannot be read, or the folder of the manifest has too many files.
+    pub fn files(&self) -> io::Result<Vec<PathBuf>> {
+        let mut files = self.own_files()?;
+        for command in [&self.manifest.prepare, &self.manifest.run, &self.manifest.worker] {
+            let Some(name) = command.first() else { continue };
+            files.extend(self.executable(name));
+            let words = self.words(command, Path::new(""), Path::new("")).into_iter().map(PathBuf::from);
+            files.extend(words.filter(|path| path.is_absolute() && path.is_file()));
+        }
+        Ok(files)
+    }
+
+    /// Returns the files in the folder of the manifest and its subfolders, and the files named in the manifest.
+    fn own_files(&self) -> io::Result<Vec<PathBuf>> {
+        let mut files = Vec::new();
+        let mut open = vec![self.folder.clone()];
+        while let Some(folder) = open.pop() {
+            for entry in fs::read_dir(&folder)? {
+                let path = entry?.path();
+                if path.is_file() {
+                    files.push(path);
+                } else if path.is_dir() && !is_derived(&path) {
+                    open.push(path);
+                }
+            }
+            if files.len() > MOST_FILES {
+                let message = format!("expected at most {MOST_FILES} files beside the manifest, found more");
+                return Err(io::Error::other(message));
+            }
+        }
+        files.retain(|path| path.file_name().is_none_or(|name| name != KEPT));
         files.sort();
         files.extend(self.manifest.files.iter().map(|file| self.folder.join(file)));
+        Ok(files)
+    }
+
+    /// Returns the hash of the names and contents of files.
+    fn hash(&self, files: &[PathBuf]) -> io::Result<String> {
         let mut hash = blake3::Hasher::new();
         for path in files {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let text = fs::read(&path)?;
+            let within = path.strip_prefix(&self.folder).ok().filter(|path| !path.starts_with(".."));
+            let name = within.unwrap_or(Path::new(path.file_name().unwrap_or_default())).to_string_lossy();
+            let text = fs::read(path)?;
             hash.update(format!("{name} {}\n", text.len()).as_bytes()).update(&text);
         }
         Ok(hash.finalize().to_hex()[..32].to_owned())
@@ -286,6 +348,19 @@ impl Outside {
         }
         Ok(observed)
     }
+}
+
+/// Returns true if a folder has no source of an adapter: it is hidden, a cache, an environment of Python, or an output
+/// or a plan of this program.
+fn is_derived(folder: &Path) -> bool {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let has = |file: &str| folder.join(file).is_file();
+    name.starts_with('.')
+        || name == "__pycache__"
+        || has("CACHEDIR.TAG")
+        || has("pyvenv.cfg")
+        || has("plan.toml") && has("tasks.jsonl")
+        || has("index.html") && has("manifest.json")
 }
 
 /// Reads the grains of a run, and their contacts if the program writes them.

@@ -133,6 +133,10 @@ impl Study for OfCost {
         Ok(tasks)
     }
 
+    fn inputs(&self) -> BTreeMap<String, String> {
+        self.solvers().map_or_else(|_| BTreeMap::new(), |solvers| solvers.inputs())
+    }
+
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
         let solvers = self.solvers()?;
         let wanted: BTreeSet<Id> = tasks.iter().map(|task| task.id).collect();

@@ -107,6 +107,10 @@ impl Study for OfStability {
         })
     }
 
+    fn inputs(&self) -> BTreeMap<String, String> {
+        self.with(|_, solvers| Ok(solvers.inputs())).unwrap_or_default()
+    }
+
     fn work(&self, _plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
         let program = identity::of_this_program();
         self.with(|pieces, solvers| {
