@@ -24,6 +24,7 @@ pub(super) enum Look {
 }
 
 /// A quantity of the sweep file.
+#[derive(Debug)]
 pub(super) struct Own {
     quantity: String,
     unit: String,
@@ -141,6 +142,14 @@ impl Look {
             }
         }
         Ok(())
+    }
+
+    /// Returns a text that differs for quantities with different results.
+    pub(super) fn identity(&self) -> String {
+        match self {
+            Self::Gate(..) => format!("{:?}", self.quantity()),
+            Self::Own(own) => format!("{own:?}"),
+        }
     }
 
     /// Returns the table entry that describes the quantity.

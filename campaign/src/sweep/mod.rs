@@ -7,6 +7,7 @@ mod look;
 
 use crate::fault::Fault;
 use crate::log::State;
+use crate::plan::hash_of_file;
 use crate::task::{Id, Task};
 use file::{Asked, File};
 use grainbench_cases::folder::Expression;
@@ -27,7 +28,7 @@ use grainbench_studies::clock;
 use grainbench_studies::cost::knobs::nominal_seconds;
 use look::{Look, Seen};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -168,16 +169,40 @@ impl Sweep {
         self.scene_file.as_deref()
     }
 
+    /// Returns the files that the scenes of all points name: meshes, states and tables of grains.
+    ///
+    /// # Errors
+    /// When the scene file is invalid.
+    pub fn files(&self) -> Result<BTreeSet<PathBuf>, Fault> {
+        let files = |source: &SceneSource| source.files().map_err(|error| Fault::Input(error.to_string()));
+        let mut found: BTreeSet<PathBuf> = files(&self.source)?.into_iter().collect();
+        for level in &self.levels {
+            for point in &self.points {
+                let set = self.set(level, point);
+                if set.values().any(|value| !value.is_number()) {
+                    found.extend(files(&self.source(&set))?);
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Returns the hash of the inputs that are common to all points.
+    fn common(&self) -> Result<String, Fault> {
+        let looks: Vec<String> = self.looks.iter().map(Look::identity).collect();
+        let files: Vec<String> = self.files()?.iter().map(|path| hash_of_file(path)).collect();
+        let File { scene, timed, repetitions, .. } = &self.file;
+        let text = self.source.text();
+        let common = format!("{text}|{scene}|{:?}|{looks:?}|{files:?}|{timed}|{repetitions}", self.source.directory);
+        Ok(blake3::hash(common.as_bytes()).to_hex().to_string())
+    }
+
     /// Returns a task for every point, solver and level, with its expected run time.
     ///
     /// # Errors
     /// When the scene of a point is invalid.
     pub fn tasks(&self, program: &str, solvers: &dyn Solvers, names: &[String]) -> Result<Vec<Task>, Fault> {
-        let base = self.source.text().to_owned();
-        let looks = format!("{:?}", self.looks.iter().map(Look::quantity).collect::<Vec<_>>());
-        // Inputs of the file that are common to all points.
-        let common = format!("{base}|{looks}|{:?}|{}", self.source.directory, self.file.repetitions);
-        let common = blake3::hash(common.as_bytes()).to_hex().to_string();
+        let common = self.common()?;
         let mut tasks = Vec::with_capacity(self.points.len() * self.levels.len());
         let mut patience = LOOKING;
         for level in &self.levels {
@@ -467,4 +492,77 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
     // An unknown variant is reported now.
     source.scene_file().map_err(told)?;
     Ok((source, Some(case), None))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use grainbench_cases::solvers::Registry;
+    use std::fs;
+
+    const SCENE: &str = "title = 'drop'
+dimension = 3
+duration = 0.1
+materials.m = { density = 1000.0 }
+contacts.c = { between = ['m', 'm'], normal_stiffness = 1e6, normal_damping = 200.0 }
+grains.ball = { material = 'm', radius = 0.1, position = [0.3, 0.2, 0.2] }
+walls.floor = { material = 'm', mesh = { file = 'f.stl', open = true, unit = 'm' } }
+probes.ball = { grain = 'ball' }
+";
+    const FLOOR: &str = "solid s\nfacet normal 0 0 1\nouter loop\nvertex -5 -5 0\nvertex 5 -5 0\nvertex 0 5 0\nendloop\n\
+                         endfacet\nendsolid s\n";
+    const SWEEP: &str = "title = 's'
+scene = 'scene.toml'
+factors.d = { key = 'contacts.c.normal_damping', values = [200.0] }
+[[record]]
+quantity = 'z'
+unit = 'm'
+value = 'ball.z'
+equals = '0.1*t'
+scale = 0.7
+at = 0.1
+allowed = 0.01
+[[solvers]]
+solver = 'dem'
+levels = ['dt=.1']
+";
+
+    /// Returns the id of the only task of the sweep in a folder.
+    fn id(folder: &Path) -> Id {
+        let sweep = Sweep::read(&folder.join("s.toml")).unwrap();
+        sweep.tasks("program", &Registry, &["dem".to_owned()]).unwrap()[0].id
+    }
+
+    /// Every number that a result depends on is part of the id, so that an edited sweep is run again.
+    #[test]
+    fn an_edit_of_the_sweep_or_of_a_file_of_the_scene_is_another_task() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        write("scene.toml", SCENE);
+        write("f.stl", FLOOR);
+        write("s.toml", SWEEP);
+        let whole = id(folder.path());
+        assert_eq!(whole, id(folder.path()));
+        for (from, to) in [
+            ("value = 'ball.z'", "value = '2*ball.z'"),
+            ("equals = '0.1*t'", "equals = '0.2*t'"),
+            ("equals = '0.1*t'", "equals = 'min(0.1, t)'"),
+            ("scale = 0.7", "scale = 7"),
+            ("at = 0.1", "at = 0.05"),
+            ("at = 0.1", "over = 'max'"),
+            ("allowed = 0.01", "allowed = 0.02"),
+            ("title = 's'", "title = 's'\ntimed = true"),
+        ] {
+            assert!(SWEEP.contains(from), "{from}");
+            write("s.toml", &SWEEP.replace(from, to));
+            assert_ne!(whole, id(folder.path()), "{to}");
+        }
+        write("s.toml", SWEEP);
+        assert_eq!(whole, id(folder.path()));
+        write("f.stl", &FLOOR.replace("5 0\n", "5 -0.05\n"));
+        assert_ne!(whole, id(folder.path()), "the mesh is another");
+        let files = Sweep::read(&folder.path().join("s.toml")).unwrap().files().unwrap();
+        assert_eq!(files.into_iter().collect::<Vec<_>>(), [folder.path().join("f.stl")]);
+    }
 }

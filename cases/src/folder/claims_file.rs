@@ -94,7 +94,7 @@ pub(super) struct Knobs {
 }
 
 /// Reduction over the samples.
-#[derive(Clone, Copy, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Over {
     /// Each sample; the worst one decides.

@@ -120,6 +120,16 @@ impl SceneSource {
         self.laid_over(self.parse()?)
     }
 
+    /// Returns the files that the scene names in any variant or override: meshes, states and tables of grains.
+    ///
+    /// # Errors
+    /// When the text is not TOML, the variant is unknown, or an override cannot be applied.
+    pub fn files(&self) -> Result<Vec<PathBuf>, SceneError> {
+        let mut files = named_files(&self.directory, self.parse()?);
+        files.extend(named_files(&self.directory, &self.table()?));
+        Ok(files)
+    }
+
     /// Deserialises a table with its variant and overrides applied.
     fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
         let table = self.laid_over(text)?;
@@ -302,6 +312,22 @@ impl SceneSource {
         let found = value_at(table, path).map_or_else(|| "something else".to_owned(), describe);
         self.error(path, message, &found, None)
     }
+}
+
+/// Returns the files that text values in a table name, relative to a directory.
+#[must_use]
+pub fn named_files(directory: &Path, table: &toml::Table) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut open: Vec<&toml::Value> = table.values().collect();
+    while let Some(value) = open.pop() {
+        match value {
+            toml::Value::String(name) => files.extend(Some(directory.join(name)).filter(|path| path.is_file())),
+            toml::Value::Array(list) => open.extend(list),
+            toml::Value::Table(table) => open.extend(table.values()),
+            _ => {}
+        }
+    }
+    files
 }
 
 /// Adds the zeros that TOML requires to numbers such as `.5`.

@@ -70,8 +70,12 @@ impl Study for OfSweep {
     fn inputs(&self) -> BTreeMap<String, String> {
         let scene = self.sweep.scene_file().map(|path| path.display().to_string());
         let manifests = self.asked.iter().filter(|name| is_manifest(name)).cloned();
-        let files = std::iter::once(self.path.clone()).chain(scene).chain(manifests);
-        files.map(|file| (file.clone(), hash_of_file(Path::new(&file)))).collect()
+        // An invalid scene is reported when the tasks are listed.
+        let named = self.sweep.files().unwrap_or_default().into_iter().map(|path| path.display().to_string());
+        let files = std::iter::once(self.path.clone()).chain(scene).chain(named).chain(manifests);
+        let mut inputs = self.solvers().map_or_else(|_| BTreeMap::new(), |solvers| solvers.inputs());
+        inputs.extend(files.map(|file| (file.clone(), hash_of_file(Path::new(&file)))));
+        inputs
     }
 
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
