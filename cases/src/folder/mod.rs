@@ -19,7 +19,7 @@ use claims_file::{Claimed, ClaimsFile};
 use grainbench_harness::case::{Case, Home, fraction};
 use grainbench_harness::claim::Claim;
 use grainbench_harness::course::no_more;
-use grainbench_scene::source::SceneSource;
+use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::{line_of, written};
 use row::Reader;
 use std::fs;
@@ -135,6 +135,23 @@ fn rows(claims: Vec<Claimed>, reader: &Reader<'_>) -> Result<Vec<Claim>, String>
         })
     };
     claims.into_iter().enumerate().map(row).collect()
+}
+
+/// Returns the files that the results of the case in a folder depend on: scene, claims, and the files that they name.
+///
+/// # Errors
+/// When one of the two files cannot be read.
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, NoCase> {
+    let (scene, claims) = (folder.join(SCENE), folder.join(CLAIMS));
+    let no_case = |file: &Path, what: String| NoCase { file: file.to_owned(), what };
+    let source = SceneSource::read(&scene).map_err(|error| no_case(&scene, error.to_string()))?;
+    let named = source.files().map_err(|error| no_case(&scene, error.to_string()))?;
+    let table: toml::Table = toml::from_str(&text_of(&claims)?).map_err(|error| no_case(&claims, error.to_string()))?;
+    let of_claims = named_files(folder, &table);
+    let mut files: Vec<PathBuf> = named.into_iter().chain(of_claims).collect();
+    files.sort();
+    files.dedup();
+    Ok([scene, claims].into_iter().chain(files).collect())
 }
 
 /// Reads the text of a file.

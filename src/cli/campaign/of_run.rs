@@ -11,22 +11,30 @@ use crate::cli::filter::Filters;
 use crate::cli::provenance::provenance;
 use crate::cli::run;
 use crate::cli::select::{self, Selected};
+use crate::cli::solver::is_manifest;
+use crate::cli::strangers::WithStrangers;
 use grainbench::campaign::finished::Finished;
 use grainbench::campaign::log::State;
-use grainbench::campaign::plan::{Kind, Plan};
+use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
 use grainbench::campaign::share::share;
 use grainbench::campaign::task::{Id, Task};
 use grainbench::campaign::work::Desk;
+use grainbench::cases::folder;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers::Registry;
+use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::conformance;
 use grainbench::harness::run::Run;
 use grainbench::harness::runner::Runner;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reports::results::results_json;
 use grainbench::reports::{RunCost, Section, summary_table, write_report, write_report_and_parquet};
 use grainbench::studies::cost::knobs::nominal_seconds;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
@@ -42,6 +50,8 @@ const START: f64 = 0.5;
 /// Claims of a plan.
 pub(crate) struct OfRun {
     selected: Vec<Selected>,
+    /// External solvers of the plan.
+    strangers: WithStrangers,
     options: run::Options,
     arguments: Arguments,
     /// True if all resolution levels run.
@@ -95,7 +105,9 @@ impl OfRun {
         run::narrow(&mut selected, &options, &filters)?;
         let thorough = options.levels.iter().any(|level| level == "all");
         let is_whole = cases.is_empty() && options.filter.is_empty();
-        Ok(Self { selected, options, arguments: arguments.clone(), thorough, is_whole })
+        let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
+        let (strangers, _) = WithStrangers::read_by_content(&manifests)?;
+        Ok(Self { selected, strangers, options, arguments: arguments.clone(), thorough, is_whole })
     }
 
     /// Returns true if the plan includes conformance tests.
@@ -110,14 +122,19 @@ impl OfRun {
         let settings = format!("{} {} {}", self.options.no_controls, self.options.live, self.thorough);
         for (at, selected) in self.selected.iter().enumerate() {
             let stranger = match &selected.stranger {
-                Some(outside) => outside.fingerprint().map_err(Fault::input)?,
+                Some(outside) => outside.edition().map_err(Fault::input)?,
                 None => String::new(),
             };
             let case = selected.case.name;
+            let content: Vec<String> = files_of(selected)?.iter().map(|path| hash_of_file(path)).collect();
+            let content = content.join(" ");
             let mut rows = String::new();
             for (gate, claim) in selected.claims.iter().enumerate() {
                 let keys: Vec<String> = claim.runs.iter().map(Run::key).collect();
-                let words = format!("{case}|{stranger}|{}|{}|{}", keys.join("|"), claim.quantity, claim.control.name);
+                let runs = keys.join("|");
+                let programs = self.programs(selected.case, claim);
+                let words =
+                    format!("{case}|{content}|{stranger}|{programs}|{runs}|{}|{}", claim.quantity, claim.control.name);
                 // Two claims may have equal descriptions.
                 let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
                 rows += &words;
@@ -130,10 +147,30 @@ impl OfRun {
         }
         if self.owes() {
             for (at, (solver, _)) in conform::owing(&self.options.solver)?.iter().enumerate() {
-                pieces.push((Id::of_words(program, &["owed", &solver.name()]), Piece::Owed(at)));
+                let name = solver.name();
+                pieces.push((Id::of_words(program, &["owed", &name, &self.strangers.edition(&name)]), Piece::Owed(at)));
             }
         }
         Ok(pieces)
+    }
+
+    /// Returns the work items of a plan, which must be those that it was made with.
+    fn planned(&self, plan: &Plan) -> Result<Vec<(Id, Piece)>, Fault> {
+        let pieces = self.pieces(&plan.head.program)?;
+        let known: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
+        if pieces.iter().all(|(id, _)| known.contains(id)) {
+            return Ok(pieces);
+        }
+        let (place, expected) = (plan.path.display(), "the cases and programs that were planned with");
+        Err(Fault::input(format!(
+            "{place}: expected {expected}, found others; plan again, what is the same stays finished"
+        )))
+    }
+
+    /// Returns the hashes of the installed programs that a claim runs. Stored runs need no program.
+    fn programs(&self, case: &Case, claim: &Claim) -> String {
+        let runs = claim.runs.iter().filter(|run| self.options.live || !Registry.is_stored(case, run));
+        runs.map(|run| Registry.edition(run.solver)).collect::<Vec<_>>().join(" ").trim().to_owned()
     }
 
     /// Estimates the duration of a claim with its control (s).
@@ -153,6 +190,14 @@ impl OfRun {
     fn runners(&self) -> Vec<OnceLock<Runner>> {
         self.selected.iter().map(|_| OnceLock::new()).collect()
     }
+}
+
+/// Returns the files that the results of a case depend on; none if the case is built in.
+fn files_of(selected: &Selected) -> Result<Vec<PathBuf>, Fault> {
+    if CASES.iter().any(|case| std::ptr::eq(*case, selected.case)) {
+        return Ok(Vec::new());
+    }
+    folder::files(&selected.case.directory()).map_err(Fault::input)
 }
 
 /// Evaluates a claim and its control.
@@ -268,10 +313,18 @@ impl Study for OfRun {
         Ok(self.pieces(program)?.into_iter().map(task).collect())
     }
 
+    fn inputs(&self) -> BTreeMap<String, String> {
+        // A folder that cannot be read is reported when the tasks are listed.
+        let files = self.selected.iter().flat_map(|selected| files_of(selected).unwrap_or_default());
+        let mut inputs = self.strangers.inputs();
+        inputs.extend(files.map(|path| (path.display().to_string(), hash_of_file(&path))));
+        inputs
+    }
+
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
         let cache = cache::open(false);
         let solvers = cache::solvers(cache.as_ref());
-        let known: HashMap<Id, Piece> = self.pieces(&plan.head.program)?.into_iter().collect();
+        let known: HashMap<Id, Piece> = self.planned(plan)?.into_iter().collect();
         let owing = if self.owes() { conform::owing(&self.options.solver)? } else { Vec::new() };
         let runners = self.runners();
         let runner = |at: usize| {
@@ -306,7 +359,7 @@ impl Study for OfRun {
         let mut sections: Vec<Section> = self.selected.iter().map(run::blank).collect();
         let mut runs: Vec<BTreeMap<String, RunCost>> = vec![BTreeMap::new(); sections.len()];
         let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
-        for (id, piece) in self.pieces(&plan.head.program)? {
+        for (id, piece) in self.planned(plan)? {
             let part: Part = match (came(finished, id), piece) {
                 (Came::Out(part), _) => part,
                 (Came::Nothing, _) => continue,
