@@ -71,6 +71,32 @@ fn what_is_wrong_is_red() {
     red("scene.toml", &[("friction = 0.1", "friction = 0.3")], 1, 0);
 }
 
+/// A tolerance as large as the scale passes for almost any value, so its result is amber.
+#[test]
+fn a_tolerance_as_large_as_the_scale_is_amber() {
+    for (allowed, verdict, strict) in [
+        ("0.99", "pass", 0),
+        ("1", "no-reference", 1),
+        ("20", "no-reference", 1),
+        ("'20*duration/0.2'", "no-reference", 1),
+    ] {
+        let folder = case("claims.toml", &[("allowed = 1e-6", &format!("allowed = {allowed}"))]);
+        let run = |further: &[&str]| {
+            let words = [&["run", "slope", "--no-controls", "--json"], further].concat();
+            let answer = grainbench(folder.path(), &words);
+            let results: Value = serde_json::from_str(&answer.out).unwrap();
+            (answer.code, results["verdicts"][2].clone())
+        };
+        let (code, row) = run(&[]);
+        assert!(code == Some(0) && row["verdict"] == verdict, "{allowed}: {row:#?}");
+        let detail = row["detail"].as_str().unwrap_or_default();
+        assert_eq!(detail.contains("% of the scale is allowed"), verdict != "pass", "{detail}");
+        assert_eq!(run(&["--strict"]).0, Some(strict), "{allowed}");
+        // The report written again has the exit code of its run.
+        assert_eq!(grainbench(folder.path(), &["report", "grainbench-out"]).code, Some(strict), "{allowed}");
+    }
+}
+
 /// Claims on a curve in a table, on a value at one time, and on bounds.
 #[test]
 fn a_claim_may_be_a_course_a_moment_or_a_bound() {

@@ -482,7 +482,7 @@ impl Runner {
                     Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
                     Ok(found) => {
-                        let row = known(row.judged(&found), claim, &found);
+                        let row = known(row.judged(&found), claim, &found).unless_as_wide_as_the_scale();
                         self.unless_outdated(row, &done)
                     }
                 }

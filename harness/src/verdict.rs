@@ -203,6 +203,24 @@ impl Verdict {
         self
     }
 
+    /// Makes a passed result amber, with a reason, if a single value is expected and the allowed error is as large as
+    /// the scale. A confidence interval, and a computed limit of exactly 1, are scales that are themselves the limit.
+    #[must_use]
+    pub fn unless_as_wide_as_the_scale(self) -> Self {
+        let is_value = matches!(self.expected, Some(Expected::Value(_)));
+        let is_wide = match self.tolerance {
+            Made::Interval => false,
+            Made::Computed => self.allowed > 1.0,
+            _ => self.allowed >= 1.0,
+        };
+        if self.outcome == Outcome::Pass && is_value && is_wide {
+            let allowed = 100.0 * self.allowed;
+            let reason = format!("cannot tell: an error of {allowed:.3} % of the scale is allowed, 100 % or more");
+            return self.left(Outcome::NoReference, reason);
+        }
+        self
+    }
+
     /// Returns the way in which the result failed, if it failed.
     #[must_use]
     pub fn red(&self) -> Option<Red> {
@@ -271,6 +289,25 @@ impl Control {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::expect::Bound;
+
+    #[test]
+    fn a_tolerance_as_large_as_the_scale_shows_nothing() {
+        let row = |allowed, tolerance, expected: Expected| {
+            let open = Verdict { allowed, tolerance, ..Verdict::open("case", "quantity", "1") };
+            open.judged(&Measured::new(1.5, expected, 1.0)).unless_as_wide_as_the_scale()
+        };
+        let of = |allowed, tolerance| row(allowed, tolerance, Expected::Value(1.0)).outcome;
+        assert_eq!(of(0.99, Made::Judged), Outcome::Pass);
+        assert_eq!(of(1.0, Made::Judged), Outcome::NoReference);
+        assert_eq!(of(1.0, Made::Computed), Outcome::Pass);
+        assert_eq!(of(20.0, Made::Computed), Outcome::NoReference);
+        assert_eq!(of(1.0, Made::Interval), Outcome::Pass);
+        let bound = row(20.0, Made::Judged, Expected::Bound(Bound::AtMost(1.0)));
+        assert_eq!(bound.outcome, Outcome::Pass);
+        let detail = row(20.0, Made::Judged, Expected::Value(1.0)).detail;
+        assert!(detail.is_some_and(|detail| detail.contains("an error of 2000.000 % of the scale is allowed")));
+    }
 
     /// This holds for any tolerance, because a failed run may have determined the tolerance.
     #[test]
