@@ -7,6 +7,7 @@ use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::expect::Measured;
 use grainbench_harness::run::{Done, Missing};
+use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reports::sweep::{Looked, Quantity};
 use grainbench_scene::error::did_you_mean;
@@ -100,6 +101,13 @@ impl Look {
         if recorded.allowed.is_some() && recorded.equals.is_none() {
             return Err(Fault::expected(place("equals"), "what is expected, for it may be off by `allowed`", "none"));
         }
+        if recorded.equals.is_some() && recorded.allowed.is_none() {
+            return Err(Fault::expected(
+                place("allowed"),
+                "the largest error that passes, because of `equals`",
+                "none",
+            ));
+        }
         Ok(Self::Own(Box::new(Own {
             quantity: recorded.quantity.clone(),
             unit: recorded.unit.clone(),
@@ -132,6 +140,14 @@ impl Look {
             let help = did_you_mean(name, numbers.columns.iter().map(String::as_str)).map(|help| format!(" ({help})"));
             let expected = format!("columns of the record, among {}", numbers.columns.join(", "));
             return Err(Fault::expected(place("value"), expected, format!("`{name}`{}", help.unwrap_or_default())));
+        }
+        if !own.value.names().into_iter().any(|name| numbers.is_of_record(name)) {
+            let found = "none: it would be the same whatever is run";
+            return Err(Fault::expected(place("value"), "a column of the record", found));
+        }
+        let constant = own.scale.as_ref().filter(|scale| scale.names().is_empty());
+        if let Some(scale) = constant.map(|scale| scale.value(&|_| None)).filter(|scale| !is_scale(*scale)) {
+            return Err(Fault::expected(place("scale"), "a number above zero", scale));
         }
         for (key, formula) in [("equals", &own.equals), ("scale", &own.scale)] {
             let names = formula.iter().flat_map(Expression::names);
@@ -177,8 +193,12 @@ impl Look {
     pub(super) fn at(&self, seen: &Seen<'_>) -> Looked {
         let found = match self {
             Self::Gate(claim, allowed) => {
+                let made = match (allowed, claim.tolerance.made) {
+                    (None, made) | (Some(_), made @ Made::Interval) => made,
+                    (Some(_), _) => Made::Judged,
+                };
                 let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, seen.done));
-                (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed()))
+                (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed(), made))
             }
             Self::Own(own) => own.at(seen),
         };
@@ -197,8 +217,9 @@ fn own_allowance(claim: &Claim, done: &Done) -> f64 {
 }
 
 /// Returns a table row from a measurement.
-fn judged(measured: &Measured, allowed: f64) -> Looked {
-    let row = Verdict { allowed, ..Verdict::open("", "", "") }.judged(measured);
+fn judged(measured: &Measured, allowed: f64, tolerance: Made) -> Looked {
+    let row = Verdict { allowed, tolerance, ..Verdict::open("", "", "") };
+    let row = row.judged(measured).unless_as_wide_as_the_scale();
     Looked {
         value: row.value,
         expected: row.expected,
@@ -208,6 +229,11 @@ fn judged(measured: &Measured, allowed: f64) -> Looked {
         verdict: Some(row.outcome),
         detail: row.detail,
     }
+}
+
+/// Returns true if errors can be divided by a number.
+fn is_scale(scale: f64) -> bool {
+    scale.is_finite() && scale > 0.0
 }
 
 impl Own {
@@ -226,9 +252,13 @@ impl Own {
         let Some(expected) = self.equals.as_ref().map(of) else {
             return Ok(Looked { value: Some(value).filter(|value| value.is_finite()), ..Looked::default() });
         };
-        let scale = self.scale.as_ref().map_or(expected.abs(), of);
-        let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or(f64::INFINITY));
-        // A quantity without a limit is reported without a verdict.
-        Ok(if self.allowed.is_some() { row } else { Looked { verdict: None, ..row } })
+        let own_scale = self.scale.as_ref().map(of);
+        let scale = own_scale.unwrap_or(expected.abs());
+        let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or_default(), Made::Judged);
+        if own_scale.is_some_and(|scale| !is_scale(scale)) {
+            let detail = Some(format!("scale: expected a number above zero, found {scale}"));
+            return Ok(Looked { verdict: Some(Outcome::Broken), detail, ..row });
+        }
+        Ok(row)
     }
 }

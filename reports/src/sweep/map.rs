@@ -139,7 +139,8 @@ fn panel(
     let of = |point: &&Point| point.solver == solver && point.resolution == level;
     let mut all = [0_usize; 3];
     for point in sweep.points.iter().filter(of) {
-        let standing = point.standing() as usize;
+        // A cell without a judged point has the colour of amber points.
+        let standing = (point.standing() as usize).min(Standing::Amber as usize);
         all[standing] += 1;
         if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
             cells[row * across + column][standing] += 1;

@@ -139,10 +139,10 @@ pub struct Looked {
 }
 
 impl Sweep {
-    /// Returns the number of points with each status: within, outside and amber.
+    /// Returns the number of points with each status: within, outside, amber and not judged.
     #[must_use]
-    pub fn counts(&self) -> [usize; 3] {
-        let mut counts = [0; 3];
+    pub fn counts(&self) -> [usize; 4] {
+        let mut counts = [0; 4];
         for point in &self.points {
             counts[point.standing() as usize] += 1;
         }
@@ -153,12 +153,14 @@ impl Sweep {
 /// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// All judged quantities pass, or none is judged.
+    /// At least one quantity is judged, and all judged quantities pass.
     Within,
     /// A quantity fails, or the run crashed.
     Outside,
     /// No quantity is red, and at least one is amber: the solver cannot represent the scene, or is not available.
     Amber,
+    /// No quantity is judged, because none has an expectation.
+    Unjudged,
 }
 
 impl Point {
@@ -169,7 +171,8 @@ impl Point {
         match severities.max() {
             Some(Severity::Red) => Standing::Outside,
             Some(Severity::Amber) => Standing::Amber,
-            Some(Severity::Green) | None => Standing::Within,
+            Some(Severity::Green) => Standing::Within,
+            None => Standing::Unjudged,
         }
     }
 
@@ -218,4 +221,30 @@ pub fn sweep_json(sweep: &Sweep) -> io::Result<String> {
     let mut bytes = Vec::new();
     table::write_results(sweep, &mut bytes)?;
     String::from_utf8(bytes).map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point without an expectation shows nothing about the solver, so it is not within a tolerance.
+    #[test]
+    fn a_point_that_is_not_judged_is_not_within() {
+        let looked = |verdict| Looked { verdict, ..Looked::default() };
+        let point = |verdicts: &[Option<Outcome>]| Point {
+            factors: Vec::new(),
+            solver: String::new(),
+            resolution: String::new(),
+            left: Left { looked: verdicts.iter().copied().map(looked).collect(), ..Left::default() },
+        };
+        for (verdicts, standing) in [
+            (&[None][..], Standing::Unjudged),
+            (&[], Standing::Unjudged),
+            (&[None, Some(Outcome::Pass)], Standing::Within),
+            (&[None, Some(Outcome::NoReference)], Standing::Amber),
+            (&[Some(Outcome::Pass), Some(Outcome::Fail)], Standing::Outside),
+        ] {
+            assert_eq!(point(verdicts).standing(), standing, "{verdicts:?}");
+        }
+    }
 }

@@ -11,7 +11,7 @@ const MOST: usize = 50;
 
 /// Renders the page, with drawings by name, caption and SVG.
 pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> String {
-    let [within, outside, amber] = sweep.counts();
+    let [within, outside, amber, unjudged] = sweep.counts();
     let body = html! {
         main.alone {
             header id="summary" {
@@ -22,6 +22,9 @@ pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> St
                     li.pass { b { (number::count(within as u64)) } " " span { "within" } }
                     li.fail { b { (number::count(outside as u64)) } " " span { "outside or broken" } }
                     li.amber { b { (number::count(amber as u64)) } " " span { "amber" } }
+                    @if unjudged > 0 {
+                        li.amber { b { (number::count(unjudged as u64)) } " " span { "not judged" } }
+                    }
                     @if sweep.missing > 0 {
                         li.amber { b { (number::count(sweep.missing as u64)) } " " span { "not finished" } }
                     }
@@ -64,6 +67,7 @@ fn table(sweep: &Sweep) -> Markup {
             number::count(count(Standing::Within)),
             number::count(count(Standing::Outside)),
             number::count(count(Standing::Amber)),
+            number::count(count(Standing::Unjudged)),
             error(at(0.5)),
             error(at(0.9)),
             error(errors.last().copied()),
@@ -76,6 +80,7 @@ fn table(sweep: &Sweep) -> Markup {
         "Within",
         "Outside or broken",
         "Amber",
+        "Not judged",
         "Median |error|",
         "Nine in ten below",
         "Worst",

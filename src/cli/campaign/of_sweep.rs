@@ -118,20 +118,21 @@ impl Study for OfSweep {
         };
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
         write_sweep(how.out, &report).map_err(Fault::writing)?;
-        let [within, outside, amber] = report.counts();
+        let [within, outside, amber, unjudged] = report.counts();
         if how.json {
             print(&sweep_json(&report).map_err(Fault::input)?)?;
         } else {
-            let [w, o, a] = [within, outside, amber].map(|count| number::count(count as u64));
+            let [w, o, a, u] = [within, outside, amber, unjudged].map(|count| number::count(count as u64));
+            let unjudged = if unjudged > 0 { format!(", {u} not judged") } else { String::new() };
             let page = how.out.join("index.html");
-            print(&format!("{w} within, {o} outside or broken, {a} amber\n{}\n", page.display()))?;
+            print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
         // A sweep includes conditions in which methods fail, so only a crash of our program is red.
         let crashed = plan
             .tasks
             .iter()
             .any(|task| finished.entries.get(&task.id).is_some_and(|entry| entry.state == State::Crashed));
-        let is_red = crashed || how.strict && (outside > 0 || amber > 0);
+        let is_red = crashed || how.strict && outside + amber + unjudged > 0;
         Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }
 }
