@@ -12,7 +12,7 @@ use grainbench::harness::subject::Subject;
 use grainbench::reports::study::point::Point;
 use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
 use grainbench::studies::Follow;
-use grainbench::studies::cost::against::compare;
+use grainbench::studies::cost::against::{compare, shared};
 use grainbench::studies::cost::run::{Meter, Wanted};
 use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
@@ -110,16 +110,21 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         print(&text(&study, &arguments.out))?;
         print(&format!("{reused} of {pieces} points were measured before and taken as they were\n"))?;
     }
+    Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+}
+
+/// Returns true if a study measures no error, or if a change since an earlier session is for the worse.
+pub(crate) fn is_red(study: &Study) -> bool {
     let measures = study.diagrams.iter().flat_map(|diagram| &diagram.points).any(|point| point.error.is_some());
-    let is_worse = study.changes.iter().any(|change| change.worse);
-    Ok(if is_worse || !measures { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    !measures || study.changes.iter().any(|change| change.worse)
 }
 
 /// Compares a study with the points of an earlier session from the file `path`.
 pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
     let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
     study.changes = compare(old, &new);
-    study.against = Some(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    study.against = Some(format!("{name}, {} of {} points compared", shared(old, &new), new.len()));
 }
 
 /// Returns the target quantities of the named cases, in the order of the registry.

@@ -16,7 +16,7 @@
 
 use grainbench_harness::statistics::median;
 use grainbench_reports::study::point::{Change, Point, Standing};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Relative change of time that occurs between sessions of the same code.
 const SESSIONS: f64 = 0.1;
@@ -30,7 +30,15 @@ const TOO_SHORT: f64 = 2e-4;
 /// Case name for all points of a solver together.
 const ALL: &str = "all cases";
 
-/// Returns the changes from one session to another.
+/// Returns the number of points that both sessions have.
+#[must_use]
+pub fn shared(old: &[Point], new: &[Point]) -> usize {
+    let before: BTreeSet<[&str; 6]> = old.iter().map(Point::key).collect();
+    new.iter().filter(|point| before.contains(&point.key())).count()
+}
+
+/// Returns the changes from one session to another. Points that only the old session has are counted by case, variant
+/// and solver. Sessions without a common point cannot be compared, which is for the worse.
 #[must_use]
 pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     let before: BTreeMap<[&str; 6], &Point> = old.iter().map(|point| (point.key(), point)).collect();
@@ -45,7 +53,28 @@ pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
         }
     }
     changes.extend(ratios.iter().filter_map(|((solver, case), ratios)| time(solver, case, ratios)));
+    changes.extend(lost(old, new));
+    if shared(old, new) == 0 {
+        let how = format!("expected points that both sessions have, found none of {} and {}", old.len(), new.len());
+        changes.insert(0, Change { what: "nothing compared".to_owned(), how, worse: true });
+    }
     changes
+}
+
+/// Returns the numbers of points that only the old session has. A selection of cases or solvers loses points without
+/// fault, so this is not for the worse.
+fn lost(old: &[Point], new: &[Point]) -> Vec<Change> {
+    let now: BTreeSet<[&str; 6]> = new.iter().map(Point::key).collect();
+    let mut counts: BTreeMap<[&str; 3], usize> = BTreeMap::new();
+    for point in old.iter().filter(|point| !now.contains(&point.key())) {
+        *counts.entry([&point.case, &point.variant, &point.solver]).or_default() += 1;
+    }
+    let change = |([case, variant, solver], count): ([&str; 3], usize)| Change {
+        what: format!("{case}/{variant} · {solver}"),
+        how: format!("{count} points of the old session are not measured now"),
+        worse: false,
+    };
+    counts.into_iter().map(change).collect()
 }
 
 /// Returns any change of counts, errors or outcome of a point; the comparison is exact.
@@ -236,6 +265,21 @@ mod tests {
     #[test]
     fn one_repetition_of_two_points_says_nothing_of_time() {
         assert_eq!(compare(&session(1, 1.0, 2, 1), &session(2, 1.25, 2, 1)), []);
+    }
+
+    #[test]
+    fn sessions_without_a_common_point_are_red() {
+        let (old, new) = (session(1, 1.0, 3, 5), session(2, 1.0, 8, 5));
+        let changes = compare(&[], &new);
+        assert!(changes.len() == 1 && changes[0].worse && changes[0].what == "nothing compared", "{changes:?}");
+        let other: Vec<Point> = old.iter().map(|old| Point { solver: "mpm".to_owned(), ..old.clone() }).collect();
+        let changes = compare(&other, &new);
+        assert!(changes.len() == 2 && changes[0].worse && !changes[1].worse, "{changes:?}");
+        assert_eq!(changes[1].what, "squash/plain · mpm");
+        let changes = compare(&new, &old);
+        assert_eq!(changes.len(), 1, "{changes:?}");
+        assert!(!changes[0].worse && changes[0].how == "5 points of the old session are not measured now");
+        assert_eq!((shared(&new, &old), shared(&old, &new), shared(&other, &new)), (3, 3, 0));
     }
 
     #[test]
