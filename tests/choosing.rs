@@ -122,6 +122,35 @@ fn what_failed_is_run_again_alone() {
     assert!(rows(&results(here, "old"), "quantity").iter().all(|quantity| wanted == **quantity));
 }
 
+/// What an interrupted run left out has not passed, so it is run with what failed.
+#[test]
+fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(run(here, &[CASE]).code, Some(0));
+    let quantities =
+        |from: &str| -> Vec<String> { rows(&results(here, from), "quantity").into_iter().map(str::to_owned).collect() };
+    let all = quantities("grainbench-out");
+    let interrupt = |old: &mut Value| {
+        old["provenance"]["options"].as_array_mut().unwrap().push("interrupted: 1 checks left out".into());
+    };
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["verdicts"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &[CASE, "--rerun-failed", "--out", "old"]).code, Some(0));
+    assert!(!quantities("old").is_empty() && quantities("old").iter().all(|quantity| *quantity == all[0]));
+    // A control that was left out is run with its claim.
+    let control = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["controls"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &[CASE, "--rerun-failed", "--out", "old"]).code, Some(0));
+    let again = quantities("old");
+    assert!(!again.is_empty() && again.iter().all(|quantity| control == **quantity), "{again:?}");
+}
+
 /// A wrong report for the comparison is an error before any run and any output.
 #[test]
 fn what_is_no_report_is_refused() {

@@ -15,8 +15,17 @@ type Name = [String; 5];
 /// Results and controls from a `results.json` file.
 #[derive(Deserialize)]
 pub(crate) struct Earlier {
+    #[serde(default)]
+    provenance: Options,
     verdicts: Vec<Verdict>,
     controls: Vec<Control>,
+}
+
+/// Options of the earlier run, in words.
+#[derive(Default, Deserialize)]
+struct Options {
+    #[serde(default)]
+    options: Vec<String>,
 }
 
 fn name(row: &Verdict) -> Name {
@@ -40,17 +49,29 @@ impl Earlier {
 
     /// Returns true if a claim of a case was red: its result with this solver was red, or its control stayed green.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
+        let (rows, controls) = self.of_claim(case, solver, claim);
+        rows.into_iter().any(is_red) || controls.iter().any(|control| !control.turned_red)
+    }
+
+    /// Returns true if an interrupted run left out a claim of a case, or its control.
+    pub(crate) fn was_left_out(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
+        let is_interrupted = self.provenance.options.iter().any(|words| words.starts_with("interrupted:"));
+        let (rows, controls) = self.of_claim(case, solver, claim);
+        is_interrupted && (rows.is_empty() || with_controls && controls.is_empty())
+    }
+
+    /// Returns the results and the controls of a claim.
+    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&Control>) {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
         let is_it =
             |row: &&Verdict| [&row.case, &row.variant, &row.solver, &row.quantity].map(String::as_str) == sought;
         let resolution = claim.resolution();
-        let mut rows = self.verdicts.iter().filter(is_it).filter(|row| row.resolution == resolution);
+        let rows = self.verdicts.iter().filter(is_it).filter(|row| row.resolution == resolution);
         let is_its = |control: &&Control| {
             [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
         };
-        let mut controls = self.controls.iter().filter(is_its);
-        rows.any(is_red) || controls.any(|control| !control.turned_red)
+        (rows.collect(), self.controls.iter().filter(is_its).collect())
     }
 
     /// Returns the differences of a report from the earlier one, one line per result or control. Lines that turned red

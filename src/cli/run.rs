@@ -61,7 +61,7 @@ pub(crate) struct Options {
     /// by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
-    /// Repeat only the failed claims and controls of the report in `--out`.
+    /// Repeat only the failed claims and controls of the report in `--out`, and what an interrupted run left out.
     #[arg(long, conflicts_with = "keep")]
     rerun_failed: bool,
     /// Print the rows and controls whose outcome differs from this earlier report.
@@ -224,7 +224,14 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
         let solver =
             |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
-        let is_meant = |claim: &Claim| before.as_ref().is_none_or(|before| before.was_red(case, &solver(claim), claim));
+        let controls = !options.no_controls;
+        let is_meant = |claim: &Claim| {
+            let repeats = |before: &Earlier| {
+                let solver = solver(claim);
+                before.was_red(case, &solver, claim) || before.was_left_out(case, &solver, claim, controls)
+            };
+            before.as_ref().is_none_or(repeats)
+        };
         let asked = of_case.claims.len();
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
         of_case.is_part = of_case.claims.len() < asked;
