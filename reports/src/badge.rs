@@ -13,7 +13,10 @@ const LETTER: usize = 7;
 pub fn badge(report: &Report) -> String {
     let counts = Headline::of_report(report);
     let red = counts.red() + (counts.controls - counts.controls_red);
-    let words = if counts.rows() == 0 {
+    let reason = report.red_because.first().and_then(|reason| reason.split(':').next());
+    let words = if let Some(reason) = reason.filter(|_| red == 0) {
+        reason.to_owned()
+    } else if counts.rows() == 0 {
         "nothing judged".to_owned()
     } else if red > 0 {
         format!("{red} red of {}", counts.rows())
@@ -22,6 +25,7 @@ pub fn badge(report: &Report) -> String {
     };
     let colour = match (red, counts.pass) {
         (1.., _) => "#b3261e",
+        _ if reason.is_some() => "#b3261e",
         _ if counts.rows() == 0 => "#b3261e",
         // Nothing failed and nothing passed.
         (0, 0) => "#666",
@@ -57,6 +61,10 @@ mod tests {
             section.controls.retain(|control| control.turned_red);
         }
         assert!(badge(&report).contains("pass") && badge(&report).contains("#2e7d32"), "{}", badge(&report));
+        report.red_because.push("interrupted: 3 checks left out".to_owned());
+        let red = badge(&report);
+        assert!(red.contains("grainbench: interrupted<") && red.contains("#b3261e"), "{red}");
+        report.red_because.clear();
         for row in report.sections.iter_mut().flat_map(|section| &mut section.verdicts) {
             row.outcome = grainbench_harness::verdict::Outcome::Unsupported;
         }

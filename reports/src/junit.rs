@@ -7,7 +7,7 @@ use crate::line;
 use crate::report::Report;
 
 /// Returns one test suite per case, and one test per result and per negative control. Amber results count as skipped,
-/// with their reason, and never as passed.
+/// with their reason, and never as passed. Each reason why the run is red apart from its results is an error.
 ///
 /// # Errors
 /// When a value has no XML form; this does not occur in reports of this project.
@@ -40,6 +40,17 @@ pub fn junit_xml(report: &Report) -> Result<String, SerializeError> {
                 status,
             );
             test.set_classname(section.name.as_str());
+            suite.add_test_case(test);
+        }
+        document.add_test_suite(suite);
+    }
+    if !report.red_because.is_empty() {
+        let mut suite = TestSuite::new("grainbench");
+        for reason in &report.red_because {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+            status.set_message(reason);
+            let mut test = TestCase::new(reason.as_str(), status);
+            test.set_classname("grainbench");
             suite.add_test_case(test);
         }
         document.add_test_suite(suite);
@@ -81,5 +92,14 @@ mod tests {
         assert!(text.contains("skipped=\"3\""), "{text}");
         assert!(text.contains("negative control"));
         assert!(text.contains("not-available: "));
+    }
+
+    #[test]
+    fn an_interrupted_run_is_an_error() {
+        let mut report = sample::report();
+        report.red_because.push("interrupted: 3 checks left out".to_owned());
+        let text = junit_xml(&report).unwrap();
+        assert!(text.contains("failures=\"2\" errors=\"2\""), "{text}");
+        assert!(text.contains("message=\"interrupted: 3 checks left out\""), "{text}");
     }
 }

@@ -25,6 +25,9 @@ pub struct Report {
     /// Stored measurements of cost and stability.
     #[serde(default)]
     pub measured: Measurements,
+    /// Reasons why the run is red apart from its results, such as `interrupted: 3 checks left out`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub red_because: Vec<String>,
 }
 
 impl Report {

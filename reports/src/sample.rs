@@ -287,6 +287,7 @@ pub(crate) fn report() -> Report {
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None },
+        red_because: Vec::new(),
     };
     report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];
     report

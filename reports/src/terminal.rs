@@ -42,10 +42,11 @@ pub fn is_red(verdict: &Verdict) -> bool {
     verdict.outcome.is_red()
 }
 
-/// Returns one line for each red result and for each negative control that did not fail as required.
+/// Returns one line for each red result, for each negative control that did not fail as required, and for each other
+/// reason why the run is red.
 #[must_use]
 pub fn failing_lines(report: &Report) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = report.red_because.iter().map(|reason| format!("✗ {reason}")).collect();
     for section in &report.sections {
         for verdict in &section.verdicts {
             if is_red(verdict) {

@@ -1,9 +1,9 @@
 //! `grainbench check`: checks the output of any program against a case or scene.
 
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable, print};
 use super::pattern;
 use super::provenance::provenance;
-use super::run::{exit_code, is_judged};
+use super::run::{add_reasons, exit_code, is_judged};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
@@ -18,7 +18,6 @@ use grainbench::scene::scene::Scene;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Arguments of the command.
@@ -98,26 +97,27 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         (None, None) => Vec::new(),
     };
     check_writable(&arguments.out)?;
-    let report = Report {
+    let mut report = Report {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections,
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements::default(),
+        red_because: Vec::new(),
     };
+    // A complete run can still have wrong content, so each output needs at least one result about a quantity.
+    let is_told = report.sections.iter().all(|section| {
+        let mut rows = section.verdicts.iter().skip(1);
+        rows.any(|row| is_judged(row) && !is_of_power(row))
+    });
+    add_reasons(&mut report, !is_told, arguments.strict);
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {
         print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    // A complete run can still have wrong content, so each output needs at least one result about a quantity.
-    let mut sections = report.sections.iter();
-    let is_told = sections.all(|section| {
-        let mut rows = section.verdicts.iter().skip(1);
-        rows.any(|row| is_judged(row) && !is_of_power(row))
-    });
-    if is_told { Ok(exit_code(&report, arguments.strict)) } else { Ok(ExitCode::from(RED)) }
+    Ok(exit_code(&report, arguments.strict))
 }
 
 /// Checks the named output. Returns its section, and its name for the page.

@@ -1,9 +1,9 @@
 //! `grainbench compare`: compares two outputs.
 
 use super::check::rows;
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable, print};
 use super::provenance::provenance;
-use super::run::{exit_code, is_judged};
+use super::run::{add_reasons, exit_code, is_judged};
 use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
@@ -18,7 +18,6 @@ use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{Report, Section, number, write_report};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Arguments of the command.
@@ -74,13 +73,17 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];
-    let report = Report {
+    let mut report = Report {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements::default(),
+        red_because: Vec::new(),
     };
+    let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
+    let is_mute = !columns.any(|row| is_judged(row) && !is_label(row));
+    add_reasons(&mut report, is_mute, arguments.strict);
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
@@ -88,12 +91,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         let counts = counts(&comparison);
         print(&format!("{}{counts}\n{}\n", rows(&report), arguments.out.join("index.html").display()))?;
     }
-    let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
-    if columns.any(|row| is_judged(row) && !is_label(row)) {
-        Ok(exit_code(&report, arguments.strict))
-    } else {
-        Ok(ExitCode::from(RED))
-    }
+    Ok(exit_code(&report, arguments.strict))
 }
 
 /// Columns that classify grains. Their agreement alone does not count as a comparison.

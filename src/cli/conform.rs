@@ -2,9 +2,9 @@
 
 use super::cache;
 use super::cores::{at_once, share};
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable, print};
 use super::provenance::provenance;
-use super::run::{exit_code, says_nothing};
+use super::run::{add_reasons, exit_code, says_nothing};
 use super::solver;
 use grainbench::cases::solvers;
 use grainbench::harness::conformance;
@@ -16,7 +16,6 @@ use grainbench::scene::solver::Solver;
 use grainbench::scene::terms::Terms;
 use grainbench::studies::run_cache::RunCache;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
@@ -49,20 +48,23 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     })?;
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());
-    let report = Report {
+    let mut report = Report {
         provenance: provenance(words, start.elapsed().as_secs_f64()),
         sections: vec![section],
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements::default(),
+        red_because: Vec::new(),
     };
+    let is_mute = says_nothing(&report);
+    add_reasons(&mut report, is_mute, arguments.strict);
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {
         print(&results_json(&report).map_err(Fault::input)?)?;
     } else {
         print(&format!("{}\n{}\n", summary_table(&report), arguments.out.join("index.html").display()))?;
     }
-    if says_nothing(&report) { Ok(ExitCode::from(RED)) } else { Ok(exit_code(&report, arguments.strict)) }
+    Ok(exit_code(&report, arguments.strict))
 }
 
 /// Solver with the terms of its conformance.

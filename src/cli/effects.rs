@@ -155,6 +155,11 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     tell(&study, arguments, "")
 }
 
+/// Returns true if an absent effect with a neutral value changes a result.
+pub(crate) fn is_red(study: &Study) -> bool {
+    study.ledger.iter().any(|entry| entry.worth == Worth::NotInert)
+}
+
 /// Prints the results. The outcome is red if an absent effect with a neutral value changes a result.
 fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     if arguments.json {
@@ -169,8 +174,7 @@ fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
         }
         print(&format!("{text}{end}{}\n", arguments.out.join("index.html").display()))?;
     }
-    let red = study.ledger.iter().any(|entry| entry.worth == Worth::NotInert);
-    Ok(if red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    Ok(if is_red(study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
 /// Returns the effects studies of the named cases, with their effects.

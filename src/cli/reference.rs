@@ -222,6 +222,7 @@ fn verify(arguments: &Verify) -> Outcome {
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements::default(),
+        red_because: Vec::new(),
     };
     write_report(&arguments.out, &report).map_err(Fault::writing)?;
     if arguments.json {

@@ -1,14 +1,17 @@
 //! `grainbench report`: writes a page from stored results.
 
-use super::exit::{Fault, Outcome, print};
+use super::cost;
+use super::effects;
+use super::exit::{Fault, Outcome, RED, print};
 use super::run;
+use super::stability;
 use super::value::{positive, whole};
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::record_figures::{self, Named, Shown};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
-use grainbench::reports::study::{STUDY_FILE, load_study, write_study};
+use grainbench::reports::study::{STUDY_FILE, Study, load_study, write_study};
 use grainbench::reports::{refuse_mixed, summary_table, write_pictures, write_report};
 use grainbench::scene::record::Record;
 use std::path::PathBuf;
@@ -85,12 +88,27 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;
         write_study(&arguments.dir, &study).map_err(Fault::writing)?;
         print(&page)?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS });
     }
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
     write_report(&arguments.dir, &report).map_err(Fault::writing)?;
     print(&format!("{}\n{page}", summary_table(&report)))?;
     Ok(run::exit_code(&report, false))
+}
+
+/// Returns true if the study ended red: it is unfinished, or its own command ends red with these results.
+fn is_red(study: &Study) -> bool {
+    let is_unfinished = study.provenance.options.iter().any(|words| words.starts_with("unfinished:"));
+    let is_of_effects = !study.ledger.is_empty();
+    let is_of_stability = !study.limits.is_empty() || !study.hard.is_empty();
+    is_unfinished
+        || if is_of_effects {
+            effects::is_red(study)
+        } else if is_of_stability {
+            stability::is_red(study)
+        } else {
+            cost::is_red(study)
+        }
 }
 
 /// Draws the figures of a simulation and of the simulations beside it.

@@ -23,6 +23,7 @@ use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Control, Severity, Verdict};
 use grainbench::reference::outside::Outside;
+use grainbench::reports::judged::Judged;
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::terminal::failing_lines;
@@ -142,7 +143,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         let kept = if cache.is_some() { ", and the next run goes on from the runs that were" } else { "" };
         let what = format!("interrupted: {left} checks were left out; the report holds what was finished{kept}");
         exit::say("warning", &what);
-        words.push(format!("interrupted: {left} checks left out"));
+        words.push(interrupted(left));
     }
     if let Some(cache) = &cache {
         cache.make_room();
@@ -157,7 +158,15 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         keep(program, &report)?;
     }
     let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
-    let code = exit_code(&report, options.strict);
+    if left > 0 {
+        report.red_because.push(interrupted(left));
+    }
+    add_reasons(&mut report, is_mute, options.strict && !options.as_kept);
+    let otherwise = match &kept {
+        Some(kept) => otherwise_than_kept(keep::program(&selected)?, kept, &report),
+        None => Vec::new(),
+    };
+    report.red_because.extend(otherwise.iter().map(|line| format!("otherwise than kept: {line}")));
     report.shown = filters.outcomes();
     let write = if options.parquet { write_report_and_parquet } else { write_report };
     write(&options.out, &report).map_err(Fault::writing)?;
@@ -173,14 +182,34 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
         lines.iter().for_each(|line| exit::say("changed", line));
     }
-    if let Some(kept) = kept {
-        let mut otherwise = keep::other_program(keep::program(&selected)?, &kept);
-        otherwise.extend(kept.otherwise(&report));
+    if kept.is_some() {
         otherwise.iter().for_each(|line| exit::say("otherwise than kept", line));
-        let is_red = left > 0 || is_mute || !otherwise.is_empty();
-        return Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS });
+        return Ok(if report.red_because.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(RED) });
     }
-    Ok(if left > 0 || is_mute { ExitCode::from(RED) } else { code })
+    Ok(exit_code(&report, options.strict))
+}
+
+/// Returns the reason why an interrupted run is red. [`Earlier`] reads it.
+fn interrupted(left: usize) -> String {
+    format!("interrupted: {left} checks left out")
+}
+
+/// Returns the differences from the stored results of an external solver.
+fn otherwise_than_kept(program: &Outside, kept: &Judged, report: &Report) -> Vec<String> {
+    let mut otherwise = keep::other_program(program, kept);
+    otherwise.extend(kept.otherwise(report));
+    otherwise
+}
+
+/// Adds the reasons why a run is red although no result is: nothing was judged, or amber results count as red.
+pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
+    if is_mute {
+        report.red_because.push("nothing judged: no result describes its quantity".to_owned());
+    }
+    let amber = Headline::of_report(report).amber();
+    if strict && amber > 0 {
+        report.red_because.push(format!("strict: {amber} amber"));
+    }
 }
 
 /// Rejects a data directory if no claim uses it, if it contains none of the needed data, or if the data is damaged.
@@ -212,7 +241,7 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     } else {
         (Vec::new(), Measurements::default())
     };
-    Ok(Report { provenance, sections, judged, shown: Vec::new(), measured })
+    Ok(Report { provenance, sections, judged, shown: Vec::new(), measured, red_because: Vec::new() })
 }
 
 /// Removes claims that the filters exclude. With `--rerun-failed`, it also removes claims that were not red in the
@@ -254,14 +283,17 @@ fn summary(report: &Report, options: &Options) -> String {
     format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
-/// Returns success, or red if a result is red, a control stayed green, or nothing was evaluated. With `strict`, amber
-/// results are red too.
+/// Returns success, or red if a result is red, a control stayed green, nothing was evaluated, or the report states
+/// another reason. With `strict`, amber results are red too.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     let least = if strict { Severity::Amber } else { Severity::Red };
     let red_row = |verdict: &Verdict| verdict.outcome.severity() >= least;
     let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
     let mut controls = report.sections.iter().flat_map(|section| &section.controls);
-    let is_red = rows().any(red_row) || !rows().any(is_judged) || controls.any(|control| !control.turned_red);
+    let is_red = !report.red_because.is_empty()
+        || rows().any(red_row)
+        || !rows().any(is_judged)
+        || controls.any(|control| !control.turned_red);
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 

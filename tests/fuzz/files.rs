@@ -286,6 +286,7 @@ fn report() -> &'static Vec<u8> {
             judged: Vec::new(),
             shown: Vec::new(),
             measured: Measurements::default(),
+            red_because: Vec::new(),
         })
         .unwrap()
     })

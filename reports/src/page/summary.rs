@@ -32,8 +32,9 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
     let more = lines.len().saturating_sub(LINES);
     html! {
-        @if !lines.is_empty() {
+        @if !lines.is_empty() || !report.red_because.is_empty() {
             ul.failing aria-label="What fails" {
+                @for reason in &report.red_because { li { (reason) } }
                 @for (anchor, line) in lines.iter().take(LINES) {
                     li { a href={ "#" (anchor) } { (line) } }
                 }

@@ -43,6 +43,8 @@ pub(crate) struct How<'a> {
     pub(crate) json: bool,
     /// Results of the last earlier report.
     pub(crate) against: Option<&'a Path>,
+    /// Number of finished tasks in words, if some are missing.
+    pub(crate) unfinished: Option<String>,
     /// Words to add to the options of the study.
     pub(crate) words: Vec<String>,
     /// Total duration of all tasks (s).
@@ -74,6 +76,7 @@ pub(crate) fn collect(arguments: &Arguments) -> Outcome {
         parquet: arguments.parquet,
         json: arguments.json,
         against: against.as_deref(),
+        unfinished: unfinished(&plan, missing),
         words: words(&plan, &finished, missing),
         seconds: done.map(|entry| entry.seconds).sum(),
     };
@@ -91,12 +94,14 @@ pub(crate) fn collect(arguments: &Arguments) -> Outcome {
     Ok(code)
 }
 
+/// Returns the number of finished tasks in words, if some are missing.
+fn unfinished(plan: &Plan, missing: usize) -> Option<String> {
+    (missing > 0).then(|| format!("unfinished: {} of {} tasks", plan.tasks.len() - missing, plan.tasks.len()))
+}
+
 /// Returns the number of finished tasks if some are missing, the machines, and the system load during timed tasks.
 fn words(plan: &Plan, finished: &Finished, missing: usize) -> Vec<String> {
-    let mut words = Vec::new();
-    if missing > 0 {
-        words.push(format!("unfinished: {} of {} tasks", plan.tasks.len() - missing, plan.tasks.len()));
-    }
+    let mut words: Vec<String> = unfinished(plan, missing).into_iter().collect();
     let used: BTreeSet<usize> =
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
     let mut machines: BTreeSet<String> = BTreeSet::new();

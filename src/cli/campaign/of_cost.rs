@@ -252,6 +252,6 @@ impl Study for OfCost {
         } else {
             print(&cost::text(&study, how.out))?;
         }
-        Ok(if study.changes.iter().any(|change| change.worse) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+        Ok(if cost::is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }
 }

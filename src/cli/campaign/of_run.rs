@@ -6,7 +6,7 @@ use super::plan::Arguments;
 use super::study::{Came, Study, came};
 use crate::cli::cache;
 use crate::cli::conform;
-use crate::cli::exit::{self, Fault, Outcome, RED, print};
+use crate::cli::exit::{self, Fault, Outcome, print};
 use crate::cli::filter::Filters;
 use crate::cli::provenance::provenance;
 use crate::cli::run;
@@ -35,7 +35,6 @@ use grainbench::studies::cost::knobs::nominal_seconds;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
 /// Expected duration of the figures of a case beyond its runs (s).
@@ -398,7 +397,10 @@ impl Study for OfRun {
         let mut words = run::words(&self.arguments.cases, &self.options);
         words.extend(how.words.iter().cloned());
         let is_whole = self.is_whole && self.options.solver.is_empty();
-        let report = run::report(provenance(words, how.seconds), sections, is_whole)?;
+        let mut report = run::report(provenance(words, how.seconds), sections, is_whole)?;
+        let is_mute = self.selected.iter().any(|of| of.stranger.is_some()) && run::says_nothing(&report);
+        report.red_because.extend(how.unfinished.clone());
+        run::add_reasons(&mut report, is_mute, how.strict);
         let write = if how.parquet { write_report_and_parquet } else { write_report };
         write(how.out, &report).map_err(Fault::writing)?;
         if how.json {
@@ -406,7 +408,6 @@ impl Study for OfRun {
         } else {
             print(&format!("{}\n{}\n", summary_table(&report), how.out.join("index.html").display()))?;
         }
-        let is_mute = self.selected.iter().any(|of| of.stranger.is_some()) && run::says_nothing(&report);
-        Ok(if is_mute { ExitCode::from(RED) } else { run::exit_code(&report, how.strict) })
+        Ok(run::exit_code(&report, how.strict))
     }
 }
