@@ -19,6 +19,11 @@ from .worker import load
 
 
 _NOTHING: pytest.StashKey[bool] = pytest.StashKey()
+_COUNT: pytest.StashKey[_Count] = pytest.StashKey()
+# Message of the program about a case without a claim for this solver.
+_NOT_FAIR = "fair to any solver"
+# Property of a report whose claim was evaluated. Workers of pytest-xdist send it to the process that decides.
+_JUDGED = "grainbench-judged"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -33,6 +38,8 @@ def pytest_configure(config: pytest.Config) -> None:
     target: str | None = config.getoption("--grainbench")
     if target is not None and ":" not in target:
         raise pytest.UsageError(f"--grainbench: expected MODULE:NAME or FILE.py:NAME, found {target!r}")
+    config.stash[_COUNT] = _Count()
+    config.pluginmanager.register(config.stash[_COUNT], "grainbench-count")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -62,10 +69,11 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Fails if claims were requested and none was evaluated."""
+    """Fails if claims were requested and none was evaluated. Controls alone are no result."""
     if session.config.getoption("--grainbench") is None or exitstatus not in (0, 5) or session.config.option.collectonly:
         return
-    if not any(isinstance(item, _Row) and item.is_judged for item in session.items):
+    is_worker = hasattr(session.config, "workerinput")
+    if not is_worker and session.config.stash[_COUNT].judged == 0:
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
         session.config.stash[_NOTHING] = True
 
@@ -94,6 +102,17 @@ def _name(row: dict[str, Any], control: str | None) -> str:
     return name if control is None else f"{name} [control: {control}]"
 
 
+class _Count:
+    """Number of evaluated claims, in this process and in its workers."""
+
+    def __init__(self) -> None:
+        self.judged = 0
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Counts the report of a claim."""
+        self.judged += report.when == "call" and any(name == _JUDGED for name, _ in report.user_properties)
+
+
 class _Judged:
     """Results by case; each case runs when its first item runs."""
 
@@ -110,7 +129,12 @@ class _Judged:
         """Returns the results of a case."""
         if case not in self._results:
             words = ["run", case, "--solver", str(self._folder / "SOLVER.toml"), "--json"]
-            self._results[case] = json.loads(run([*words, "--out", str(self._folder / case)]))
+            try:
+                self._results[case] = json.loads(run([*words, "--out", str(self._folder / case)]))
+            except ValueError as error:
+                if _NOT_FAIR not in str(error):
+                    raise
+                self._results[case] = {"not_asked": str(error)}
         return self._results[case]
 
 
@@ -120,12 +144,13 @@ class _Row(pytest.Item):
     def __init__(self, *, judged: _Judged, key: tuple[str, str, str, int], control: str | None, solvers: str, **words: Any) -> None:
         super().__init__(**words)
         self._judged, self._key, self._control, self._solvers = judged, key, control, solvers
-        self.is_judged = False
 
     def runtest(self) -> None:
         """Passes if the claim passed, or if its control failed as required."""
         case, variant, quantity, place = self._key
         results = self._judged.of(case)
+        if "not_asked" in results:
+            pytest.skip(results["not_asked"])
 
         def found(kind: str) -> list[dict[str, Any]]:
             return [row for row in results[kind] if (row["variant"], row["quantity"]) == (variant, quantity)]
@@ -144,11 +169,10 @@ class _Row(pytest.Item):
                 pytest.skip("the row is red, and its control cannot be expressed")
             if place >= len(controls):
                 raise _Red("there is no result of this control")
-            self.is_judged = True
             if not controls[place]["turned_red"]:
                 raise _Red(f"the row stays green under wrong physics: {self._control}")
             return
-        self.is_judged = True
+        self.user_properties.append((_JUDGED, True))
         if row["severity"] == "red":
             raise _Red(_line(row) + (f"\n{row['detail']}" if row.get("detail") else ""))
 

@@ -118,6 +118,30 @@ def test_pytest_selects_rows_by_keyword(tmp_path: Path) -> None:
     assert done.returncode == 0 and "deselected" in done.stdout, done.stdout
 
 
+def test_pytest_counts_results_and_no_controls(tmp_path: Path) -> None:
+    example(tmp_path, ("law.friction * max", "0.8 * law.friction * max"))
+    done = by_pytest(tmp_path, "-k", "control", cases=["backspin/sphere"])
+    assert done.returncode == 1 and "no row was judged" in done.stdout, done.stdout
+
+
+def test_pytest_counts_what_its_workers_judge(tmp_path: Path) -> None:
+    pytest.importorskip("xdist")
+    example(tmp_path)
+    done = by_pytest(tmp_path, "-n", "2", cases=["backspin/sphere"])
+    assert done.returncode == 0 and "no row was judged" not in done.stdout, done.stdout
+    (tmp_path / "sphere.py").write_text(REFUSES, encoding="utf-8")
+    done = by_pytest(tmp_path, "-n", "2", cases=["backspin/sphere"])
+    assert done.returncode == 1 and "no row was judged" in done.stdout, done.stdout
+
+
+def test_pytest_skips_cases_without_a_claim_for_any_solver(tmp_path: Path) -> None:
+    example(tmp_path)
+    done = by_pytest(tmp_path, "-rs", cases=["backspin/sphere", "bar-impact"])
+    assert done.returncode == 0 and "fair to any solver" in done.stdout, done.stdout
+    done = by_pytest(tmp_path, cases=["bar-impact"])
+    assert done.returncode == 1 and "no row was judged" in done.stdout, done.stdout
+
+
 def test_what_is_wrong_is_said_in_a_line(tmp_path: Path) -> None:
     example(tmp_path)
     for words, said in [
