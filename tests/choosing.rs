@@ -203,7 +203,7 @@ fn a_job_is_told_in_its_own_way() {
     let program = Path::new(env!("CARGO_BIN_EXE_grainbench")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(".github/actions/judge/judge");
-    let job = |cases: &str, arguments: &str| {
+    let job_in = |cases: &str, arguments: &str, out: &str| {
         std::process::Command::new("bash")
             .arg(&script)
             .current_dir(here)
@@ -212,10 +212,11 @@ fn a_job_is_told_in_its_own_way() {
             .env("GITHUB_ACTIONS", "true")
             .env("GITHUB_STEP_SUMMARY", here.join("summary.md"))
             .env("GITHUB_OUTPUT", here.join("output"))
-            .envs([("CASES", cases), ("SOLVER", "dem:lammps"), ("ARGUMENTS", arguments), ("OUT", "judged")])
+            .envs([("CASES", cases), ("SOLVER", "dem:lammps"), ("ARGUMENTS", arguments), ("OUT", out)])
             .output()
             .unwrap()
     };
+    let job = |cases: &str, arguments: &str| job_in(cases, arguments, "judged");
     let answer = job("oblique-imp*", "--quiet --filter evidence=analytic");
     assert_eq!(answer.status.code(), Some(0), "{}", String::from_utf8_lossy(&answer.stderr));
     assert!(!String::from_utf8_lossy(&answer.stdout).contains("::error"), "nothing is red");
@@ -229,5 +230,14 @@ fn a_job_is_told_in_its_own_way() {
     {
         assert_eq!(job(cases, arguments).status.code(), Some(2), "{cases} {arguments}");
     }
+    // Help and versions judge nothing, and the directory is one line.
+    for word in ["-h", "--help", "-V", "--version", "-qh"] {
+        assert_eq!(job(word, "").status.code(), Some(2), "{word}");
+        assert_eq!(job("oblique-impact", &format!("--quiet\n{word}")).status.code(), Some(2), "{word}");
+    }
+    for out in ["--help", "judged\nreport=elsewhere"] {
+        assert_eq!(job_in("oblique-impact", "", out).status.code(), Some(2), "{out}");
+    }
+    assert!(!fs::read_to_string(here.join("output")).unwrap().contains("elsewhere"));
     assert_eq!(fs::read_to_string(here.join("summary.md")).unwrap(), summary, "nothing was judged");
 }
