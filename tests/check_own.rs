@@ -376,3 +376,81 @@ fn a_check_says_which_changes_the_output_would_reveal() {
     }
     assert_eq!(checked("off").1.len(), 10);
 }
+
+/// Three discs that fly apart, in a scene that has no probe of a grain.
+const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n\
+    domain = { low = [0.0, -2.0], high = [4.0, 2.0], periodic = [true, false] }\n\
+    materials.m = { density = 1.0 }\n\
+    contacts.m = { between = ['m', 'm'], normal_stiffness = 1e3, tangential_stiffness = 5e2, friction = 0.5 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.25, 0.5]\nvelocity = [0.5, 0.25]\nspin = 2.0\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [1.5, -0.25]\nvelocity = [-0.25, 1.0]\n\
+    [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [3.0, 1.0]\nvelocity = [0.0, -0.5]\nspin = -1.0\n\
+    [output]\nevery = 0.01\n[probes]\nall = { system = true }\n";
+
+/// A row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
+type Row = [f64; 9];
+
+/// Returns a dump of the three discs with steps of 1 ms from step `from` on. `change` changes the rows of a snapshot.
+fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
+    let mut text = String::new();
+    for sample in 0..=10 {
+        let time = f64::from(sample) * 0.01;
+        let row = |x: f64, y: f64, vx: f64, vy: f64, spin: f64| {
+            [x + vx * time, y + vy * time, 0.0, vx, vy, 0.0, 0.0, 0.0, spin]
+        };
+        let mut rows =
+            [row(0.25, 0.5, 0.5, 0.25, 2.0), row(1.5, -0.25, -0.25, 1.0, 0.0), row(3.0, 1.0, 0.0, -0.5, -1.0)];
+        change(sample, &mut rows);
+        text.push_str(&format!(
+            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp ff pp\n0 4\n-2 2\n-0.5 0.5\n\
+             ITEM: ATOMS id x y z vx vy vz omegax omegay omegaz\n",
+            from + 10 * sample
+        ));
+        for (grain, row) in rows.iter().enumerate() {
+            let numbers: Vec<String> = row.iter().map(|number| format!("{number:?}")).collect();
+            text.push_str(&format!("{} {}\n", grain + 1, numbers.join(" ")));
+        }
+    }
+    text
+}
+
+/// Checks a dump of the three discs. Returns the answer.
+fn checked_flight(dump: &str, more: &[&str]) -> common::Answer {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("flight.toml"), FLIGHT).unwrap();
+    fs::write(directory.path().join("flight.dump"), dump).unwrap();
+    let words = ["check", "flight.toml", "--dump", "flight.dump", "--dt", "1e-3", "--power", "off"];
+    grainbench(directory.path(), &[&words[..], more].concat())
+}
+
+/// The first sample shows the start of all grains, with or without probes.
+#[test]
+fn every_grain_starts_as_in_the_scene() {
+    let right: [(u32, &dyn Fn(u32, &mut [Row; 3])); 3] = [
+        (0, &|_, _| {}),
+        // A run that starts late, and a grain outside its periodic axis.
+        (700, &|_, _| {}),
+        (0, &|_, rows| rows[1][0] += 4.0),
+    ];
+    for (from, change) in right {
+        let answer = checked_flight(&flight(from, change), &[]);
+        assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+    }
+    let wrong: [(&dyn Fn(u32, &mut [Row; 3]), &str); 6] = [
+        (&|_, rows| rows.iter_mut().for_each(|row| row.swap(0, 1)), "x of grain 1 = 0.25 m; found 0.5 m"),
+        (&|_, rows| rows.iter_mut().for_each(|row| row.swap(3, 4)), "vx of grain 1 = 0.5 m/s; found 0.25 m/s"),
+        (&|_, rows| rows[2][1] += 1e-6, "y of grain 3 = 1.0 m; found 1.000001 m"),
+        (&|_, rows| rows[2][8] = 0.0, "omegaz of grain 3 = -1.0 rad/s; found 0.0 rad/s"),
+        (&|_, rows| rows.iter_mut().for_each(|row| *row = [0.0; 9]), "x of grain 1 = 0.25 m; found 0.0 m"),
+        (&|_, rows| rows.swap(0, 1), "x of grain 1 = 0.25 m; found 1.5 m"),
+    ];
+    for (change, said) in wrong {
+        for (from, more) in [(0, &[][..]), (0, &["--partial"]), (700, &[])] {
+            let answer = checked_flight(&flight(from, change), more);
+            assert!(answer.code == Some(2) && answer.err.contains(said), "{said}: {}{}", answer.out, answer.err);
+        }
+    }
+    // Six digits are enough for numbers that have no more.
+    let six = flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
+    assert_eq!(checked_flight(&six, &[]).code, Some(0));
+}

@@ -33,12 +33,15 @@ impl Names {
 }
 
 /// Quantities of a scene that a dump contains.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Observed {
     /// Columns of the probes that follow from the dump.
     pub series: Series,
     /// Uncertainty by printed digits, for each column and sample.
     pub uncertainty: Vec<Vec<f64>>,
+    /// First snapshot with each number increased by the uncertainty of its printed digits; `None` if the digits are
+    /// unknown or there are no grains.
+    pub shifted_start: Option<Snapshot>,
     /// Every requested snapshot, and always the last one.
     pub snapshots: Vec<Snapshot>,
 }
@@ -55,6 +58,7 @@ pub struct Observer<'s> {
     /// Forces between grains, if there is a dump of contacts.
     pairs: PairForces,
     snapshots: Vec<Snapshot>,
+    shifted_start: Option<Snapshot>,
     last: Option<Snapshot>,
 }
 
@@ -105,7 +109,8 @@ impl<'s> Observer<'s> {
         let known =
             Known { velocity: true, spin: true, angle: true, pairs: false, walls: vec![true; scene.walls.len()] };
         let pairs = PairForces::default();
-        Self { scene, sampled, recorders, known, pairs, snapshots: Vec::new(), last: None }
+        let (snapshots, shifted_start, last) = (Vec::new(), None, None);
+        Self { scene, sampled, recorders, known, pairs, snapshots, shifted_start, last }
     }
 
     /// Adds forces between grains.
@@ -213,6 +218,9 @@ impl<'s> Observer<'s> {
                 if keep {
                     self.snapshots.push(seen.clone());
                 }
+            }
+            if matches!(shift, Shift::Along) && self.shifted_start.is_none() {
+                self.shifted_start = Some(seen.clone());
             }
             // Only contacts requested by probes are known, so snapshots do not contain them.
             seen.contacts = Some(told);
@@ -338,6 +346,7 @@ impl<'s> Observer<'s> {
         let mut observed = Observed {
             series: Series { step: printed.step, time: printed.time, ..Series::default() },
             uncertainty: Vec::new(),
+            shifted_start: self.shifted_start,
             snapshots: self.snapshots,
         };
         let shifted = |series: &Series, at: usize, values: &[f64]| -> Vec<f64> {
@@ -364,7 +373,7 @@ impl Observed {
         let step: Vec<u64> = stepping.samples().collect();
         let time = step.iter().map(|step| *step as f64 * stepping.time_step).collect();
         let series = Series { step, time, ..Series::default() };
-        Self { series, uncertainty: Vec::new(), snapshots: Vec::new() }
+        Self { series, ..Self::default() }
     }
 
     /// Keeps the first `samples` samples and the snapshots up to the last of them.

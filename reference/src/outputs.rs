@@ -448,8 +448,7 @@ impl Outputs {
         let of_file = table.digits();
         let mut observed = Observed {
             series: Series { step: steps, time: times, ..Series::default() },
-            uncertainty: Vec::new(),
-            snapshots: Vec::new(),
+            ..Observed::default()
         };
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
         for Column { name: full, unit } in &columns {

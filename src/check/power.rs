@@ -163,7 +163,7 @@ impl Made<'_> {
     /// Returns true if a run would give a red result as output, with the sample times, columns and digits of the real
     /// output.
     fn is_red(&self, series: &Series) -> bool {
-        let mut seen = Observed { series: Series::default(), uncertainty: Vec::new(), snapshots: Vec::new() };
+        let mut seen = Observed::default();
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
         let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);
         for ((column, values), open) in columns.zip(&self.observed.uncertainty) {
