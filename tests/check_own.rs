@@ -265,6 +265,26 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
     assert!(answer.code == Some(2) && answer.err.contains("in a first sample at step 3000000200"), "{}", answer.err);
 }
 
+/// A log of another run beside the dump is not taken for its clock.
+#[test]
+fn a_log_of_another_run_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let judged = |dump: &str, time_step: &str| {
+        fs::write(directory.path().join("log.lammps"), format!("timestep {time_step}\nStep KinEng\n0 0\n")).unwrap();
+        let words = ["check", &of_ball("ball.toml"), "--power", "off", "--dump", dump];
+        grainbench(directory.path(), &words)
+    };
+    fs::copy(of_ball("twosteps-time.dump.gz"), directory.path().join("dump.gz")).unwrap();
+    fs::write(directory.path().join("table.csv"), "step,time,ball.x\n0,0,0\n400,0.004,0.0008\n").unwrap();
+    for (file, steps) in [("dump.gz", "s from step 0 to step"), ("table.csv", "0.004 s from step 0 to step 400")] {
+        let answer = judged(file, "3e-5");
+        assert!(answer.code == Some(2) && answer.err.contains("log.lammps: expected "), "{}", answer.err);
+        assert!(answer.err.contains(steps) && answer.err.contains("it is of another run"), "{}", answer.err);
+    }
+    // A difference within the digits of printed times is none.
+    assert_ne!(judged("table.csv", "1.0001e-5").code, Some(2));
+}
+
 #[test]
 fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
     let (code, _, err) = ball(&["cut-off.dump.gz"], &["--dt", "1e-5"]);

@@ -79,6 +79,23 @@ pub enum OutputError {
         /// Units of the log.
         of_log: String,
     },
+    /// A log belongs to another run.
+    #[error(
+        "{}: expected {} s from step {first} to step {last}, as in the files, found {of_log} s; it is of another run",
+        one_line(.log), .of_files
+    )]
+    OtherLog {
+        /// Name of the log.
+        log: String,
+        /// First step of the files.
+        first: u64,
+        /// Last step of the files.
+        last: u64,
+        /// Time between these steps in the files (s).
+        of_files: f64,
+        /// Time between these steps in the log (s).
+        of_log: f64,
+    },
     /// The files are of different kinds.
     #[error("{}: expected one table alone, or dumps alone", one_line(.0))]
     MixedFiles(String),
@@ -245,7 +262,7 @@ impl Outputs {
     }
 
     /// Sets the time steps from the options, the log or the files. A given time step must agree with that of the
-    /// files.
+    /// files. A log must agree with the times of the files.
     fn set_clock(&mut self, of_log: Option<Clock>, of_files: Option<Clock>) -> Result<(), OutputError> {
         let [first, last] = self.ends;
         let given = self.sources.time_step;
@@ -255,6 +272,13 @@ impl Outputs {
             {
                 return Err(OutputError::OtherTimeStep { told: told.range(first, last), given });
             }
+        }
+        let of_both = of_log.as_ref().zip(of_files.as_ref());
+        if let Some([of_log, of_files]) = of_both.map(|(log, files)| [log, files].map(|of| of.between(first, last)))
+            && (of_log - of_files).abs() > 1e-3 * of_files
+        {
+            let log = self.sources.log.as_deref().map(shown).unwrap_or_default();
+            return Err(OutputError::OtherLog { log, first, last, of_files, of_log });
         }
         self.clock = given.map(Clock::constant).or(of_log).or(of_files);
         Ok(())
@@ -446,10 +470,8 @@ impl Outputs {
             return Err(ReadError::at(&name, 1, expected, format!("{:?}", times[at + 1])).into());
         }
         let of_file = table.digits();
-        let mut observed = Observed {
-            series: Series { step: steps, time: times, ..Series::default() },
-            ..Observed::default()
-        };
+        let mut observed =
+            Observed { series: Series { step: steps, time: times, ..Series::default() }, ..Observed::default() };
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
         for Column { name: full, unit } in &columns {
             let short = full.rsplit_once('.').map_or(full.as_str(), |(_, short)| short);
