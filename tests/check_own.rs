@@ -161,6 +161,25 @@ fn a_folder_of_outputs_is_judged_together() {
         assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
     };
     refused(&directory.path().join("nowhere"), "expected a folder that can be read");
+    // A folder of a case without output is red, also if only its log is there or if no case has its name.
+    let partly = directory.path().join("partly");
+    for place in ["incline-disc/60deg-mu.9", "oblique-impact", "backspin/sphere", "incline-dics", "nine-discs/kappa"] {
+        fs::create_dir_all(partly.join(place)).unwrap();
+    }
+    fs::write(partly.join("oblique-impact/log.lammps"), "timestep 1\n").unwrap();
+    fs::copy(folder.join("liggghts-backspin.dump.gz"), partly.join("backspin/sphere/dump.gz")).unwrap();
+    fs::copy(folder.join("log.liggghts"), partly.join("backspin/sphere/log.liggghts")).unwrap();
+    let (code, rows) = judged(&["--all", &partly.display().to_string()]);
+    let red = |name: &str, said: &str| {
+        let is_it = |row: &Value| row["quantity"] == format!("{name}, not judged") && row["verdict"] == "fail";
+        count(&rows, |row| is_it(row) && row["detail"].as_str().unwrap().contains(said)) == 1
+    };
+    assert!(code == Some(1) && count(&rows, |row| row["case"] == "files") == 4, "{rows:#?}");
+    assert!(red("incline-disc/60deg-mu.9", "found none") && red("oblique-impact", "found none"), "{rows:#?}");
+    assert!(red("incline-dics", "did you mean `incline-disc`?") && red("nine-discs/kappa", "`kappa`"), "{rows:#?}");
+    let ignored = ["incline-*", "oblique-impact", "nine-discs"].into_iter().flat_map(|name| ["--ignore", name]);
+    let words = [&["--all", partly.to_str().unwrap()], &ignored.collect::<Vec<_>>()[..]].concat();
+    assert_eq!(judged(&words).0, Some(0));
     fs::create_dir(directory.path().join("empty")).unwrap();
     refused(&directory.path().join("empty"), "expected outputs in `CASE` or `CASE/VARIANT` of it, found none");
     into("backspinn", "liggghts-backspin.dump.gz");

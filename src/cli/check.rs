@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// ParaView, one per time or one for all times; one CSV table of probes.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
-    /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`.
+    /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`. A folder without output is red.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
     /// File that `--all` ignores, by name or by a quoted pattern such as `'*.log'`; repeatable. Any other file that is
@@ -196,20 +196,29 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
         }
         Ok(())
     };
+    let mut empty = Vec::new();
     let (of_cases, beside_cases) = found(folder)?;
     let mut beside = Vec::new();
     for of_case in of_cases {
         let name = of_case.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (variants, files) = found(&of_case)?;
+        if files.is_empty() && variants.is_empty() {
+            empty.push((of_case, without_output(&name)));
+        }
         judge(&name, files)?;
         for of_variant in variants {
             let variant = of_variant.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let (folders, files) = found(&of_variant)?;
-            judge(&format!("{name}/{variant}"), files)?;
+            let scene = format!("{name}/{variant}");
+            if files.is_empty() {
+                empty.push((of_variant, without_output(&scene)));
+            }
+            judge(&scene, files)?;
             beside.extend(folders);
         }
     }
     let place = |path: PathBuf| (path, "it is in no folder `CASE` or `CASE/VARIANT`".to_owned());
+    not_judged.extend(empty);
     not_judged.extend(beside_cases.into_iter().chain(beside).map(place));
     if sections.is_empty() && not_judged.is_empty() {
         let folder = folder.display();
@@ -219,13 +228,23 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     Ok(sections)
 }
 
-/// Returns a section with a red result for each file that was not checked, and the reason.
+/// Returns the reason why the folder of a case or variant without output is not judged.
+fn without_output(scene: &str) -> String {
+    let unknown = match Variant::read(scene) {
+        Err(Fault::Unknown(message, _)) => format!("; {}", message.trim_end_matches("; there are:")),
+        Err(fault) => format!("; {fault}"),
+        Ok(_) => String::new(),
+    };
+    format!("expected output of a run in the folder, found none{unknown}")
+}
+
+/// Returns a section with a red result for each file or folder that was not checked, and the reason.
 fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section {
     let row = |(path, reason): &(PathBuf, String)| {
         let name = path.strip_prefix(folder).unwrap_or(path).to_string_lossy();
         let row = Verdict {
-            because: "each file must be judged, or ignored by its name (--ignore)".to_owned(),
-            source: "content of the file".to_owned(),
+            because: "each file and each folder of a case must be judged, or ignored by its name (--ignore)".to_owned(),
+            source: "content of the file or folder".to_owned(),
             ..Verdict::open("files", format!("{name}, not judged"), "1")
         };
         row.left(verdict::Outcome::Fail, reason)
@@ -233,7 +252,7 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
     Section {
         name: "files".to_owned(),
         title: format!("Files of {} that were not judged", folder.display()),
-        claim: "Each file below the directory is judged, or ignored by its name.".to_owned(),
+        claim: "Each file and each folder below the directory is judged, or ignored by its name.".to_owned(),
         derivation: String::new(),
         weak: String::new(),
         figures: Vec::new(),
