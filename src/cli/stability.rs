@@ -102,10 +102,10 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
-/// Returns true if no solver gave a limit and none ran a hard case.
+/// Returns true if no solver gave a limit and no hard case holds. A run that fails measures nothing.
 fn measures_nothing(study: &Study) -> bool {
-    let is_run = |row: &Hard| !matches!(row.standing, Hardness::NotAvailable | Hardness::Unsupported);
-    study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(is_run)
+    let holds = |row: &Hard| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
+    study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(holds)
 }
 
 /// Returns the command and its options that differ from the default.
@@ -181,7 +181,6 @@ pub(crate) fn select<'a>(
     let mut known: Vec<String> = assemblies.iter().map(|assembly| named(assembly.name)).collect();
     known.push(BAR.to_owned());
     known.extend(hard.iter().map(|case| case.name.clone()));
-    known.dedup();
     if let Some(name) = cases.iter().find(|name| name.is_empty() || !known.iter().any(|known| known.starts_with(*name)))
     {
         return Err(Fault::unknown("an assembly or a hard case", name, known.iter().map(String::as_str)));
