@@ -444,6 +444,46 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
 
+/// A program that ends with 0 and writes nothing measures nothing.
+#[test]
+fn a_study_of_failed_runs_alone_is_red() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), MANIFEST, "exit 0");
+    for cases in [&["free-pair"][..], &["mass-ratio"], &["free-pair", "mass-ratio"]] {
+        let answer = grainbench(folder.path(), &[&["stability"], cases, &["--solver", "SOLVER.toml"]].concat());
+        assert_eq!(answer.code, Some(1), "{cases:?}: {}{}", answer.out, answer.err);
+    }
+}
+
+/// Energy that a program adds in mid-run and takes back before the end is detected.
+#[test]
+fn energy_gained_in_mid_run_is_red() {
+    if !is_here("python3") {
+        return;
+    }
+    let script = "import json, sys\n\
+        scene = json.load(open(sys.argv[1]))\n\
+        n, every = scene['steps']['count'], scene['steps']['sample_every']\n\
+        table = open(sys.argv[2] + '/grains.csv', 'w')\n\
+        print('step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz', file=table)\n\
+        for k in [k for k in range(n + 1) if k % every == 0 or k == n]:\n    \
+            for g in scene['grains']:\n        \
+                v = [(3 if n / 4 < k < n / 2 else 1) * a for a in g['velocity']]\n        \
+                print(k, g['id'], *g['position'], *v, *g['spin'], sep=',', file=table)\n";
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = MANIFEST.replace("[\"sh\", \"liar.sh\"", "[\"python3\", \"liar.sh\"");
+    write(folder.path(), &manifest.replace("seconds = 2", "seconds = 20"), script);
+    let answer = grainbench(folder.path(), &["conform", "SOLVER.toml", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap().iter();
+    let gains: Vec<&Value> =
+        rows.filter(|row| row["quantity"].as_str().unwrap().starts_with("energy gained")).collect();
+    assert!(gains.iter().any(|row| row["variant"] == "passivity/between-planes-2d"), "{gains:#?}");
+    for row in gains.into_iter().filter(|row| row["verdict"] != "unsupported") {
+        assert!(row["verdict"] == "fail" && row["value"].as_f64().is_some_and(|gain| gain > 1.0), "{row}");
+    }
+}
+
 /// If an external solver cannot run any wrong scene, its passed claims do not count.
 #[test]
 fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {

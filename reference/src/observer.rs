@@ -46,6 +46,18 @@ pub struct Observed {
     pub snapshots: Vec<Snapshot>,
 }
 
+/// Steps at which snapshots are still due, in order.
+pub(crate) struct Due<'s>(pub(crate) &'s [u64]);
+
+impl Due<'_> {
+    /// Returns true if a snapshot is due at a sample. Snapshots are taken at the first samples from their steps on.
+    pub(crate) fn is_at(&mut self, step: u64) -> bool {
+        let past = self.0.partition_point(|&due| due <= step);
+        self.0 = &self.0[past..];
+        past > 0
+    }
+}
+
 /// Builds a record from the snapshots of a dump, one after the other.
 pub struct Observer<'s> {
     scene: &'s Scene,

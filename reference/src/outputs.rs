@@ -8,7 +8,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
 use crate::clock::Clock;
-use crate::observer::{Names, Observed, Observer};
+use crate::observer::{Due, Names, Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::read_log;
@@ -41,6 +41,9 @@ pub struct Sources {
     pub partial: bool,
     /// If true, steps and times are counted from the first sample.
     pub from_first: bool,
+    /// Steps at which snapshots are due, in order. The first snapshot from each of them on is kept, in addition to the
+    /// first and the last of the files.
+    pub snapshot_steps: Vec<u64>,
 }
 
 /// Reason why outputs cannot be read as a run.
@@ -343,6 +346,7 @@ impl Outputs {
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
         let mut before = DumpSnapshot::default();
+        let mut due = Due(&self.sources.snapshot_steps);
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
             let mut reader = Snapshots::open(file, u64::MAX)?;
@@ -372,7 +376,8 @@ impl Outputs {
                 }
                 last_time = time;
                 snapshot.step = self.step(&snapshot, time);
-                observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), last.is_none())?;
+                let keep = due.is_at(snapshot.step) || last.is_none();
+                observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), keep)?;
                 last = Some(number);
                 snapshot.step = number;
             }

@@ -146,6 +146,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         most_rows: Some(most_rows(&subject)?),
         partial: arguments.partial,
         from_first: true,
+        snapshot_steps: Vec::new(),
     };
     let outputs = Outputs::survey(sources).map_err(Fault::input)?;
     let power = match arguments.power.as_str() {

@@ -155,6 +155,12 @@ fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     };
     let start: f64 = scene.grains.iter().map(of_start).sum();
     End::read(scene, record)?;
+    let asked = (u64::from(scene.snapshots) + 2).min(record.cost.steps + 1);
+    let found = record.snapshots.len();
+    if (found as u64) < asked {
+        let lack = format!("the record has {found} snapshots, and the scene asks for {asked}");
+        return Err(NoEnd::Record(lack));
+    }
     let moving = |grains: &[GrainState]| grains.iter().map(|grain| kinetic(scene, grain)).sum::<f64>();
     let energies =
         record.snapshots.iter().filter(|snapshot| snapshot.step > 0).map(|snapshot| moving(&snapshot.grains));

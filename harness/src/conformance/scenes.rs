@@ -21,6 +21,7 @@ const COLLISION_2D: &str = r#"
 title = "A disc runs into four"
 dimension = 2
 duration = 0.3
+output.snapshots = 29
 [materials.m]
 density = 0.3183098861837907
 bulk_modulus = 1.0e4
@@ -60,6 +61,7 @@ const COLLISION_3D: &str = r#"
 title = "A sphere runs into four"
 dimension = 3
 duration = 0.3
+output.snapshots = 29
 [materials.m]
 density = 0.238732414637843
 bulk_modulus = 1.0e4

@@ -15,7 +15,7 @@ use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Wat
 use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::grain_dump::contacts_of;
-use crate::observer::{Observed, Observer};
+use crate::observer::{Due, Observed, Observer};
 use crate::pair_forces::PairForces;
 use crate::process::{self, Limits, Started};
 use crate::read::dump::DumpReader;
@@ -223,9 +223,8 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         }
     }
     let mut observer = Observer::new(scene).with_pairs(pairs);
-    // Snapshots are taken at the samples closest to their requested times.
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
-    let mut due = recorder.snapshot_steps();
+    let mut due = Due(recorder.snapshot_steps());
     for name in [SAMPLES, END] {
         if name == END && stepping.ends_on_a_sample() {
             continue;
@@ -234,10 +233,9 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NotFinite::Kept);
         while reader.read(&mut snapshot).map_err(output)? {
             deadline.check()?;
-            let past = due.partition_point(|&step| step <= snapshot.step);
-            due = &due[past..];
+            let keep = due.is_at(snapshot.step);
             let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &deck.names, time, None, past > 0).map_err(output)?;
+            observer.take(name, &snapshot, &deck.names, time, None, keep).map_err(output)?;
         }
     }
     let mut observed = observer.finish();

@@ -1,24 +1,29 @@
 //! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
 
-use crate::observer::{Names, Observed, Observer};
+use crate::deck::Stepping;
+use crate::observer::{Due, Names, Observed, Observer};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};
+use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use std::path::Path;
 
-/// Returns the quantities of a scene that the table at a path contains. `name` is its name in error messages, and
-/// `time_step` is in seconds.
+/// Returns the quantities of a scene that the table at a path contains, and the snapshots that the scene requests.
+/// `name` is its name in error messages.
 pub(super) fn observe(
     scene: &Scene,
     path: &Path,
     name: &str,
     names: &Names,
-    time_step: f64,
+    stepping: &Stepping,
 ) -> Result<Observed, ReadError> {
     let table = read_table(path)?;
+    let time_step = stepping.time_step;
     let steps = steps(&table, name, names, time_step)?;
     let mut observer = Observer::new(scene);
+    let recorder = Recorder::new(scene, time_step, stepping.steps);
+    let mut due = Due(recorder.snapshot_steps());
     let (mut row, mut last) = (0, None);
     while row < table.rows() {
         let step = steps[row];
@@ -34,7 +39,8 @@ pub(super) fn observe(
             values: table.rows_from(row, rows).to_vec(),
             ..DumpSnapshot::default()
         };
-        observer.take(name, &snapshot, names, step as f64 * time_step, None, last.is_none())?;
+        let keep = due.is_at(step) || last.is_none();
+        observer.take(name, &snapshot, names, step as f64 * time_step, None, keep)?;
         (row, last) = (row + rows, Some(step));
     }
     Ok(observer.finish())

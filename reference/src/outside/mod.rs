@@ -28,6 +28,7 @@ use crate::read::read_error::one_line;
 use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
 use grainbench_scene::terms::Terms;
@@ -375,7 +376,7 @@ fn observe_grains(
     let observed = match grains.format {
         GrainFormat::Csv => {
             let path = plain_file(folder, &grains.path)?;
-            grain_table::observe(scene, &path, &grains.path, &names, stepping.time_step).map_err(output)
+            grain_table::observe(scene, &path, &grains.path, &names, stepping).map_err(output)
         }
         GrainFormat::Lammps | GrainFormat::Npz | GrainFormat::Vtk => {
             let mut files = if grains.format == GrainFormat::Vtk {
@@ -387,7 +388,9 @@ fn observe_grains(
             let rows = scene.grains.len() * (16 + scene.walls.len());
             let time_step = Some(stepping.time_step);
             let most_rows = Some(rows as u64);
-            let sources = Sources { files, names, time_step, most_rows, ..Sources::default() };
+            let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
+            let snapshot_steps = recorder.snapshot_steps().to_vec();
+            let sources = Sources { files, names, time_step, most_rows, snapshot_steps, ..Sources::default() };
             Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
         }
     };
