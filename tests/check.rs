@@ -324,6 +324,51 @@ fn samples_far_apart_judge_no_course() {
     assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
 }
 
+/// A sampling interval of the caller does not replace that of the case.
+#[test]
+fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("liggghts-backspin.dump.gz");
+    let snapshots: Vec<&str> = whole.split("ITEM: TIMESTEP\n").collect();
+    let ends = ["", snapshots[1], snapshots[snapshots.len() - 1]].join("ITEM: TIMESTEP\n");
+    fs::write(directory.path().join("ends"), ends).unwrap();
+    for more in [&[][..], &["--set", "output.every=1"]] {
+        let words = ["check", "backspin/sphere", "--dump", "ends", "--dt", "2e-4", "--json"];
+        let answer = grainbench(directory.path(), &[&words[..], more].concat());
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let rows = results["verdicts"].as_array().unwrap().iter();
+        let details = rows.filter(|row| row["verdict"] == "fail").map(|row| row["detail"].as_str().unwrap_or_default());
+        let gaps = details.filter(|detail| detail.starts_with("no sample for")).count();
+        assert!(answer.code == Some(1) && gaps > 0, "{more:?}: {}", answer.out);
+    }
+}
+
+/// A sample between two steps has no counterpart in our runs. It is red, because it hides all other samples.
+#[test]
+fn a_time_between_two_steps_is_red() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let time = whole.split("ITEM: TIME\n").nth(50).unwrap().lines().next().unwrap();
+    for off in [1e-4, 3e-3] {
+        let moved = format!("ITEM: TIME\n{:?}\n", time.parse::<f64>().unwrap() + off * 0.01);
+        let text = whole.replacen(&format!("ITEM: TIME\n{time}\n"), &moved, 1);
+        fs::write(directory.path().join("off"), text).unwrap();
+        let checked = |more: &[&str]| {
+            let words = ["check", "incline-disc/60deg-mu.9", "--dump", "off", "--json"];
+            let answer = grainbench(directory.path(), &[&words[..], more].concat());
+            let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+            let mut rows = results["verdicts"].as_array().unwrap().clone();
+            rows.retain(|row| row["quantity"] == "comparison with our solvers");
+            (answer.code, rows)
+        };
+        let (code, rows) = checked(&[]);
+        assert_eq!((code, count(&rows, "fail")), (Some(1), 1), "{off}: {rows:#?}");
+        assert!(rows[0]["detail"].as_str().unwrap().contains("is no whole number of steps"), "{rows:#?}");
+        let (code, rows) = checked(&["--partial"]);
+        assert_eq!((code, count(&rows, "known")), (Some(0), 1), "{off}: {rows:#?}");
+    }
+}
+
 /// A dump of grains of another size or mass is of another scene, wherever the grains are.
 #[test]
 fn grains_of_another_radius_or_mass_are_refused() {

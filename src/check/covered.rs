@@ -1,6 +1,6 @@
 //! Part of a run that the output covers. Claims about the whole run need output to its end.
 
-use super::at;
+use super::{Candidate, at};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::{Bound, Expected, Measured};
 use grainbench_harness::tolerance::Made;
@@ -43,6 +43,24 @@ impl Gap {
     }
 }
 
+/// Returns the duration of a run (s) with a time step (s); `None` if it is a number of cycles of unknown length.
+fn whole(scene: &Scene, step: Option<f64>) -> Option<f64> {
+    match scene.duration {
+        Duration::Seconds(seconds) => Some(seconds),
+        Duration::Cycles(cycles) => step.map(|step| step * cycles as f64),
+    }
+}
+
+/// Returns the sampling interval of a scene as a fraction of its run; zero if the time step (s) is needed and unknown.
+fn interval(scene: &Scene, step: Option<f64>) -> f64 {
+    let Some(whole) = whole(scene, step) else { return 0.0 };
+    match scene.sampling {
+        Sampling::Seconds(interval) => interval / whole,
+        Sampling::Cycles(cycles) => step.map_or(0.0, |step| step * cycles as f64 / whole),
+        Sampling::Count(count) => 1.0 / count.max(1) as f64,
+    }
+}
+
 /// Coverage of a scene's run by the output.
 #[derive(Clone, Copy)]
 pub(super) struct Covered {
@@ -53,8 +71,8 @@ pub(super) struct Covered {
     /// Accepted time from the last sample to the end (s).
     slack: f64,
     samples: usize,
-    /// Longest interval between samples that a result may depend on (s): the larger of the scene's sampling interval
-    /// and a tenth of the run. `None` if the duration of the run is unknown.
+    /// Longest interval between samples that a result may depend on (s): the larger of the sampling interval that the
+    /// scene has before any `--set`, and a tenth of the run. `None` if the duration of the run is unknown.
     most: Option<f64>,
     /// Longest interval between samples.
     gap: Gap,
@@ -65,25 +83,18 @@ pub(super) struct Covered {
 impl Covered {
     /// Computes the coverage from the time step of the output (s), if it is known. Removes samples after the end of the
     /// scene, because the scene does not define them.
-    pub(super) fn of(scene: &Scene, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
-        let whole = match scene.duration {
-            Duration::Seconds(seconds) => Some(seconds),
-            Duration::Cycles(cycles) => step.map(|step| step * cycles as f64),
-        };
+    pub(super) fn of(candidate: &Candidate, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
+        let whole = whole(&candidate.scene, step);
         // A wrongly reported time step must not make an early sample count as the end.
         let most = 0.01 * whole.unwrap_or_default();
         let slack = (0.5 * step.unwrap_or_default()).min(most) + PRINTED * whole.unwrap_or_default();
         if let Some(whole) = whole {
             observed.keep(observed.series.time.partition_point(|&time| time <= whole + slack));
         }
-        let interval = |whole: f64| match scene.sampling {
-            Sampling::Seconds(interval) => interval,
-            Sampling::Cycles(cycles) => step.map_or(0.0, |step| step * cycles as f64),
-            Sampling::Count(count) => whole / count.max(1) as f64,
-        };
+        let part = candidate.own.as_ref().map_or(0.0, |own| interval(own, step));
         // Samples lie at whole steps.
         let rounding = step.unwrap_or_default().min(most) + PRINTED * whole.unwrap_or_default();
-        let most = whole.map(|whole| interval(whole).max(PART * whole) + rounding);
+        let most = whole.map(|whole| part.max(PART) * whole + rounding);
         let time = &observed.series.time;
         let reached = time.last().copied().unwrap_or_default();
         let gap = Gap::longest(time.iter().copied());

@@ -23,6 +23,8 @@ pub enum Subject<'s> {
         name: String,
         /// The scene.
         scene: Box<Scene>,
+        /// The scene of the file without changed keys, if it is complete.
+        own: Option<Box<Scene>>,
     },
 }
 
@@ -71,8 +73,9 @@ impl Subject<'_> {
         match *self {
             Self::Case { case, variant, set: [] } => candidates(case, variant),
             Self::Case { case, variant, set } => with_other_numbers(case, variant, set),
-            Self::Scene { ref scene, .. } => {
-                Ok(vec![Candidate { variant: PLAIN.to_owned(), scene: (**scene).clone(), claims: Vec::new() }])
+            Self::Scene { ref scene, ref own, .. } => {
+                let (scene, own) = ((**scene).clone(), own.as_deref().cloned());
+                Ok(vec![Candidate { variant: PLAIN.to_owned(), scene, own, claims: Vec::new() }])
             }
         }
     }
@@ -82,6 +85,8 @@ impl Subject<'_> {
 pub(super) struct Candidate {
     pub(super) variant: String,
     pub(super) scene: Scene,
+    /// The scene without changed keys. It says how far apart samples may be.
+    pub(super) own: Option<Scene>,
     /// Claims about this scene.
     pub(super) claims: Vec<Claim>,
 }
@@ -95,7 +100,8 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     names.retain(|name| variant.is_none_or(|variant| variant == name));
     let mut candidates: Vec<Candidate> = Vec::new();
     for name in names {
-        candidates.push(Candidate { scene: case.variant(&name)?, variant: name, claims: Vec::new() });
+        let scene = case.variant(&name)?;
+        candidates.push(Candidate { own: Some(scene.clone()), scene, variant: name, claims: Vec::new() });
     }
     for claim in (case.claims)() {
         let [run] = &claim.runs[..] else { continue };
@@ -109,7 +115,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
         let variant = run.variant.to_owned();
         match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
             Some(candidate) => candidate.claims.push(claim),
-            None => candidates.push(Candidate { variant, scene, claims: vec![claim] }),
+            None => candidates.push(Candidate { variant, own: Some(scene.clone()), scene, claims: vec![claim] }),
         }
     }
     Ok(candidates)
@@ -130,7 +136,7 @@ fn with_other_numbers(
         let claims =
             (case.claims)().into_iter().filter(|claim| matches!(&claim.runs[..], [run] if run.variant == name));
         let claims = claims.filter_map(|claim| elsewhere(claim, &scene)).collect();
-        Ok(Candidate { variant: name, scene, claims })
+        Ok(Candidate { own: Some(case.variant(&name)?), variant: name, scene, claims })
     };
     names.into_iter().map(candidate).collect()
 }

@@ -126,7 +126,8 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
     let subject = if is_file {
         let (own, _) = subject::scene(scene, &arguments.set)?;
         let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Subject::Scene { name, scene: Box::new(own) }
+        let unchanged = subject::scene(scene, &[]).ok().map(|(unchanged, _)| Box::new(unchanged));
+        Subject::Scene { name, scene: Box::new(own), own: unchanged }
     } else {
         let Variant { case, variant } = Variant::read(scene)?;
         Subject::Case { case, variant, set: &arguments.set }
