@@ -455,8 +455,12 @@ fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
 
 /// Checks a dump of the three discs. Returns the answer.
 fn checked_flight(dump: &str, more: &[&str]) -> common::Answer {
+    checked_scene(FLIGHT, dump, more)
+}
+
+fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> common::Answer {
     let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("flight.toml"), FLIGHT).unwrap();
+    fs::write(directory.path().join("flight.toml"), scene).unwrap();
     fs::write(directory.path().join("flight.dump"), dump).unwrap();
     let words = ["check", "flight.toml", "--dump", "flight.dump", "--dt", "1e-3", "--power", "off"];
     grainbench(directory.path(), &[&words[..], more].concat())
@@ -490,6 +494,44 @@ fn every_grain_starts_as_in_the_scene() {
         }
     }
     // Six digits are enough for numbers that have no more.
-    let six = flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
+    let six =
+        flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
     assert_eq!(checked_flight(&six, &[]).code, Some(0));
+}
+
+/// Grains of a scene in the plane stay in it.
+#[test]
+fn motion_out_of_the_plane_is_refused() {
+    let wrong: [(&dyn Fn(u32, &mut [Row; 3]), &str); 4] = [
+        (
+            &|sample, rows| rows[1][2] = 1e-3 * f64::from(sample),
+            "grain 2 in the plane of the scene, `z` 0.0, found 0.001",
+        ),
+        (&|_, rows| rows[2][5] = 3.0, "grain 3 in the plane of the scene, `vz` 0.0, found 3.0"),
+        (&|sample, rows| rows[0][6] = f64::from(sample), "`omegax` 0.0, found 1.0"),
+        (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` 0.0, found 1.0"),
+    ];
+    for (change, said) in wrong {
+        let answer = checked_flight(&flight(0, change), &[]);
+        assert!(answer.code == Some(2) && answer.err.contains(said), "{said}: {}{}", answer.out, answer.err);
+    }
+    // The plane may lie anywhere, and a rounding does not leave it.
+    let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
+    assert_eq!(checked_flight(&right, &[]).code, Some(0));
+}
+
+/// The interval of the scene file says how far apart samples may be, and no option replaces it.
+#[test]
+fn no_option_allows_samples_far_apart() {
+    let whole = flight(0, &|_, _| {});
+    let mut samples = whole.split_inclusive("ITEM: TIMESTEP\n");
+    let head = samples.next().unwrap();
+    let ends = [samples.next().unwrap(), samples.last().unwrap()].concat();
+    let ends = format!("{head}{ends}");
+    let set = ["--set", "output.every=1"];
+    assert_eq!(checked_flight(&ends, &[]).code, Some(1));
+    assert_eq!(checked_flight(&ends, &set).code, Some(1));
+    let own = FLIGHT.replace("every = 0.01", "every = 0.1");
+    assert_eq!(checked_scene(&own, &ends, &[]).code, Some(0));
+    assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
 }

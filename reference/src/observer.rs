@@ -4,6 +4,7 @@ use grainbench_scene::record::{GrainState, Look, Series, Snapshot};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 use crate::deck::Stepping;
 use crate::pair_forces::{PairForce, PairForces};
@@ -71,6 +72,8 @@ pub struct Observer<'s> {
     pairs: PairForces,
     snapshots: Vec<Snapshot>,
     shifted_start: Option<Snapshot>,
+    /// First coordinate z (m) of each grain of a scene in the plane.
+    heights: BTreeMap<usize, f64>,
     last: Option<Snapshot>,
 }
 
@@ -122,7 +125,7 @@ impl<'s> Observer<'s> {
             Known { velocity: true, spin: true, angle: true, pairs: false, walls: vec![true; scene.walls.len()] };
         let pairs = PairForces::default();
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
-        Self { scene, sampled, recorders, known, pairs, snapshots, shifted_start, last }
+        Self { scene, sampled, recorders, known, pairs, snapshots, shifted_start, heights: BTreeMap::new(), last }
     }
 
     /// Adds forces between grains.
@@ -137,8 +140,8 @@ impl<'s> Observer<'s> {
     ///
     /// # Errors
     /// If the id or the position of a grain is missing. If the number of grains differs from that of the scene; it
-    /// may be smaller if the scene removes grains. If the contacts of this step are missing and those of other steps
-    /// are not.
+    /// may be smaller if the scene removes grains. If a grain leaves the plane of the scene. If the contacts of this
+    /// step are missing and those of other steps are not.
     pub fn take(
         &mut self,
         file: &str,
@@ -161,6 +164,9 @@ impl<'s> Observer<'s> {
         if self.known.pairs && !self.pairs.has(snapshot.step) {
             let expected = format!("the contacts of step {} in a dump of contacts", snapshot.step);
             return Err(ReadError::at(file, snapshot.first_line, expected, "grains alone"));
+        }
+        if flat {
+            self.check_plane(file, snapshot, &columns, &order, digits)?;
         }
         if let Some(digits) = digits {
             self.check_grains(file, snapshot, &columns, &order, digits)?;
@@ -277,6 +283,47 @@ impl<'s> Observer<'s> {
             mass: column("mass"),
             walls: self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect(),
         })
+    }
+
+    /// Returns an error if a grain of a scene in the plane moves out of it: if its coordinate z changes, or if it has a
+    /// velocity along z or a spin about x or y.
+    fn check_plane(
+        &mut self,
+        file: &str,
+        snapshot: &DumpSnapshot,
+        columns: &Columns,
+        order: &[(usize, usize)],
+        digits: Option<&[Digits]>,
+    ) -> Result<(), ReadError> {
+        let of_file = digits.unwrap_or_default().iter().fold(Digits::default(), |all, digits| all.with(digits));
+        let open = |column: usize, value: f64| {
+            digits.and_then(|digits| digits.get(column)).map_or(0.0, |digits| digits.uncertainty(value, &of_file))
+        };
+        let period = self.scene.critical_time_step();
+        for &(place, row) in order {
+            let (numbers, radius) = (snapshot.row(row), self.scene.grains[place].radius);
+            let wrong = |column: usize, expected: f64, found: f64| {
+                let (line, name) = (snapshot.first_line + row as u64, &snapshot.columns[column].name);
+                let expected = format!("grain {} in the plane of the scene, `{name}` {expected:?}", place + 1);
+                Err(ReadError::at(file, line, expected, format!("{found:?}")))
+            };
+            if let Some(at) = columns.position[2] {
+                let height = *self.heights.entry(place).or_insert(at.of(numbers));
+                let printed: f64 = at.parts().map(|(column, scale)| open(column, numbers[column]) * scale.abs()).sum();
+                if (at.of(numbers) - height).abs() > 2.0 * printed + COMPUTED * radius {
+                    return wrong(at.column, height, at.of(numbers));
+                }
+            }
+            let speed = columns.velocity.iter().flatten().map(|&at| numbers[at].abs()).fold(radius / period, f64::max);
+            let [along, about_x, about_y] = [columns.velocity[2], columns.spin[0], columns.spin[1]];
+            for (column, scale) in [(along, speed), (about_x, speed / radius), (about_y, speed / radius)] {
+                let Some(at) = column else { continue };
+                if numbers[at].abs() > open(at, numbers[at]) + COMPUTED * scale {
+                    return wrong(at, 0.0, numbers[at]);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Returns an error if the radius or mass of a grain differs from the scene by more than the uncertainty of its
