@@ -552,6 +552,10 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
         "{rows:#?}"
     );
     assert_eq!(rows[1]["detail"], "only a.csv has it");
+    // Neither are sizes and masses, which no run changes.
+    let table = |name: &str| format!("step,n,radius,mass,{name}\n0,1,0.5,2,1\n1,1,0.5,2,3\n");
+    assert_eq!(compared(&table("v").replace(",n,", ",id,"), &table("w").replace(",n,", ",id,"), &[]).0, 1);
+    assert_eq!(compared(&table("v"), &table("w"), &[]).0, 0);
     // An option that takes one value does not consume the next argument.
     assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
 }

@@ -94,8 +94,9 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     Ok(exit_code(&report, arguments.strict))
 }
 
-/// Columns that classify grains. Their agreement alone does not count as a comparison.
-const LABELS: [&str; 3] = ["type", "mol", "proc"];
+/// Columns that name and describe grains and do not change in a run. Their agreement alone does not count as a
+/// comparison.
+const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
 
 fn is_label(row: &Verdict) -> bool {
     LABELS.iter().any(|label| row.quantity == quantity(label))
