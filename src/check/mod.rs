@@ -313,15 +313,25 @@ fn section(
         mistake::explain(case, &solvers, &candidate.claims, &mut of_claims);
     }
     verdicts.extend(of_claims.into_iter().flatten());
-    let unknown = || "the files do not tell the time step (--dt gives it)".to_owned();
+    let amber = |reason: String| (Outcome::NoReference, reason);
+    let unknown = || amber("the files do not tell the time step (--dt gives it)".to_owned());
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
-    let (verdicts_of_ours, figures) = match plan.and_then(|plan| against_ours(&candidate.scene, plan)) {
+    let of_ours = plan.and_then(|plan| against_ours(&candidate.scene, plan).map_err(amber));
+    let (verdicts_of_ours, figures) = match of_ours {
         Ok(of_ours) => {
             let made = of_ours.made(candidate, outputs, observed, covered);
             let power = if subject.case().is_some() { Power::Off } else { options.power };
             (rows_of_ours(&made, power, &row), figures(&of_ours.peers, &file, observed))
         }
-        Err(reason) => (vec![no_comparison(&row, reason)], Vec::new()),
+        Err((Outcome::Fail, reason)) if options.partial => {
+            let reason = format!("{reason}; a part of the run is meant (--partial)");
+            (vec![no_comparison(&row, Outcome::Known, reason)], Vec::new())
+        }
+        Err((Outcome::Fail, reason)) => {
+            let reason = format!("{reason}; --partial judges what is there");
+            (vec![no_comparison(&row, Outcome::Fail, reason)], Vec::new())
+        }
+        Err((outcome, reason)) => (vec![no_comparison(&row, outcome, reason)], Vec::new()),
     };
     let dense = |row: Verdict| if is_of_power(&row) { row } else { covered.dense(row) };
     verdicts.extend(verdicts_of_ours.into_iter().map(dense));
@@ -382,15 +392,15 @@ fn rows_of_ours(made: &Made<'_>, power: Power, row: &dyn Fn(String, &str) -> Ver
     let mut rows = made.compare(made.observed, row);
     if rows.is_empty() {
         let reason = "fewer than two samples are at times of our runs, or nothing that is compared was told";
-        rows.push(no_comparison(row, reason.to_owned()));
+        rows.push(no_comparison(row, Outcome::NoReference, reason.to_owned()));
     }
     rows.extend(made.power(power, row));
     rows
 }
 
-fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, reason: String) -> Verdict {
+fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, outcome: Outcome, reason: String) -> Verdict {
     let row = Verdict { because: "none was made".to_owned(), ..row("comparison with our solvers".to_owned(), "1") };
-    row.left(Outcome::NoReference, reason)
+    row.left(outcome, reason)
 }
 
 /// Evaluates a measured value, with the tolerance widened by the uncertainty of the printed digits. A tolerance above a

@@ -6,7 +6,7 @@ use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::compare::peers::{Compared, Peer, against};
 use grainbench_harness::tolerance::Made;
-use grainbench_harness::verdict::Verdict;
+use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::Observed;
 use grainbench_reference::outputs::Outputs;
 use grainbench_scene::record::Record;
@@ -37,11 +37,13 @@ pub(super) struct Plan {
 
 impl Plan {
     /// Returns a plan whose time step divides all sample times: the longest time step of the output (s), or else the
-    /// shortest.
-    pub(super) fn new(observed: &Observed, [shortest, longest]: [f64; 2]) -> Result<Self, String> {
+    /// shortest. Without a plan, returns the outcome and its reason. It is red if the time steps of the output do not
+    /// reach its own times.
+    pub(super) fn new(observed: &Observed, [shortest, longest]: [f64; 2]) -> Result<Self, (Outcome, String)> {
+        let amber = |reason: String| (Outcome::NoReference, reason);
         let times = &observed.series.time;
         if !times.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err("the times do not grow".to_owned());
+            return Err(amber("the times do not grow".to_owned()));
         }
         let off = |step: f64| {
             let is_off = |time: &f64| ((time / step).round() * step - time).abs() > 1e-6 * step.max(*time);
@@ -50,13 +52,15 @@ impl Plan {
         let step = match (off(longest), off(shortest)) {
             (None, _) => longest,
             (_, None) => shortest,
-            (Some(time), _) => return Err(format!("the time {time} s is no whole number of steps of {longest} s")),
+            (Some(time), _) => {
+                return Err((Outcome::Fail, format!("the time {time} s is no whole number of steps of {longest} s")));
+            }
         };
         let steps: Vec<u64> = times.iter().map(|time| (time / step).round() as u64).collect();
-        let last = steps.last().copied().ok_or_else(|| "there is no sample".to_owned())?;
+        let last = steps.last().copied().ok_or_else(|| amber("there is no sample".to_owned()))?;
         let interval = steps.iter().fold(0, |all, &step| common_divisor(all, step)).max(1);
         if last / interval > MOST_SAMPLES {
-            return Err(format!("{} samples are more than {MOST_SAMPLES}", last / interval));
+            return Err(amber(format!("{} samples are more than {MOST_SAMPLES}", last / interval)));
         }
         let parts = ((step / shortest * (1.0 - 1e-6)).ceil() as u64).max(2);
         Ok(Self { step, counts: [last, interval], parts })

@@ -6,7 +6,7 @@ use super::binary::Number;
 use super::digits::Digits;
 use super::numbers::NumberColumn;
 use super::read_error::{ReadError, quoted};
-use super::snapshot::DumpSnapshot;
+use super::snapshot::{DumpSnapshot, Numbering};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
@@ -34,6 +34,8 @@ pub(crate) struct Course {
     name: String,
     /// Step of each moment. If the file has no steps, it is the index of the moment.
     steps: Vec<u64>,
+    /// Numbering of the moments. Steps beside times are steps of the run; otherwise they may count frames.
+    numbering: Numbering,
     /// Times (s), if the file contains them.
     times: Option<Vec<f64>>,
     grains: usize,
@@ -79,6 +81,7 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     if times.as_ref().is_some_and(|times| times.len() != moments) {
         return Err(fault("as many times as steps".to_owned(), "others".to_owned()));
     }
+    let numbering = if steps.is_some() && times.is_some() { Numbering::Steps } else { Numbering::Files };
     let steps = match steps {
         None => (0..moments as u64).collect(),
         Some(steps) => {
@@ -90,7 +93,8 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     if let Some(at) = steps.windows(2).position(|pair| pair[1] <= pair[0]) {
         return Err(fault(format!("a step after {}", steps[at]), steps[at + 1].to_string()));
     }
-    let mut course = Course { name: name.clone(), steps, times, grains: 0, columns: Vec::new(), numbers: Vec::new() };
+    let mut course =
+        Course { name: name.clone(), steps, numbering, times, grains: 0, columns: Vec::new(), numbers: Vec::new() };
     for (key, columns, must) in KNOWN {
         let Some(array) = arrays.get(key) else {
             if must {
@@ -146,8 +150,8 @@ impl Course {
         let number = |grain: usize, of: &(Vec<f64>, bool)| of.0[if of.1 { moment * grains + grain } else { grain }];
         let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |of| number(grain, of))).collect();
         let time = self.times.as_ref().map(|times| times[moment]);
-        let columns = self.columns.clone();
-        Some(DumpSnapshot { step, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+        let (columns, numbering) = (self.columns.clone(), self.numbering);
+        Some(DumpSnapshot { step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
     }
 }
 
@@ -228,6 +232,8 @@ mod tests {
             assert_eq!(course.grains(), 2);
             let last = course.snapshot(2).unwrap();
             assert_eq!((last.step, last.time), (25, Some(0.25)));
+            // Steps beside times give the time step.
+            assert_eq!(last.numbering, Numbering::Steps);
             assert!(course.snapshot(3).is_none());
             let value = |column: &str, row: usize| last.row(row)[last.column(column).unwrap()];
             assert_eq!([value("id", 0), value("id", 1)], [2.0, 1.0]);

@@ -10,7 +10,7 @@ pub(crate) static FORMAT: Format = Format {
     told_by: ToldBy::Beginning(|of| {
         of.bytes.starts_with(MARK) && of.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
     }),
-    numbering: Numbering::Files,
+    numbering: Numbering::Steps,
     holds: |_| Ok(Holds::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;
