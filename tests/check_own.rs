@@ -6,6 +6,8 @@
 mod common;
 
 use common::grainbench;
+use grainbench::cases::registry::read_grains;
+use grainbench::scene::source::SceneSource;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -391,6 +393,16 @@ fn a_time_step_above_the_critical_one_is_refused() {
         answer.err
     );
     assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
+    // The critical time step itself is refused too, as by `simulate`.
+    let scene = SceneSource::read(Path::new(&of_ball("ball.toml"))).unwrap().scene(&read_grains).unwrap();
+    let critical = format!("{:?}", scene.critical_time_step());
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--dt", &critical, "--partial"];
+    let answer = grainbench(directory.path(), &words);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected a time step below the critical one"),
+        "{}",
+        answer.err
+    );
 }
 
 /// The ball sticks to the floor during contact, so friction has almost no effect; its dashpot and spring have one.

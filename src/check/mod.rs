@@ -55,9 +55,9 @@ pub enum NotChecked {
         /// Names of the matching variants.
         variants: String,
     },
-    /// The time step is above the critical one.
+    /// The time step is not below the critical one.
     #[error(
-        "{file}: expected a time step up to the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
+        "{file}: expected a time step below the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
          {:.3} of it (--allow-unstable judges it all the same)",
         .step / .critical
     )]
@@ -88,7 +88,7 @@ pub enum NotChecked {
 pub struct Options {
     /// True if the output may end early or have few samples.
     pub partial: bool,
-    /// True if time steps above the critical one are accepted.
+    /// True if time steps at or above the critical one are accepted.
     pub allow_unstable: bool,
     /// Extent of the search for the power of the check.
     pub power: Power,
@@ -107,7 +107,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// coverage is then red, or amber with `partial`.
 ///
 /// # Errors
-/// When the files cannot be read, start unlike every scene of the case, or have a time step above the critical one.
+/// When the files cannot be read, start unlike every scene of the case, or have a time step that is not below the
+/// critical one.
 pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Result<Section, NotChecked> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, Observed)> = Vec::new();
@@ -269,11 +270,11 @@ fn at(origin: Origin) -> String {
     format!("step {}{time}", origin.step)
 }
 
-/// Rejects time steps above the critical one, because our own solvers would be unstable.
+/// Rejects time steps at or above the critical one, because our own solvers would be unstable.
 fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), NotChecked> {
     let critical = scene.critical_time_step();
     match outputs.time_step() {
-        Some(step) if step > critical && !options.allow_unstable => {
+        Some(step) if scene.is_unstable_at(step) && !options.allow_unstable => {
             Err(NotChecked::Unstable { file: outputs.name(), critical, step })
         }
         _ => Ok(()),

@@ -148,8 +148,8 @@ impl Made<'_> {
 
     fn is_revealed(&self, size: &Size, left: &mut u64) -> Result<bool, String> {
         for scene in &size.scenes {
-            if self.plan.step > scene.critical_time_step() {
-                return Err("the time step would be above the critical one".to_owned());
+            if scene.is_unstable_at(self.plan.step) {
+                return Err("the time step would not be below the critical one".to_owned());
             }
             *left = left.checked_sub(1).ok_or_else(|| "--power full has no limit of time".to_owned())?;
             let record = self.plan.run(scene, Convention::DEFAULT, 1)?;

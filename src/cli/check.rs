@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     /// judged.
     #[arg(long)]
     partial: bool,
-    /// Accept a time step above the critical one.
+    /// Accept a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
     /// Search for changes of the scene that the output would not reveal: none, within three times the work of the comparison, or

@@ -299,7 +299,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
         Resolution::TimeStep(step) => step,
         Resolution::Grid { .. } | Resolution::Rigid { .. } => return Ok(resolution),
     };
-    if step >= critical && critical.is_finite() && !arguments.allow_unstable {
+    if scene.is_unstable_at(step) && !arguments.allow_unstable {
         return Err(Fault::input(format!(
             "time step: expected less than the critical step 2√(m_min/k_max) = {critical:.6e} s, found {step:.6e} s, {} of \
              it (--allow-unstable takes it all the same)",

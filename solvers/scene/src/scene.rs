@@ -535,4 +535,11 @@ impl Scene {
             .fold(0.0, f64::max);
         2.0 * (mass / stiffness).sqrt()
     }
+
+    /// Returns true if a time step (s) is at or above the critical one. Central differences are stable below it alone.
+    #[must_use]
+    pub fn is_unstable_at(&self, time_step: f64) -> bool {
+        let critical = self.critical_time_step();
+        time_step >= critical && critical.is_finite()
+    }
 }
