@@ -361,6 +361,10 @@ fn an_id_that_occurs_twice_is_an_error() {
 fn other_units_are_refused() {
     let (code, _, err) = ball(&["cgs.dump.gz"], &["--dt", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected the units `si`"), "{err}");
+    let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
+    let answer = checked_flight(&lj, &[]);
+    assert!(answer.code == Some(2) && answer.err.contains("expected the units `si`"), "{}", answer.err);
+    assert_eq!(checked_flight(&lj.replace("\nlj\n", "\nsi\n"), &[]).code, Some(0));
     let directory = tempfile::tempdir().unwrap();
     let cgs = of_ball("cgs.dump.gz");
     let answer = grainbench(directory.path(), &["fields", &cgs, "--cell", "1"]);

@@ -70,7 +70,10 @@ pub enum OutputError {
     #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --dt, found none", one_line(.0))]
     NoTime(String),
     /// The units are not supported by scenes.
-    #[error("{}: expected the units `si`, or `lj` for a scene without dimensions, found {}", one_line(.0), quoted(.1))]
+    #[error(
+        "{}: expected the units `si` of a scene (if its numbers have no dimensions, leave the units out), found {}",
+        one_line(.0), quoted(.1)
+    )]
     Units(String, String),
     /// A dump and its log have different units.
     #[error("{}: expected the units {} of the dump, found {}", one_line(.log), quoted(.of_dump), quoted(.of_log))]
@@ -171,7 +174,7 @@ impl Outputs {
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
         let log = sources.log.as_deref().map(read_log).transpose()?;
         if let (Some(log), Some(path)) = (&log, &sources.log) {
-            log.units.as_deref().map_or(Ok(()), |units| check_units(path, units))?;
+            log.units.as_deref().map_or(Ok(()), |units| check_units(path, units, &["si", "lj"]))?;
         }
         let mut outputs = Self {
             files: Vec::new(),
@@ -256,7 +259,8 @@ impl Outputs {
             if let Some(said) = &snapshot.units
                 && survey.units.as_ref() != Some(said)
             {
-                check_units(&file.path, said)?;
+                // No scene says that its numbers have no dimensions.
+                check_units(&file.path, said, &["si"])?;
                 survey.units = Some(said.clone());
             }
         }
@@ -552,6 +556,7 @@ fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
     Ok(None)
 }
 
-fn check_units(file: &Path, units: &str) -> Result<(), OutputError> {
-    if ["si", "lj"].contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
+/// Returns an error if units are not among those that are accepted.
+fn check_units(file: &Path, units: &str, accepted: &[&str]) -> Result<(), OutputError> {
+    if accepted.contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
 }
