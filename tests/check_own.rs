@@ -222,11 +222,16 @@ fn files_that_do_not_tell_are_refused() {
     refused("named_5.vtp", points("0 &amp; 0 0").as_bytes(), "named_5.vtp:1: expected a number in the array");
     // A letter by its number is a part of the number: two, and not three.
     refused("letter_5.vtp", points("1&#50;3 0").as_bytes(), "expected a whole number of points of 3 numbers");
-    refused(
-        "list.pvd",
-        b"<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection></Collection></VTKFile>",
-        "at least one file",
-    );
+    let list = |entries: &str| {
+        format!("<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection>{entries}</Collection></VTKFile>")
+    };
+    refused("list.pvd", list("").as_bytes(), "at least one file");
+    for path in [file("sphere_0.vtk"), "../sphere_0.vtk".to_owned(), "a/../../sphere_0.vtk".to_owned()] {
+        let entry = format!("<DataSet timestep=\"0\" file=\"{path}\"/>");
+        refused("list.pvd", list(&entry).as_bytes(), "list.pvd:1: expected a path inside the folder of the collection");
+    }
+    // One sphere and one plane allow 17 rows: 16 contacts of the grain, and one with the plane.
+    refused("many_5.vtp", points(&"0 ".repeat(54)).as_bytes(), "many_5.vtp:1: expected at most 17 grains");
 }
 
 /// Returns a file of the ball that bounces along a floor.

@@ -4,12 +4,13 @@ use super::whole;
 use crate::read::read_error::{ReadError, quoted};
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// Reads the files of a collection with their times (s), in the order of the collection.
 ///
 /// # Errors
-/// If the collection cannot be read or lists no files, or if an entry has no time or no file name.
+/// If the collection cannot be read or lists no files. If an entry has no time, no file name, or a path that leaves the
+/// folder of the collection.
 pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
     let name = path.to_string_lossy();
     let bytes = whole(path)?;
@@ -33,6 +34,11 @@ pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadEr
                     .ok_or_else(|| ReadError::at(&name, line(at), "a time in `timestep`", quoted(&time)))?;
                 let file = value("file").filter(|file| !file.is_empty());
                 let file = file.ok_or_else(|| ReadError::at(&name, line(at), "a name in `file`", "none"))?;
+                let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+                if !Path::new(&file).components().all(is_inside) {
+                    let expected = "a path inside the folder of the collection in `file`";
+                    return Err(ReadError::at(&name, line(at), expected, quoted(&file)));
+                }
                 files.push((time, folder.join(file)));
             }
             Ok(Event::Eof) => break,
