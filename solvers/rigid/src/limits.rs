@@ -52,6 +52,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
                 .to_owned(),
         );
     }
+    if scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Budget)) {
+        return Some("it asks for an energy budget, and rapier has no energies of springs, friction and damping".to_owned());
+    }
     let of_contact = |probe: &Probe| !matches!(probe.target, ProbeTarget::Grain(_) | ProbeTarget::System);
     if !scene.probes.is_empty() && scene.probes.iter().all(of_contact) {
         let reason = "it asks for nothing but overlaps and forces over time, which rigid contacts do not have: \

@@ -332,6 +332,9 @@ fn says_what_it_cannot_do() {
     let mut cohesive = scene(PAIR);
     cohesive.change_laws(|law| law.cohesion = 1.0);
     assert!(reason(&cohesive).contains("cohesion"));
+    let mut budget = slope(30.0, 0.5);
+    budget.probes[0].target = grainbench_scene::scene::ProbeTarget::Budget;
+    assert!(reason(&budget).contains("energy budget"));
     let periodic = scene(&PAIR.replace(
         "duration = 0.5",
         "duration = 0.5\ndomain = { low = [-10.0, -10.0], high = [10.0, 10.0], periodic = [true, false] }",
