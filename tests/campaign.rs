@@ -340,7 +340,7 @@ fn a_point_that_shows_nothing_is_not_green() {
 fn a_report_of_some_tasks_is_red_everywhere() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    ok(&grainbench(here, &["plan", "run", "squash", "--out", "p", "--chunks", "4"]));
+    ok(&grainbench(here, &["plan", "run", "collision", "--solver", "dem", "--out", "p", "--chunks", "4"]));
     ok(&grainbench(here, &["work", "p", "--chunk", "1/4"]));
     assert_eq!(grainbench(here, &["collect", "p"]).code, Some(1));
     let again = grainbench(here, &["report", "p/report"]);
