@@ -68,6 +68,14 @@ const NOT_FELT: &[(&str, Effect)] = &[
     ("rolling-on-block", Effect::PeriodicAxes),
     ("sphere-on-block", Effect::PeriodicAxes),
     ("spinning-ring", Effect::Plasticity),
+    // Walls or bodies that move with the frame, and effects of variants whose claims are about something else.
+    ("border", Effect::MovingWalls),
+    ("driven-disc", Effect::Friction),
+    ("driven-disc", Effect::Gravity),
+    ("free-block", Effect::PeriodicAxes),
+    ("piston", Effect::Gravity),
+    ("rolling-spring", Effect::PeriodicAxes),
+    ("sheared-layer", Effect::Friction),
 ];
 
 #[test]

@@ -77,7 +77,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
         return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
     }
     let source = SceneSource::read(&folder.join(SCENE)).map_err(|error| no_case(error.to_string()))?;
-    let rows = rows(claims.claims, &Reader { folder, source: &source }).map_err(no_case)?;
+    let rows = rows(claims.claims, &Reader { folder, source: &source, plots: true }).map_err(no_case)?;
     let whole = fs::canonicalize(folder).map_err(|error| no_case(error.to_string()))?;
     let is_plain = |name: &&std::ffi::OsStr| !name.to_string_lossy().chars().any(char::is_control);
     let (Some(name), Some(parent)) = (whole.file_name().filter(is_plain), whole.parent()) else {
@@ -119,7 +119,7 @@ pub(crate) const EMPTY: Case = Case {
 pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
     let claims = toml::from_str(text).map(|file: ClaimsFile| file.claims).unwrap_or_default();
-    rows(claims, &Reader { folder: &folder, source: &source }).unwrap_or_default()
+    rows(claims, &Reader { folder: &folder, source: &source, plots: false }).unwrap_or_default()
 }
 
 /// Converts the claims of a file.

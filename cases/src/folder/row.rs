@@ -29,6 +29,8 @@ pub(super) struct Reader<'a> {
     pub(super) folder: &'a Path,
     /// Scene file.
     pub(super) source: &'a SceneSource,
+    /// True if claims over a course are plotted. Cases of the registry have too many for one page.
+    pub(super) plots: bool,
 }
 
 impl Reader<'_> {
@@ -61,7 +63,7 @@ impl Reader<'_> {
         let expecting = expecting(quantity, &claimed, course, (&numbers, is_dem))?;
         let claim = expecting.within(tolerance).refuses(control);
         let claim = match (&claim.trace, claim.quantity.clone()) {
-            (Some(_), words) => {
+            (Some(_), words) if self.plots => {
                 let plate = Plate {
                     name: kept(words.replace(|letter: char| !letter.is_alphanumeric(), "-").to_lowercase()),
                     title: kept(words),
@@ -72,7 +74,7 @@ impl Reader<'_> {
                 let label = claim.runs.first().map_or_else(String::new, |run| run.solver.to_owned());
                 claim.drawn(Box::leak(Box::new(plate)), label)
             }
-            (None, _) => claim,
+            _ => claim,
         };
         // An external solver can run a claim of `dem`, because `dem` alone implies no contact convention of one
         // program.

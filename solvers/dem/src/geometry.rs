@@ -144,9 +144,9 @@ pub(crate) trait Geometry: Space {
 
     /// Returns the part of a spin along the normal; zero in the plane.
     fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
-    /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the
-    /// middle of the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane, the
-    /// scalar does not change.
+    /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the middle of
+    /// the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane,
+    /// the scalar does not change.
     fn turned<X: Number>(
         tangent: Self::Tangents<X>,
         middle: Self::Vectors<X>,

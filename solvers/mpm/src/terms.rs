@@ -57,18 +57,6 @@ const PAPERS: &[Less] = &[
     less("free-flight", "", 0.2, NO_AFFINE_PART),
     less("objectivity", "size", 2e-3, NO_AFFINE_PART),
     less("objectivity", "spin", 0.5, NO_AFFINE_PART),
-];
-
-/// Limits of the 2000 paper, whose contact acts at a distance.
-const FIRST_PAPER: &[Less] = &[
-    less("momentum", "momentum", 0.6, OWN_NORMALS),
-    less("momentum", "angular", 1.0, OWN_NORMALS),
-    less("galilean-invariance", "", 0.8, GRID_AT_REST),
-    less("mirror-invariance", "", 0.3, KINK),
-    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
-    less("free-flight", "", 0.2, NO_AFFINE_PART),
-    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
-    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
     less("passivity", "energy gained, largest of the run", 1.5, OPPOSED),
 ];
 
@@ -80,8 +68,7 @@ impl Mpm {
     pub fn terms(&self) -> Terms {
         let less = match self.setting.contact {
             _ if *self == Self::BEST => BEST,
-            Contact::Kinematic => FIRST_PAPER,
-            Contact::Traction => PAPERS,
+            Contact::Kinematic | Contact::Traction => PAPERS,
             _ => HATS,
         };
         Terms::at(Resolution::grid(2.0, 2)).owing_less(less)

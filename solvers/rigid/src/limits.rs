@@ -53,7 +53,9 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
         );
     }
     if scene.probes.iter().any(|probe| matches!(probe.target, ProbeTarget::Budget)) {
-        return Some("it asks for an energy budget, and rapier has no energies of springs, friction and damping".to_owned());
+        return Some(
+            "it asks for an energy budget, and rapier has no energies of springs, friction and damping".to_owned(),
+        );
     }
     let of_contact = |probe: &Probe| !matches!(probe.target, ProbeTarget::Grain(_) | ProbeTarget::System);
     if !scene.probes.is_empty() && scene.probes.iter().all(of_contact) {

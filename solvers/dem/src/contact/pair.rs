@@ -72,7 +72,8 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             },
             velocity,
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
-            effective_radius: match (changes, N::CURVED || R::ACTIVE) {
+            // The same operations whether or not the contact is recorded.
+            effective_radius: match (changes && T::TURNED, N::CURVED || R::ACTIVE) {
                 (true, _) => first * second * (inverse * overlap),
                 (false, true) => first * second / self.reach,
                 (false, false) => zero,
