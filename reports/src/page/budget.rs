@@ -14,9 +14,9 @@ pub(crate) enum Rank {
     HeavyFigures,
     /// A figure in a closed section, which the reader must open.
     ClosedFigures,
+    Derivations,
     Films,
     Figures,
-    Derivations,
     Rows,
 }
 
