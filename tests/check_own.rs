@@ -449,6 +449,8 @@ const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n
 
 /// A row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
 type Row = [f64; 9];
+/// Change of the three rows of a sample.
+type Change<'a> = &'a dyn Fn(u32, &mut [Row; 3]);
 
 /// Returns a dump of the three discs with steps of 1 ms from step `from` on. `change` changes the rows of a snapshot.
 fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
@@ -490,7 +492,7 @@ fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> common::Answer {
 /// The first sample shows the start of all grains, with or without probes.
 #[test]
 fn every_grain_starts_as_in_the_scene() {
-    let right: [(u32, &dyn Fn(u32, &mut [Row; 3])); 3] = [
+    let right: [(u32, Change<'_>); 3] = [
         (0, &|_, _| {}),
         // A run that starts late, and a grain outside its periodic axis.
         (700, &|_, _| {}),
@@ -500,7 +502,7 @@ fn every_grain_starts_as_in_the_scene() {
         let answer = checked_flight(&flight(from, change), &[]);
         assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
     }
-    let wrong: [(&dyn Fn(u32, &mut [Row; 3]), &str); 6] = [
+    let wrong: [(Change<'_>, &str); 6] = [
         (&|_, rows| rows.iter_mut().for_each(|row| row.swap(0, 1)), "x of grain 1 = 0.25 m; found 0.5 m"),
         (&|_, rows| rows.iter_mut().for_each(|row| row.swap(3, 4)), "vx of grain 1 = 0.5 m/s; found 0.25 m/s"),
         (&|_, rows| rows[2][1] += 1e-6, "y of grain 3 = 1.0 m; found 1.000001 m"),
@@ -523,7 +525,7 @@ fn every_grain_starts_as_in_the_scene() {
 /// Grains of a scene in the plane stay in it.
 #[test]
 fn motion_out_of_the_plane_is_refused() {
-    let wrong: [(&dyn Fn(u32, &mut [Row; 3]), &str); 4] = [
+    let wrong: [(Change<'_>, &str); 4] = [
         (
             &|sample, rows| rows[1][2] = 1e-3 * f64::from(sample),
             "grain 2 in the plane of the scene, `z` 0.0, found 0.001",
