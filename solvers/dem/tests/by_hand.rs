@@ -476,7 +476,8 @@ fn joined_edges_have_one_contact() {
     let sphere = "[grains.g]\nmaterial = 'h'\nradius = 0.5\nposition = [0.0, 0.0, 0.49]\n".to_owned();
     let plate = |name: &str, x: f64| {
         format!(
-            "[walls.{name}]\nmaterial = 'h'\nrectangle = {{ corner = [{x}, -1.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }}\n"
+            "[walls.{name}]\nmaterial = 'h'\n\
+             rectangle = {{ corner = [{x}, -1.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }}\n"
         )
     };
     assert_eq!(force(&(sphere + &plate("left", -1.0) + &plate("right", 0.0)), 3), 1.0);
