@@ -122,7 +122,7 @@ fn what_failed_is_run_again_alone() {
     assert!(rows(&results(here, "old"), "quantity").iter().all(|quantity| wanted == **quantity));
 }
 
-/// What an interrupted run left out has not passed, so it is run with what failed.
+/// Results that an interrupted run did not reach are run with the failed ones.
 #[test]
 fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     let directory = tempfile::tempdir().unwrap();

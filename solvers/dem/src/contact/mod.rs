@@ -118,7 +118,7 @@ impl<S: Geometry, X: Number> Middle<S, X> {
     }
 }
 
-/// Returns sin x/x from sin² x cos² x, with an error of about x⁶/3.
+/// Returns sin x/x from sin² x cos² x, with an error of x⁶/2 at most.
 #[inline(always)]
 fn chord<X: Number>(squared: X) -> X {
     squared * (squared * (-77.0 / 360.0) - 1.0 / 6.0) + 1.0
