@@ -55,8 +55,8 @@ fn what_was_finished_is_taken_and_says_so() {
     assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
     assert_eq!(again, kept, "each is taken once");
     assert!(again > 5, "{again}");
-    // With `--fresh`, or without a cache, no run comes from it.
-    assert_eq!(taken(program(here, "fresh").arg("--fresh"), here, "fresh"), (Some(0), 0));
+    // With `--no-cache`, or without a cache, no run comes from it.
+    assert_eq!(taken(program(here, "fresh").arg("--no-cache"), here, "fresh"), (Some(0), 0));
     assert_eq!(taken(program(here, "off").env("GRAINBENCH_CACHE", "off"), here, "off"), (Some(0), 0));
     assert_eq!(rows(here, "fresh"), rows(here, "off"));
     // Runs of another processor path do not come from the cache. The results have the same bits.

@@ -261,7 +261,7 @@ fn failures_keep_their_type() {
     assert_eq!(ended, ["broken", "unsupported"], "{results}");
     // A failed task counts as finished, unless it is requested again.
     assert!(ok(&grainbench(here, &["work", "p"])).out.contains("3 were finished, 0 done now"));
-    assert!(ok(&grainbench(here, &["work", "p", "--again"])).out.contains("2 done now, 2 of them failed"));
+    assert!(ok(&grainbench(here, &["work", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed"));
 }
 
 /// Workers are killed after a random number of results and a short time, and lines are truncated. The remaining tasks

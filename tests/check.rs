@@ -108,11 +108,11 @@ fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
     // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
-    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "2e-4"]);
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "2e-4"]);
     // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
     // Another time step gives another motion.
-    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--dt", "3e-4"]);
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "3e-4"]);
     assert!(code == 1 && count(&rows, "fail") > 2);
 }
 
@@ -127,8 +127,17 @@ fn a_table_is_judged_too() {
         text.push_str(&format!("{t};{:e};{:e}\n", 0.5 * a * t * t, a * t));
     }
     fs::write(directory.path().join("mine.csv"), text).unwrap();
-    let arguments =
-        ["check", "incline-disc/60deg-mu.9", "--dump", "mine.csv", "--map", "x=way,vx=speed", "--dt", "1e-4", "--json"];
+    let arguments = [
+        "check",
+        "incline-disc/60deg-mu.9",
+        "--dump",
+        "mine.csv",
+        "--map",
+        "x=way,vx=speed",
+        "--time-step",
+        "1e-4",
+        "--json",
+    ];
     let answer = grainbench(directory.path(), &arguments);
     let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
     let rows = results["verdicts"].as_array().unwrap();
@@ -224,7 +233,7 @@ fn what_cannot_be_judged_is_refused_with_the_reason() {
         &["incline-disc/60deg-mu.9", "--dump", "other.csv", "--map", "time=a"],
         &["incline-disc/60deg-mu.9", "--dump", "si", "other.csv"],
         &["incline-disc/60deg-mu.9", "--dump", "si", "--map", "x"],
-        &["incline-disc/60deg-mu.9", "--dump", "si", "--dt", "0"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--time-step", "0"],
         &["nine-discs/kappa-1", "--dump", "si"],
         &["incline-disc", "--dump", "si"],
     ] {
@@ -333,7 +342,7 @@ fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
     let ends = ["", snapshots[1], snapshots[snapshots.len() - 1]].join("ITEM: TIMESTEP\n");
     fs::write(directory.path().join("ends"), ends).unwrap();
     for more in [&[][..], &["--set", "output.every=1"]] {
-        let words = ["check", "backspin/sphere", "--dump", "ends", "--dt", "2e-4", "--json"];
+        let words = ["check", "backspin/sphere", "--dump", "ends", "--time-step", "2e-4", "--json"];
         let answer = grainbench(directory.path(), &[&words[..], more].concat());
         let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
         let rows = results["verdicts"].as_array().unwrap().iter();
@@ -469,7 +478,7 @@ fn what_cannot_be_told_is_amber() {
     let directory = tempfile::tempdir().unwrap();
     let checked = |text: &str| {
         fs::write(directory.path().join("mine.csv"), text).unwrap();
-        let arguments = ["check", "collision/gamma-zeta.1", "--dump", "mine.csv", "--dt", "1e-5", "--json"];
+        let arguments = ["check", "collision/gamma-zeta.1", "--dump", "mine.csv", "--time-step", "1e-5", "--json"];
         let answer = grainbench(directory.path(), &arguments);
         let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
         (answer.code, results["verdicts"].as_array().unwrap().clone())
@@ -514,7 +523,7 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     assert_eq!((code, &rows[2]["verdict"]), (1, &"fail".into()), "{rows:#?}");
     let (code, rows) = compared(&["a.csv", "short.csv"]);
     assert_eq!((code, count(&rows[..2], "fail"), count(&rows[2..], "pass")), (1, 2, 2), "{rows:#?}");
-    let (code, rows) = compared(&["a.csv", "short.csv", "--allow-missing"]);
+    let (code, rows) = compared(&["a.csv", "short.csv", "--partial"]);
     assert_eq!((code, count(&rows[..2], "known")), (0, 2), "{rows:#?}");
     assert_eq!(compared(&["a.csv", "named.csv", "--tolerance", "1e-5", "--map", "x=way,f=g,time=t"]).0, 0);
     let refused = refusal(directory.path(), &["compare", "a.csv", "b.csv", "--columns", "y"]);
@@ -557,5 +566,5 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     assert_eq!(compared(&table("v").replace(",n,", ",id,"), &table("w").replace(",n,", ",id,"), &[]).0, 1);
     assert_eq!(compared(&table("v"), &table("w"), &[]).0, 0);
     // An option that takes one value does not consume the next argument.
-    assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--dt", "1e-5", "--allow-missing"]).0, 0);
+    assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--time-step", "1e-5", "--partial"]).0, 0);
 }

@@ -197,7 +197,7 @@ fn files_that_do_not_tell_are_refused() {
         fs::write(&path, bytes).unwrap();
         let answer = grainbench(
             directory.path(),
-            &["check", &file("slope.toml"), "--dt", "2e-6", "--dump", &path.display().to_string()],
+            &["check", &file("slope.toml"), "--time-step", "2e-6", "--dump", &path.display().to_string()],
         );
         assert!(answer.code == Some(2) && answer.err.contains(said), "{name}: {}", answer.err);
         assert_eq!(answer.err.lines().count(), 1);
@@ -269,15 +269,15 @@ fn each_run_of_a_log_has_its_own_time_step() {
         assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
         assert_eq!(rows[1]["resolution"], "dt=0.00001 s to 0.00002 s", "{}", rows[1]);
     }
-    let (code, _, err) = ball(&["twosteps.dump.gz"], &["--log", &log, "--dt", "1e-5"]);
+    let (code, _, err) = ball(&["twosteps.dump.gz"], &["--log", &log, "--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected the time step of the files, 0.00001 s to 0.00002 s"), "{err}");
     // The same number of steps with one time step throughout is another motion.
-    assert_eq!(ball(&["twosteps.dump.gz"], &["--dt", "2e-5"]).0, Some(1));
+    assert_eq!(ball(&["twosteps.dump.gz"], &["--time-step", "2e-5"]).0, Some(1));
 }
 
 #[test]
 fn a_run_that_starts_late_counts_from_its_first_sample() {
-    let (code, rows, err) = ball(&["late-start.dump.gz"], &["--dt", "1e-5"]);
+    let (code, rows, err) = ball(&["late-start.dump.gz"], &["--time-step", "1e-5"]);
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
     assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
     // A first sample that is not the start of the scene is not taken for it.
@@ -287,7 +287,8 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
     std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut text).unwrap();
     let second = text.split_inclusive("ITEM: TIMESTEP\n").skip(2).collect::<String>();
     fs::write(directory.path().join("later"), format!("ITEM: TIMESTEP\n{second}")).unwrap();
-    let answer = grainbench(directory.path(), &["check", &of_ball("ball.toml"), "--dump", "later", "--dt", "1e-5"]);
+    let answer =
+        grainbench(directory.path(), &["check", &of_ball("ball.toml"), "--dump", "later", "--time-step", "1e-5"]);
     assert!(answer.code == Some(2) && answer.err.contains("in a first sample at step 3000000200"), "{}", answer.err);
 }
 
@@ -313,9 +314,9 @@ fn a_log_of_another_run_is_refused() {
 
 #[test]
 fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
-    let (code, _, err) = ball(&["cut-off.dump.gz"], &["--dt", "1e-5"]);
+    let (code, _, err) = ball(&["cut-off.dump.gz"], &["--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("(--partial judges the whole frames in front of it)"), "{err}");
-    let (code, rows, _) = ball(&["cut-off.dump.gz"], &["--dt", "1e-5", "--partial"]);
+    let (code, rows, _) = ball(&["cut-off.dump.gz"], &["--time-step", "1e-5", "--partial"]);
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{rows:#?}");
     assert_eq!(rows[0]["verdict"], "known");
     assert!(rows[0]["detail"].as_str().unwrap().contains("cut-off.dump.gz:361: expected a step"), "{}", rows[0]);
@@ -333,21 +334,21 @@ fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
 /// times.
 #[test]
 fn tables_of_grains_are_read_as_grains() {
-    let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--dt", "1e-5"]);
+    let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--time-step", "1e-5"]);
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
     let series =
         ["series/ball_0.csv", "series/ball_1.csv", "series/ball_2.csv", "series/ball_3.csv", "series/ball_4.csv"];
-    let (code, _, err) = ball(&series, &["--dt", "1e-5"]);
+    let (code, _, err) = ball(&series, &["--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("or --frame-interval, found numbers of frames only"), "{err}");
-    let (code, rows, err) = ball(&series, &["--dt", "1e-5", "--frame-interval", "0.002", "--partial"]);
+    let (code, rows, err) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.002", "--partial"]);
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
-    let (code, rows, _) = ball(&series, &["--dt", "1e-5", "--frame-interval", "0.003", "--partial"]);
+    let (code, rows, _) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.003", "--partial"]);
     assert!(code == Some(1) && fails(&rows) > 0);
 }
 
 #[test]
 fn an_id_that_occurs_twice_is_an_error() {
-    let (code, _, err) = ball(&["same-ids/zero_0.vtk", "same-ids/zero_200.vtk"], &["--dt", "1e-5"]);
+    let (code, _, err) = ball(&["same-ids/zero_0.vtk", "same-ids/zero_200.vtk"], &["--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected an id that no row above has, found 0 once more"), "{err}");
     let directory = tempfile::tempdir().unwrap();
     for (ids, said) in
@@ -364,7 +365,7 @@ fn an_id_that_occurs_twice_is_an_error() {
 /// Rejects lengths in centimetres in each reader.
 #[test]
 fn other_units_are_refused() {
-    let (code, _, err) = ball(&["cgs.dump.gz"], &["--dt", "1e-5"]);
+    let (code, _, err) = ball(&["cgs.dump.gz"], &["--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected the units `si`"), "{err}");
     let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
     let answer = checked_flight(&lj, &[]);
@@ -393,7 +394,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
     let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("coarse.csv"), text).unwrap();
-    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--dt", "2e-3", "--partial"];
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", "2e-3", "--partial"];
     let answer = grainbench(directory.path(), &words);
     // 2√(m/k) with m = 4/3 π r³ ρ = 1.309 g and k = 10⁴ N/m.
     assert!(
@@ -405,7 +406,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
     // The critical time step itself is refused too, as by `simulate`.
     let scene = SceneSource::read(Path::new(&of_ball("ball.toml"))).unwrap().scene(&read_grains).unwrap();
     let critical = format!("{:?}", scene.critical_time_step());
-    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--dt", &critical, "--partial"];
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", &critical, "--partial"];
     let answer = grainbench(directory.path(), &words);
     assert!(
         answer.code == Some(2) && answer.err.contains("expected a time step below the critical one"),
@@ -485,7 +486,7 @@ fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> common::Answer {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("flight.toml"), scene).unwrap();
     fs::write(directory.path().join("flight.dump"), dump).unwrap();
-    let words = ["check", "flight.toml", "--dump", "flight.dump", "--dt", "1e-3", "--power", "off"];
+    let words = ["check", "flight.toml", "--dump", "flight.dump", "--time-step", "1e-3", "--power", "off"];
     grainbench(directory.path(), &[&words[..], more].concat())
 }
 

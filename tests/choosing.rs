@@ -1,4 +1,4 @@
-//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--rerun-failed`,
+//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`,
 //! `--against`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -102,7 +102,7 @@ fn what_failed_is_run_again_alone() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     assert_eq!(run(here, &[CASE]).code, Some(0));
-    let again = || run(here, &["--rerun-failed", "--out", "old"]);
+    let again = || run(here, &["--retry-failed", "--out", "old"]);
     changed(here, |_| ());
     let none = again();
     assert_eq!(
@@ -138,7 +138,7 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
         interrupt(old);
         drop(old["verdicts"].as_array_mut().unwrap().remove(0));
     });
-    assert_eq!(run(here, &[CASE, "--rerun-failed", "--out", "old"]).code, Some(0));
+    assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
     assert!(!quantities("old").is_empty() && quantities("old").iter().all(|quantity| *quantity == all[0]));
     // A control that was left out is run with its claim.
     let control = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
@@ -146,7 +146,7 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
         interrupt(old);
         drop(old["controls"].as_array_mut().unwrap().remove(0));
     });
-    assert_eq!(run(here, &[CASE, "--rerun-failed", "--out", "old"]).code, Some(0));
+    assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
     let again = quantities("old");
     assert!(!again.is_empty() && again.iter().all(|quantity| control == **quantity), "{again:?}");
 }
@@ -170,7 +170,7 @@ fn what_is_no_report_is_refused() {
         );
         assert_eq!(answer.err.lines().count(), 1, "{}", answer.err);
     }
-    assert_eq!(run(here, &["--rerun-failed", "--out", "absent"]).code, Some(2));
+    assert_eq!(run(here, &["--retry-failed", "--out", "absent"]).code, Some(2));
     for wrong in ["nothing", "colour=red", "outcome=red", "evidence=seen", "quantity=["] {
         let answer = run(here, &[CASE, "--filter", wrong]);
         assert!(answer.code == Some(2) && answer.err.contains("--filter"), "{wrong}: {}", answer.err);

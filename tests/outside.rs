@@ -397,20 +397,20 @@ fn a_program_is_held_to_what_is_kept_of_it() {
     let judge = |further: &[&str]| {
         grainbench(folder.path(), &[&["run", "--solver", "SOLVER.toml", "--out", "out"], further].concat())
     };
-    let before = judge(&["--as-kept"]);
-    assert!(before.code == Some(2) && before.err.contains("expected what `--keep` leaves"), "{}", before.err);
-    let part = judge(&["--keep", "column"]);
+    let before = judge(&["--expect-stored"]);
+    assert!(before.code == Some(2) && before.err.contains("expected what `--update-stored` leaves"), "{}", before.err);
+    let part = judge(&["--update-stored", "column"]);
     assert!(part.code == Some(2) && !folder.path().join("judged.json").exists(), "{}", part.err);
-    assert_eq!(judge(&["--keep"]).code, Some(1), "stresses of other places are red");
+    assert_eq!(judge(&["--update-stored"]).code, Some(1), "stresses of other places are red");
     let kept: Value = serde_json::from_slice(&fs::read(folder.path().join("judged.json")).unwrap()).unwrap();
     assert!(kept["rows"].as_array().unwrap().iter().any(|row| row["verdict"] == "fail"), "{kept}");
-    assert_eq!(judge(&["--as-kept", "column", "vibrating-bar"]).code, Some(0), "it is red as it was");
+    assert_eq!(judge(&["--expect-stored", "column", "vibrating-bar"]).code, Some(0), "it is red as it was");
     let script = fs::read_to_string(folder.path().join("line.py")).unwrap();
     fs::write(folder.path().join("line.py"), script.replace("x + dt * w", "x + 0.98 * dt * w")).unwrap();
-    let other = judge(&["--as-kept", "column", "vibrating-bar"]);
+    let other = judge(&["--expect-stored", "column", "vibrating-bar"]);
     assert!(other.code == Some(1) && other.err.contains("fail, its control red; kept: pass"), "{}", other.err);
     fs::write(folder.path().join("judged.json"), "{").unwrap();
-    assert_eq!(judge(&["--as-kept", "column"]).code, Some(2));
+    assert_eq!(judge(&["--expect-stored", "column"]).code, Some(2));
 }
 
 /// The studies treat an external solver as our solvers. Old results are never taken for results of the present program.

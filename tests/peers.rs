@@ -1,7 +1,7 @@
 //! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of
 //! `peers/README.md`.
 //!
-//! `UPDATE_README=1 cargo test --release --test peers` rewrites the tables. `grainbench run --solver PATH --keep` makes
+//! `UPDATE_README=1 cargo test --release --test peers` rewrites the tables. `grainbench run --solver PATH --update-stored` makes
 //! new results.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -34,7 +34,11 @@ fn every_adapter_was_judged_as_it_stands() {
     for ((folder, _), judged) in KEPT.iter().zip(kept().unwrap()) {
         let path = root("peers").join(folder);
         let program = Outside::read(&path.join("SOLVER.toml")).unwrap();
-        assert_eq!(judged.adapter, program.fingerprint().unwrap(), "{folder} has changed since: run it with --keep");
+        assert_eq!(
+            judged.adapter,
+            program.fingerprint().unwrap(),
+            "{folder} has changed since: run it with --update-stored"
+        );
         assert_eq!(judged.program, program.manifest().name);
         assert!(!judged.provenance.commit.contains("changes"), "{folder} was judged by a tree that nobody has");
     }
@@ -56,7 +60,7 @@ fn kept_rows_are_earned_and_are_those_of_today() {
                     let is_one = claim.quantity == row.quantity && claim.resolution() == row.resolution;
                     is_one && claim.scope.is_open() && claim.tolerance.of(&[]) == row.allowed
                 });
-                assert!(is_it, "{name}: {case} has no row `{}` any more: run it with --keep", row.quantity);
+                assert!(is_it, "{name}: {case} has no row `{}` any more: run it with --update-stored", row.quantity);
             }
         }
     }

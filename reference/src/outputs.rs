@@ -59,7 +59,7 @@ pub enum OutputError {
     #[error("{}: expected a column `Time` (s) in the file, or --frame-interval, found numbers of frames only", one_line(.0))]
     NoFrameTime(String),
     /// The given time step differs from that of the files.
-    #[error("--dt: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]
+    #[error("--time-step: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]
     OtherTimeStep {
         /// Shortest and longest time step of the files (s).
         told: [f64; 2],
@@ -67,7 +67,7 @@ pub enum OutputError {
         given: f64,
     },
     /// No file contains the time step.
-    #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --dt, found none", one_line(.0))]
+    #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --time-step, found none", one_line(.0))]
     NoTime(String),
     /// The units are not supported by scenes.
     #[error(

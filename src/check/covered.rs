@@ -122,7 +122,7 @@ impl Covered {
     pub(super) fn why_not(&self) -> Option<String> {
         let short = || match self.whole {
             Some(whole) => format!("{} s of {} s", number::significant(self.reached, 6), number::significant(whole, 6)),
-            None => "an unknown part, for nothing tells the time step (--dt gives it)".to_owned(),
+            None => "an unknown part, for nothing tells the time step (--time-step gives it)".to_owned(),
         };
         (!self.is_whole()).then(|| format!("the files show {}", short()))
     }

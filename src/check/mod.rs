@@ -315,7 +315,7 @@ fn section(
     }
     verdicts.extend(of_claims.into_iter().flatten());
     let amber = |reason: String| (Outcome::NoReference, reason);
-    let unknown = || amber("the files do not tell the time step (--dt gives it)".to_owned());
+    let unknown = || amber("the files do not tell the time step (--time-step gives it)".to_owned());
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
     let of_ours = plan.and_then(|plan| against_ours(&candidate.scene, plan).map_err(amber));
     let (verdicts_of_ours, figures) = match of_ours {

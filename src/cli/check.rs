@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     log: Option<PathBuf>,
     /// Time step in seconds, if neither dump nor log contains it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
-    dt: Option<f64>,
+    time_step: Option<f64>,
     /// Time between files or frames in seconds, if their numbers count frames and nothing gives their times.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     frame_interval: Option<f64>,
@@ -142,7 +142,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         files: arguments.dump.clone(),
         log: arguments.log.clone().or_else(beside),
         names: Names(arguments.map.clone()),
-        time_step: arguments.dt,
+        time_step: arguments.time_step,
         frame_interval: arguments.frame_interval,
         most_rows: Some(most_rows(&subject)?),
         partial: arguments.partial,

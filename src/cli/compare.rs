@@ -38,10 +38,10 @@ pub(crate) struct Arguments {
     map: Vec<(String, String)>,
     /// Time step in seconds, one for both or one for each, for files without times.
     #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
-    dt: Vec<f64>,
+    time_step: Vec<f64>,
     /// Accept samples that exist in one file only: amber instead of red. The whole frames of a truncated file are compared.
-    #[arg(long, visible_alias = "partial")]
-    allow_missing: bool,
+    #[arg(long)]
+    partial: bool,
     /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
@@ -56,17 +56,17 @@ pub(crate) struct Arguments {
 /// Compares the outputs and writes the report.
 pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    if arguments.dt.len() > 2 {
-        let found = arguments.dt.len();
+    if arguments.time_step.len() > 2 {
+        let found = arguments.time_step.len();
         return Err(Fault::input(format!(
-            "--dt: expected one time step for both files or one for each, found {found}"
+            "--time-step: expected one time step for both files or one for each, found {found}"
         )));
     }
     let options = comparison::Options {
         columns: arguments.columns.clone(),
         names: Names(arguments.map.clone()),
-        time_steps: [arguments.dt.first().copied(), arguments.dt.last().copied()],
-        partial: arguments.allow_missing,
+        time_steps: [arguments.time_step.first().copied(), arguments.time_step.last().copied()],
+        partial: arguments.partial,
     };
     let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(unreadable)?;
     check_writable(&arguments.out)?;
@@ -136,7 +136,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
                differences of rounding have grown."
             .to_owned(),
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
-        verdicts: shared(comparison, arguments.allow_missing, &a, &b)
+        verdicts: shared(comparison, arguments.partial, &a, &b)
             .into_iter()
             .chain(comparison.differences.iter().map(|of| row(of, comparison.key, arguments.tolerance, &a, &b)))
             .chain(lonely(comparison, &a, &b))
@@ -155,7 +155,7 @@ fn counts(comparison: &Comparison) -> String {
 }
 
 /// Returns the results for coverage: the number of compared samples, and the last of them.
-fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Verdict; 2] {
+fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict; 2] {
     let unit = if comparison.key == Key::Time { "s" } else { "1" };
     let row = |quantity: String, unit: &str, value: f64, least: f64, slack: f64| {
         let scale = if least > 0.0 { least } else { 1.0 };
@@ -168,8 +168,8 @@ fn shared(comparison: &Comparison, allow_missing: bool, a: &str, b: &str) -> [Ve
             ..Verdict::open("compare", quantity, unit)
         };
         let row = row.judged(&Measured::new(value, Expected::Bound(Bound::AtLeast(least)), scale));
-        if row.outcome == verdict::Outcome::Fail && allow_missing {
-            return row.left(verdict::Outcome::Known, "missing samples are meant (--allow-missing)");
+        if row.outcome == verdict::Outcome::Fail && partial {
+            return row.left(verdict::Outcome::Known, "missing samples are meant (--partial)");
         }
         row
     };

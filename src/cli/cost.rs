@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
     /// Include points that take more than twenty seconds.
-    #[arg(long, alias = "rungs", value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
+    #[arg(long, value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     pub(crate) levels: String,
     /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains. Without named
     /// cases these are always measured.
@@ -39,13 +39,13 @@ pub(crate) struct Arguments {
     pub(crate) prices: bool,
     /// Measure finished points again.
     #[arg(long)]
-    fresh: bool,
+    no_cache: bool,
     /// Compare with an earlier `results.json`: counts exactly, times within their spread.
     #[arg(long, value_name = "OLD.json")]
     against: Option<PathBuf>,
     /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
-    keep: bool,
+    update_stored: bool,
     /// Directory for the report and the finished points.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     pub(crate) out: PathBuf,
@@ -63,7 +63,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let (solvers, named) = WithStrangers::read(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("points"), arguments.fresh).map_err(Fault::writing)?;
+    let cache = ResultCache::open(&arguments.out.join("points"), arguments.no_cache).map_err(Fault::writing)?;
     let wanted = Wanted { solvers: named, all: arguments.levels == "all", counts: false };
     let meter = Meter::new(&cache, wanted, &solvers);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
@@ -100,7 +100,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         set_against(&mut study, old, path);
     }
     write_study(&arguments.out, &study).map_err(Fault::writing)?;
-    if arguments.keep {
+    if arguments.update_stored {
         keep_study("cost", &study)?;
     }
     let reused = follower.end();

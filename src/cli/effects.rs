@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     yours: Yours,
     /// Repeat finished parts.
     #[arg(long)]
-    fresh: bool,
+    no_cache: bool,
     /// Directory for the report and the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
@@ -90,7 +90,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     }
     let mut ledgers = ledgers(&arguments.cases)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.no_cache).map_err(Fault::writing)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let pieces: usize = ledgers.iter().map(|(_, pieces)| pieces.len()).sum();

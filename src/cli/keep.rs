@@ -1,5 +1,5 @@
-//! Stored results. `run --keep` stores the results of an external solver next to its manifest, and `--as-kept` compares
-//! with them. `cost --keep` and `stability --keep` store a study in the source tree.
+//! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and `--expect-stored` compares
+//! with them. `cost --update-stored` and `stability --update-stored` store a study in the source tree.
 
 use super::exit::Fault;
 use super::select::Selected;
@@ -18,17 +18,21 @@ const UNKNOWN: &str = "not told";
 pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
     let mut programs = selected.iter().map(|of| of.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
-        return Err(Fault::input("--keep: expected one program by its manifest, found a solver of ours"));
+        return Err(Fault::input("--update-stored: expected one program by its manifest, found a solver of ours"));
     };
     let is_it = |other: Option<&Outside>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
-    if programs.all(is_it) { Ok(program) } else { Err(Fault::input("--keep: expected one program, found several")) }
+    if programs.all(is_it) {
+        Ok(program)
+    } else {
+        Err(Fault::input("--update-stored: expected one program, found several"))
+    }
 }
 
 /// Reads the stored results of an external solver.
 pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
     let path = program.folder().join(KEEPS);
     let wrong = |found: String| {
-        Fault::input(format!("{KEEPS} beside the manifest: expected what `--keep` leaves, found {found}"))
+        Fault::input(format!("{KEEPS} beside the manifest: expected what `--update-stored` leaves, found {found}"))
     };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     Judged::read(&text).map_err(|error| wrong(error.to_string()))

@@ -27,7 +27,7 @@ pub(crate) struct Keep {
     cases: Vec<String>,
     /// Repeat also the runs with a valid stored result.
     #[arg(long)]
-    anew: bool,
+    no_cache: bool,
     /// Include full-scale runs, which take hours.
     #[arg(long)]
     paper_size: bool,
@@ -93,7 +93,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
                 words: format!("{} ({} of {} runs)", one.id, place + 1, wanted.len()),
                 interrupt: &interrupt,
             };
-            let said = if !arguments.anew && one.is_there(&keeping.given) {
+            let said = if !arguments.no_cache && one.is_there(&keeping.given) {
                 "there"
             } else {
                 match keeping.done() {

@@ -33,13 +33,14 @@ mod schema;
 mod select;
 mod simulate;
 mod solver;
+mod spelling;
 mod stability;
 mod step;
 mod strangers;
 mod subject;
 mod value;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::Fault;
 use grainbench::lanes::Processor;
 use std::process::ExitCode;
@@ -49,15 +50,12 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_
 
 /// Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
 ///
-/// Runs benchmark cases, judges their claims and writes a report. Without a command it runs all cases, with the options
-/// below.
+/// `grainbench run` runs benchmark cases, judges their claims and writes a report.
 #[derive(Parser)]
-#[command(name = "grainbench", version = VERSION, args_conflicts_with_subcommands = true)]
+#[command(name = "grainbench", version = VERSION, arg_required_else_help = true)]
 struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
-    #[command(flatten)]
-    run: run::Options,
+    command: Command,
 }
 
 #[derive(Subcommand)]
@@ -104,41 +102,71 @@ enum Command {
     /// Make the page and figures of a stored report or simulation, without running a solver.
     Report(report::Arguments),
     /// Print the completion script of a shell.
+    #[command(hide = true)]
     Completions(completions::Arguments),
     /// Print the manual page, or write one for each command to a directory.
+    #[command(hide = true)]
     Man(completions::ManArguments),
+}
+
+/// Commands by task, in the order of the help.
+const GROUPS: [(&str, &[&str]); 5] = [
+    ("Judge solvers with the cases", &["run", "conform", "list"]),
+    ("Judge output of other programs", &["check", "compare", "deck", "fields"]),
+    ("Simulate", &["simulate", "scene", "schema", "report"]),
+    ("Cost, stability, effects", &["cost", "stability", "effects", "race"]),
+    ("Long work and stored runs", &["plan", "work", "status", "collect", "reference"]),
+];
+
+/// Returns the command line, whose help lists the commands by task.
+fn grouped() -> clap::Command {
+    let command = Cli::command();
+    let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
+    let line = |of: &clap::Command| format!("  {:<11}{}\n", of.get_name(), of.get_about().unwrap_or_default());
+    let mut text = String::new();
+    for (task, names) in GROUPS {
+        let lines = names.iter().filter_map(|name| command.find_subcommand(name)).map(line);
+        text += &format!("{task}:\n{}\n", lines.collect::<String>());
+    }
+    let others = command.get_subcommands().filter(|of| !of.is_hide_set() && !is_grouped(of.get_name()));
+    let others: String = others.map(line).collect();
+    if !others.is_empty() {
+        text += &format!("Others:\n{others}\n");
+    }
+    let template = format!("{{about-section}}\n{{usage-heading}} {{usage}}\n\n{text}Options:\n{{options}}\n");
+    command.help_template(template)
 }
 
 /// Parses the command line, runs the command and returns its exit code.
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let matches = grouped().get_matches_from(spelling::present(std::env::args_os()));
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if let Err(reason) = Processor::forced() {
         return Fault::input(reason).report();
     }
     let done = match cli.command {
-        None => run::run(&[], &cli.run),
-        Some(Command::List(arguments)) => list::list(&arguments),
-        Some(Command::Run(arguments)) => run::run(&arguments.cases, &arguments.options),
-        Some(Command::Simulate(arguments)) => simulate::simulate(&arguments),
-        Some(Command::Deck(arguments)) => deck::deck(&arguments),
-        Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Fields(arguments)) => fields::fields(&arguments),
-        Some(Command::Compare(arguments)) => compare::compare(&arguments),
-        Some(Command::Cost(arguments)) => cost::cost(&arguments),
-        Some(Command::Stability(arguments)) => stability::stability(&arguments),
-        Some(Command::Effects(arguments)) => effects::effects(&arguments),
-        Some(Command::Plan(arguments)) => campaign::plan::plan(&arguments),
-        Some(Command::Work(arguments)) => campaign::work::work(&arguments),
-        Some(Command::Status(arguments)) => campaign::status::status(&arguments),
-        Some(Command::Collect(arguments)) => campaign::collect::collect(&arguments),
-        Some(Command::Race(arguments)) => race::race(&arguments),
-        Some(Command::Reference(command)) => reference::reference(&command),
-        Some(Command::Conform(arguments)) => conform::conform(&arguments),
-        Some(Command::Scene(arguments)) => scene::scene(&arguments),
-        Some(Command::Schema(arguments)) => schema::schema(&arguments),
-        Some(Command::Report(arguments)) => report::report(&arguments),
-        Some(Command::Completions(arguments)) => completions::completions(&arguments, Cli::command()),
-        Some(Command::Man(arguments)) => completions::man(&arguments, Cli::command()),
+        Command::List(arguments) => list::list(&arguments),
+        Command::Run(arguments) => run::run(&arguments.cases, &arguments.options),
+        Command::Simulate(arguments) => simulate::simulate(&arguments),
+        Command::Deck(arguments) => deck::deck(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Fields(arguments) => fields::fields(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Stability(arguments) => stability::stability(&arguments),
+        Command::Effects(arguments) => effects::effects(&arguments),
+        Command::Plan(arguments) => campaign::plan::plan(&arguments),
+        Command::Work(arguments) => campaign::work::work(&arguments),
+        Command::Status(arguments) => campaign::status::status(&arguments),
+        Command::Collect(arguments) => campaign::collect::collect(&arguments),
+        Command::Race(arguments) => race::race(&arguments),
+        Command::Reference(command) => reference::reference(&command),
+        Command::Conform(arguments) => conform::conform(&arguments),
+        Command::Scene(arguments) => scene::scene(&arguments),
+        Command::Schema(arguments) => schema::schema(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
+        Command::Completions(arguments) => completions::completions(&arguments, Cli::command()),
+        Command::Man(arguments) => completions::man(&arguments, Cli::command()),
     };
     done.unwrap_or_else(|fault: Fault| fault.report())
 }

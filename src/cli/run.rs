@@ -56,15 +56,15 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
     /// Select resolution levels: `default`, `all`, or names such as `dt=.1`.
-    #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
+    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
     /// Select rows by quantity, source (substring or pattern), evidence or outcome; filters of one key are alternatives. A filter
     /// by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
     /// Repeat only the failed claims and controls of the report in `--out`, and what an interrupted run left out.
-    #[arg(long, conflicts_with = "keep")]
-    rerun_failed: bool,
+    #[arg(long, conflicts_with = "update_stored")]
+    retry_failed: bool,
     /// Print the rows and controls whose outcome differs from this earlier report.
     #[arg(long, value_name = "DIR|results.json")]
     against: Option<PathBuf>,
@@ -89,16 +89,16 @@ pub(crate) struct Options {
     pub(crate) strict: bool,
     /// Ignore the cache of finished runs.
     #[arg(long)]
-    fresh: bool,
+    no_cache: bool,
     /// Skip the negative controls.
     #[arg(long)]
     pub(crate) no_controls: bool,
     /// Store the results of an external solver in `judged.json` next to its manifest; needs all cases and all controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
-    keep: bool,
+    update_stored: bool,
     /// Expect the outcomes stored next to the manifest: only a different outcome is red.
-    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "keep"])]
-    as_kept: bool,
+    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored"])]
+    expect_stored: bool,
     /// Threads of each run; the results have the same bits for any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
@@ -123,18 +123,18 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         refuse_without_use(&selected, folder)?;
     }
     check_writable(&options.out)?;
-    let kept = if options.as_kept { Some(keep::read(keep::program(&selected)?)?) } else { None };
-    if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.keep) {
-        return Err(Fault::input(format!("--keep: expected all cases, found `{part}` named")));
+    let kept = if options.expect_stored { Some(keep::read(keep::program(&selected)?)?) } else { None };
+    if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.update_stored) {
+        return Err(Fault::input(format!("--update-stored: expected all cases, found `{part}` named")));
     }
-    let keeping = if options.keep { Some(keep::program(&selected)?) } else { None };
+    let keeping = if options.update_stored { Some(keep::program(&selected)?) } else { None };
     let start = Instant::now();
     let thorough = options.levels.iter().any(|level| level == "all");
     let interrupt = Interrupt::listen();
-    let cache = cache::open(options.fresh);
+    let cache = cache::open(options.no_cache);
     let (mut sections, left) = judge(&selected, options, thorough, cache.as_ref(), &interrupt);
     // Conformance belongs to the whole registry, and not to a single case.
-    let is_whole = cases.is_empty() && options.filter.is_empty() && !options.rerun_failed;
+    let is_whole = cases.is_empty() && options.filter.is_empty() && !options.retry_failed;
     if is_whole && (options.levels.is_empty() || thorough) && left == 0 {
         sections.extend(conform::section(&options.solver, cache.as_ref())?);
     }
@@ -153,7 +153,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let mut report = report(provenance, sections, is_whole && options.solver.is_empty())?;
     if let Some(program) = keeping {
         if left > 0 {
-            return Err(Fault::input(format!("--keep: expected a whole run, found {left} checks left out")));
+            return Err(Fault::input(format!("--update-stored: expected a whole run, found {left} checks left out")));
         }
         keep(program, &report)?;
     }
@@ -161,7 +161,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     if left > 0 {
         report.red_because.push(interrupted(left));
     }
-    add_reasons(&mut report, is_mute, options.strict && !options.as_kept);
+    add_reasons(&mut report, is_mute, options.strict && !options.expect_stored);
     let otherwise = match &kept {
         Some(kept) => otherwise_than_kept(keep::program(&selected)?, kept, &report),
         None => Vec::new(),
@@ -244,10 +244,10 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     Ok(Report { provenance, sections, judged, shown: Vec::new(), measured, red_because: Vec::new() })
 }
 
-/// Removes claims that the filters exclude. With `--rerun-failed`, it also removes claims that were not red in the
+/// Removes claims that the filters exclude. With `--retry-failed`, it also removes claims that were not red in the
 /// report in `--out`.
 pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
-    let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
+    let before = if options.retry_failed { Some(Earlier::read("--retry-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
         let case = of_case.case.name;
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
@@ -267,7 +267,7 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
     }
     selected.retain(|of_case| !of_case.claims.is_empty());
     if selected.is_empty() {
-        let what = if options.rerun_failed { "that failed there" } else { "that the filters mean" };
+        let what = if options.retry_failed { "that failed there" } else { "that the filters mean" };
         return Err(Fault::input(format!("expected at least one gate {what}, found none")));
     }
     Ok(())
@@ -326,8 +326,8 @@ pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
         words.push("--data".to_owned());
     }
     words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
-    if options.rerun_failed {
-        words.push("--rerun-failed".to_owned());
+    if options.retry_failed {
+        words.push("--retry-failed".to_owned());
     }
     words
 }
@@ -406,13 +406,8 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
         }
         Task::Control(_, gate) => {
             let gate_of = &at.selected.claims[gate];
-            let is_tried = || {
-                at.selected.stranger.is_none() || {
-                    let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
-                    at.runner.tries_control(gate_of, verdict)
-                }
-            };
-            if at.runner.is_available(gate_of) && is_tried() {
+            let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
+            if at.runner.tries_control(gate_of, verdict) {
                 at.controls[gate].get_or_init(|| at.runner.control(gate_of));
             }
         }

@@ -39,10 +39,10 @@ pub(crate) struct Arguments {
     pub(crate) solver: Vec<String>,
     /// Repeat finished parts.
     #[arg(long)]
-    fresh: bool,
+    no_cache: bool,
     /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
-    keep: bool,
+    update_stored: bool,
     /// Directory for the report and the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     pub(crate) out: PathBuf,
@@ -66,7 +66,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let strangers = solvers.names();
     let pieces = select(&arguments.cases, [&named, &strangers], &assemblies, &hard)?;
     check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.fresh).map_err(Fault::writing)?;
+    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.no_cache).map_err(Fault::writing)?;
     let program = identity::of_this_program();
     let start = Instant::now();
     let mut written = start;
@@ -88,7 +88,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
             written = Instant::now();
         }
     }
-    if arguments.keep {
+    if arguments.update_stored {
         keep_study("stability", &study)?;
     }
     let reused = follower.end();

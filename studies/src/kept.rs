@@ -1,10 +1,10 @@
-//! Stored studies of `cost --keep` and `stability --keep` in this crate's folder.
+//! Stored studies of `cost --update-stored` and `stability --update-stored` in this crate's folder.
 
 use std::path::{Path, PathBuf};
 
-/// Stored result of `cost --keep`.
+/// Stored result of `cost --update-stored`.
 pub const COST: &str = include_str!("../kept/cost.json");
-/// Stored result of `stability --keep`.
+/// Stored result of `stability --update-stored`.
 pub const STABILITY: &str = include_str!("../kept/stability.json");
 
 /// Returns the path of a stored study.

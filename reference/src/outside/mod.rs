@@ -52,7 +52,7 @@ const FOR_VERSION: Duration = Duration::from_secs(20);
 const FOR_PREPARATION: Duration = Duration::from_secs(1800);
 /// Maximum size of the text that a program prints (B).
 const MOST_PRINTED: u64 = 16 << 20;
-/// Stored results, which `run --keep` writes next to the manifest.
+/// Stored results, which `run --update-stored` writes next to the manifest.
 const KEPT: &str = "judged.json";
 /// Largest number of files in the folder of a manifest.
 const MOST_FILES: usize = 10_000;

@@ -90,7 +90,7 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
             "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. "
             "Times are of the stepping "
             "loop. Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
-            "; " code { "grainbench cost --keep" } " does it again, for the report of all cases too."
+            "; " code { "grainbench cost --update-stored" } " does it again, for the report of all cases too."
             @if !stamp.changed.is_empty() {
                 " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same."
             }

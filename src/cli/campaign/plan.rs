@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
     /// Resolution levels for `run`; for `cost`, `all` includes points that take more than twenty seconds.
-    #[arg(long, alias = "rungs", value_name = "default|all|NAME,…", value_delimiter = ',')]
+    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
     /// Filter for `run`, as its option `--filter`.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…")]

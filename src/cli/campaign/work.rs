@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     jobs: Option<u16>,
     /// Repeat failed tasks.
     #[arg(long, conflicts_with = "on")]
-    again: bool,
+    retry_failed: bool,
     /// Submit the chunks to a batch system instead of working here.
     #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
     on: Option<String>,
@@ -64,7 +64,7 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
         (None, false) => cores(),
     };
     let told = Arc::new(Told { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
-    let asked = Asked { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.again };
+    let asked = Asked { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.retry_failed };
     let worker = worker();
     let watch = Arc::<Told>::clone(&told);
     let done = do_chunk(&plan, &asked, &worker, watch, &|tasks, desk| {

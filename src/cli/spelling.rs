@@ -1,0 +1,37 @@
+//! Old spellings of options. They are accepted until the next version, with a note.
+
+use super::exit;
+use std::ffi::OsString;
+
+/// Old and present spelling of each renamed option.
+const RENAMED: [(&str, &str); 9] = [
+    ("--again", "--retry-failed"),
+    ("--allow-missing", "--partial"),
+    ("--anew", "--no-cache"),
+    ("--as-kept", "--expect-stored"),
+    ("--dt", "--time-step"),
+    ("--fresh", "--no-cache"),
+    ("--keep", "--update-stored"),
+    ("--rerun-failed", "--retry-failed"),
+    ("--rungs", "--levels"),
+];
+
+/// Returns the arguments in their present spelling, and prints a note for each old spelling. Arguments after `--` belong to
+/// another program.
+pub(super) fn present(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut is_ours = true;
+    let current = |argument: OsString| {
+        is_ours &= argument != "--";
+        let present = argument.to_str().filter(|_| is_ours).and_then(renamed);
+        present.map_or(argument, OsString::from)
+    };
+    arguments.map(current).collect()
+}
+
+/// Returns the present spelling of an argument with an old one, which may have its value after `=`.
+fn renamed(argument: &str) -> Option<String> {
+    let (option, value) = argument.split_at(argument.find('=').unwrap_or(argument.len()));
+    let (old, new) = RENAMED.iter().find(|(old, _)| *old == option)?;
+    exit::say("note", &format!("`{old}` is now `{new}`; the next version will not accept the old spelling"));
+    Some(format!("{new}{value}"))
+}
