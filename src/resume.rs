@@ -3,6 +3,7 @@
 use crate::reports::write_file;
 use crate::scene::brief::Brief;
 use crate::scene::checkpoint::{Checkpoint, CheckpointError};
+use crate::scene::end_state::EndState;
 use crate::scene::record::{Record, Remains, Snapshot};
 use crate::scene::scene::Scene;
 use crate::scene::solver::{Ahead, NotStored, Resolution, RunError, Solver, Watch};
@@ -102,6 +103,14 @@ impl Watch for Resumable<'_> {
 
     fn keeps_snapshots(&self) -> bool {
         self.watch.keeps_snapshots()
+    }
+
+    fn wants_end_state(&self) -> bool {
+        self.watch.wants_end_state()
+    }
+
+    fn end_state(&mut self, state: EndState) {
+        self.watch.end_state(state);
     }
 
     fn is_over(&self) -> bool {

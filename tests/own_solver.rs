@@ -10,7 +10,11 @@ use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::control::Wrong;
 use grainbench::harness::run::Set;
+use grainbench::harness::verdict::Outcome;
 use grainbench::own::NotJudged;
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
@@ -38,6 +42,31 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
     for convention in [Convention::LAMMPS, Convention::LIGGGHTS] {
         assert!(grainbench::judge(Dem::new(convention), &TURNING).unwrap().require().is_err(), "{}", convention.name);
     }
+}
+
+/// Solver that panics.
+struct Panics;
+
+impl Solver for Panics {
+    fn name(&self) -> String {
+        "panics".to_owned()
+    }
+
+    fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+        panic!("index out of bounds")
+    }
+}
+
+/// All other results are still reported.
+#[test]
+fn a_panic_is_a_broken_result() {
+    let judged = grainbench::judge(Panics, &["backspin"]).unwrap();
+    assert!(!judged.verdicts.is_empty() && !judged.controls.is_empty());
+    for row in &judged.verdicts {
+        assert_eq!(row.outcome, Outcome::Broken, "{row:?}");
+        assert_eq!(row.detail.as_deref(), Some("our program failed: index out of bounds"));
+    }
+    assert!(judged.controls.iter().all(|control| !control.turned_red), "{:?}", judged.controls);
 }
 
 /// A control cannot replace an external solver by another solver or plant a defect in it.

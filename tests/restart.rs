@@ -12,6 +12,7 @@ use grainbench::harness::case::Case;
 use grainbench::harness::run::Done;
 use grainbench::resume::{self, Place};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};
 use grainbench::scene::solver::{Resolution, RunError, Watch};
@@ -92,6 +93,7 @@ fn every_case_continues_to_the_same_bits() {
 struct Impatient {
     until: u64,
     done: u64,
+    end: Option<EndState>,
 }
 
 impl Watch for Impatient {
@@ -100,6 +102,12 @@ impl Watch for Impatient {
     }
     fn is_over(&self) -> bool {
         self.done >= self.until
+    }
+    fn wants_end_state(&self) -> bool {
+        true
+    }
+    fn end_state(&mut self, state: EndState) {
+        self.end = Some(state);
     }
 }
 
@@ -124,8 +132,10 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let path = directory.path().join("run.checkpoint");
     let place = Place { path: &path, every: 300 };
     let go = |from: Option<&Checkpoint>, until: u64| {
-        let mut watch = Impatient { until, done: 0 };
-        resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch)
+        let mut watch = Impatient { until, done: 0, end: None };
+        let record = resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch);
+        assert!(record.is_err() || watch.end.is_some(), "the final state of a resumed run");
+        record
     };
     let stored = || Checkpoint::from_bytes(&std::fs::read(&path).unwrap()).unwrap();
     let mut from = None;
@@ -142,7 +152,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
     let mut other = scene.clone();
     other.gravity *= 2.0;
-    let mut watch = Impatient { until: u64::MAX, done: 0 };
+    let mut watch = Impatient { until: u64::MAX, done: 0, end: None };
     let refused = resume::run(solver.as_ref(), &other, &run.resolution, Some(&theirs), place, &mut watch);
     assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }

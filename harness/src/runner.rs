@@ -15,6 +15,7 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Method, Resolution, RunError, Solver};
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
@@ -182,9 +183,14 @@ impl Runner {
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
     }
 
-    /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported.
+    /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported. A panic
+    /// is a broken result, so that all other results are reported.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
+        unless_panicked(|| self.judged(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
+    }
+
+    fn judged(&self, claim: &Claim) -> Verdict {
         let row = self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect());
         if row.outcome != Outcome::Pass {
             return row;
@@ -198,10 +204,14 @@ impl Runner {
         }
     }
 
-    /// Returns true if the control of a judged claim is to be run. An external solver skips it in two cases: the claim
-    /// is unsupported, or the solver cannot run the wrong physics.
+    /// Returns true if the control of a judged claim is to be run: all its runs are available. An external solver also skips
+    /// it in two cases: the claim is unsupported, or the solver cannot run the wrong physics.
     #[must_use]
     pub fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
+        self.is_available(claim) && self.has_control(claim, verdict)
+    }
+
+    fn has_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
         self.stranger.is_none() || verdict.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
     }
 
@@ -215,11 +225,13 @@ impl Runner {
         if asked { claim.runs.iter().find_map(wrong) } else { None }
     }
 
-    /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs.
+    /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs. A
+    /// panic is a control that did not fail by value.
     #[must_use]
     pub fn control(&self, claim: &Claim) -> Control {
         let start = Instant::now();
-        let row = self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
+        let under = || self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
+        let row = unless_panicked(under).unwrap_or_else(|reason| self.crashed(claim, reason));
         let (standing, outcome) = (claim.standing(), row.outcome);
         let control = Control::of(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
         match standing {
@@ -455,11 +467,17 @@ impl Runner {
         Some(if found < claim.tolerance.up_to { (found, tolerance::Made::Estimated) } else { stated })
     }
 
-    /// Returns the result of a claim from its runs.
-    fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
+    /// Returns the broken result of a claim at which our program panicked.
+    #[must_use]
+    pub fn crashed(&self, claim: &Claim, reason: String) -> Verdict {
+        let tolerance = &claim.tolerance;
+        self.row(claim, Some((tolerance.of(&[]), tolerance.made))).left(Outcome::Broken, reason)
+    }
+
+    /// Returns the result of a claim that is not judged yet, with its tolerance and the origin of the tolerance.
+    fn row(&self, claim: &Claim, allowed: Option<(f64, tolerance::Made)>) -> Verdict {
         let first = claim.runs.first();
-        let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
-        let row = Verdict {
+        Verdict {
             variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
             solver: first.map_or_else(String::new, |run| self.solver_name(run)),
             resolution: claim.resolution(),
@@ -469,7 +487,13 @@ impl Runner {
             evidence: claim.evidence(),
             source: claim.source.words(),
             ..Verdict::open(self.case.name, claim.quantity.clone(), claim.unit)
-        };
+        }
+    }
+
+    /// Returns the result of a claim from its runs.
+    fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
+        let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
+        let row = self.row(claim, allowed);
         match done {
             Err(error) => row.ended(&error),
             Ok(_) if allowed.is_none() => {
@@ -498,7 +522,7 @@ impl Runner {
             return row.left(
                 Outcome::Outdated,
                 format!(
-                    "the stored run has other solver sources; `grainbench reference keep {case} --anew` repeats it"
+                    "the stored run has other solver sources; `grainbench reference keep {case} --no-cache` repeats it"
                 ),
             );
         }
@@ -517,6 +541,15 @@ impl Runner {
         }
         row
     }
+}
+
+/// Calls a function. If it panics, the error is the message of the panic.
+fn unless_panicked<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|reason| {
+        let words = reason.downcast_ref::<String>().map(String::as_str);
+        let words = words.or_else(|| reason.downcast_ref::<&str>().copied());
+        format!("our program failed: {}", words.unwrap_or("without a message"))
+    })
 }
 
 /// Changes the tables of a run.

@@ -28,7 +28,7 @@ use grainbench::harness::conformance;
 use grainbench::harness::run::Run;
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
-use grainbench::harness::verdict::{self, Verdict};
+use grainbench::harness::verdict;
 use grainbench::reports::results::results_json;
 use grainbench::reports::{RunCost, Section, summary_table, write_report, write_report_and_parquet};
 use grainbench::studies::cost::knobs::nominal_seconds;
@@ -203,7 +203,7 @@ fn files_of(selected: &Selected) -> Result<Vec<PathBuf>, Fault> {
 fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (State, Part) {
     let claim = &selected.claims[gate];
     let verdict = runner.judge(claim);
-    let tried = controls && runner.is_available(claim) && runner.tries_control(claim, &verdict);
+    let tried = controls && runner.tries_control(claim, &verdict);
     let control = tried.then(|| runner.control(claim));
     // A solver that is missing now may be available in a later attempt.
     let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
@@ -239,23 +239,6 @@ fn in_short(part: Part) -> Part {
     let nothing = String::new;
     let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
     Part { section, ..part }
-}
-
-/// Returns the result of a task at which our program panicked.
-fn crashed(selected: &Selected, gate: usize, detail: String) -> Verdict {
-    let claim = &selected.claims[gate];
-    let first = claim.runs.first();
-    let row = Verdict {
-        variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
-        solver: first.map_or_else(String::new, |run| run.solver.to_owned()),
-        resolution: claim.resolution(),
-        allowed: claim.tolerance.of(&[]),
-        because: claim.tolerance.because.clone(),
-        evidence: claim.evidence(),
-        source: claim.source.words(),
-        ..Verdict::open(selected.case.name, claim.quantity.clone(), claim.unit)
-    };
-    row.left(verdict::Outcome::Broken, detail)
 }
 
 impl Study for OfRun {
@@ -363,7 +346,9 @@ impl Study for OfRun {
                 (Came::Out(part), _) => part,
                 (Came::Nothing, _) => continue,
                 (Came::Crash(detail), Piece::Row(at, gate)) => {
-                    sections[at].verdicts.push(crashed(&self.selected[at], gate, detail));
+                    let selected = &self.selected[at];
+                    let runner = run::runner(selected, &self.options, self.thorough, cache::solvers(None));
+                    sections[at].verdicts.push(runner.crashed(&selected.claims[gate], detail));
                     continue;
                 }
                 (Came::Crash(detail), _) => {
