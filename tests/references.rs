@@ -10,6 +10,7 @@ use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
 use grainbench::cases::uncertainty::{self, Stored};
 use grainbench::harness::claim::Claim;
+use grainbench::harness::run::Standing;
 use grainbench::harness::tolerance::Made;
 use grainbench::reference::deck::Program;
 use grainbench::reference::stored::{StoredRun, folder};
@@ -43,6 +44,19 @@ fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
         let stored = std::fs::read_to_string(uncertainty::file(case.name)).unwrap_or_default();
         let stored: Stored = toml::from_str(&stored).unwrap_or_default();
         assert_eq!(stored.estimate.len(), claims.len(), "{}", case.name);
+    }
+}
+
+/// A known error without a second bound would hide any larger error.
+#[test]
+fn every_known_error_has_a_second_bound() {
+    for case in CASES {
+        for claim in (case.claims)() {
+            if matches!(claim.standing(), Standing::Known(_)) {
+                let bound = claim.runs[0].known_up_to;
+                assert!(bound.is_finite() && bound > 0.0, "{} · {}: {bound}", case.name, claim.quantity);
+            }
+        }
     }
 }
 

@@ -120,7 +120,7 @@ pub(super) fn claims() -> Vec<Claim> {
                     refinement";
     claims.push(
         claim("arrival of stress in disc 4, 80 cells a diameter", "d/c")
-            .of(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).long())
+            .of(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).up_to(5.0).long())
             .equals_cited(ARRIVAL_IN_DISC_4, 1.0, |done| arrival(&done[0], 4))
             .within(judged(0.2, "what springs at the surface reach at this resolution"))
             .refuses(Control::without_the_error("springs at the surface", BEST, grid(40.0, 2))),

@@ -38,7 +38,9 @@ pub(super) fn claims() -> Vec<Claim> {
             .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
         claim("F_V at stage B over that at stage A, walls at rest, 50 elastic discs", "1")
-            .of(alone().known("forces decay at rest, more slowly with time and with more points per cell (derivation)"))
+            .of(alone()
+                .known("forces decay at rest, more slowly with time and with more points per cell (derivation)")
+                .up_to(0.02))
             .holds("elastic discs at rest go on bearing what they bear", |done| {
                 let [a, b] = vertical(&done[0])?;
                 Ok(Measured::new(b / a, 1.0, 1.0))

@@ -77,7 +77,7 @@ fn claims() -> Vec<Claim> {
         let perturbed = [long(lammps[0]).aside(), long(lammps[0]).adjusted(PERTURBED, move_one).aside()];
         [runs, perturbed].concat()
     };
-    let known = [long(liggghts[0]).known(STALE_STRETCH).slow(), long(liggghts[1])];
+    let known = [long(liggghts[0]).known(STALE_STRETCH).up_to(1e-4).slow(), long(liggghts[1])];
     let mut claims = vec![
         beginning(2000, lammps.map(short), other(liggghts[0])),
         beginning(85, liggghts.map(first), other(lammps[0])),
