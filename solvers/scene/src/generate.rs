@@ -83,7 +83,10 @@ pub fn random(
     for &radius in &sizes {
         let position = (0..TRIES).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
-            images(centre, domain, cell).into_iter().all(|image| taken.is_free(image, radius)).then_some(centre)
+            // Most positions are taken, so images are made only if the position itself is free.
+            let is_free = taken.is_free(centre, radius)
+                && images(centre, domain, cell)[1..].iter().all(|&image| taken.is_free(image, radius));
+            is_free.then_some(centre)
         });
         let position = position.ok_or_else(|| filled(sizes.iter().copied(), domain, dimension))?;
         taken.add(position, radius);
@@ -142,16 +145,14 @@ struct Taken {
     cell: f64,
     /// Number of layers of cells along z that are searched: 1 in the plane, 3 in space.
     layers: usize,
-    /// Last sphere of each bucket.
-    last: Vec<Option<u32>>,
-    /// Centre (m), radius (m), and the previous sphere of the same bucket.
-    spheres: Vec<(Vector3<f64>, f64, Option<u32>)>,
+    /// Centre (m) and radius (m) of the spheres in each bucket.
+    buckets: Vec<Vec<(Vector3<f64>, f64)>>,
 }
 
 impl Taken {
     fn new(cell: f64, most: usize, dimension: Dimension) -> Self {
         let layers = if dimension == Dimension::Two { 1 } else { 3 };
-        Self { cell, layers, last: vec![None; most.next_power_of_two()], spheres: Vec::with_capacity(most) }
+        Self { cell, layers, buckets: vec![Vec::new(); most.next_power_of_two()] }
     }
 
     /// Returns the cell of a position along each axis.
@@ -163,46 +164,36 @@ impl Taken {
     fn bucket(&self, cell: [i64; 3]) -> usize {
         const PRIMES: [i64; 3] = [0x9e37_79b1, 0x85eb_ca77, 0xc2b2_ae3d];
         let mixed = (0..3).fold(0, |mixed: i64, axis| mixed ^ cell[axis].wrapping_mul(PRIMES[axis]));
-        (mixed ^ (mixed >> 15)) as usize & (self.last.len() - 1)
+        (mixed ^ (mixed >> 15)) as usize & (self.buckets.len() - 1)
     }
 
     fn add(&mut self, centre: Vector3<f64>, radius: f64) {
         let bucket = self.bucket(self.cell_of(centre));
-        let number = self.spheres.len() as u32;
-        self.spheres.push((centre, radius, self.last[bucket].replace(number)));
+        self.buckets[bucket].push((centre, radius));
     }
 
     fn is_free(&self, centre: Vector3<f64>, radius: f64) -> bool {
-        // For very large coordinates, this keeps the indices of adjacent cells in range.
-        let [i, j, k] = self.cell_of(centre).map(|at| at.clamp(i64::MIN + 1, i64::MAX - 1));
-        // The cell itself comes first, because most overlaps occur there.
-        let beside = [0, -1, 1];
-        for dk in &beside[..self.layers] {
-            for dj in beside {
-                for di in beside {
-                    if self.overlaps_in([i + di, j + dj, k + dk], centre, radius) {
-                        return false;
-                    }
-                }
-            }
-        }
-        true
+        let cell = self.cell_of(centre);
+        // Cells along each axis: the cell itself and the nearer of its neighbours come first, because most overlaps
+        // occur there. For very large coordinates, the limits keep the indices in range.
+        let [i, j, k] = [0, 1, 2].map(|axis| {
+            let at = cell[axis].clamp(i64::MIN + 1, i64::MAX - 1);
+            let nearer = if centre[axis] / self.cell - (at as f64) < 0.5 { -1 } else { 1 };
+            [at, at + nearer, at - nearer]
+        });
+        k[..self.layers]
+            .iter()
+            .all(|&k| j.iter().all(|&j| i.iter().all(|&i| !self.overlaps_in([i, j, k], centre, radius))))
     }
 
     /// Returns true if a sphere overlaps one of the spheres in the bucket of a cell.
     fn overlaps_in(&self, cell: [i64; 3], centre: Vector3<f64>, radius: f64) -> bool {
         // Most spheres are farther apart than rounding, and need no square root.
         const ROUNDING: f64 = 1.0 + 1e-12;
-        let mut at = self.last[self.bucket(cell)];
-        while let Some(number) = at {
-            let (other, size, before) = &self.spheres[number as usize];
+        self.buckets[self.bucket(cell)].iter().any(|(other, size)| {
             let (between, reach) = (centre - other, radius + size);
-            if between.norm_squared() <= reach * reach * ROUNDING && between.norm() < reach {
-                return true;
-            }
-            at = *before;
-        }
-        false
+            between.norm_squared() <= reach * reach * ROUNDING && between.norm() < reach
+        })
     }
 }
 
