@@ -3,6 +3,7 @@
 #[path = "column.rs"]
 mod column;
 
+use crate::rows::bulk;
 use crate::rows::draws::apart;
 use crate::rows::programs::row;
 use column::{COLUMN, STEADY, side};
@@ -142,6 +143,8 @@ fn claims() -> Vec<Claim> {
         all.push(beside(variant, friction));
     }
     all.push(saturates());
+    let runs = ["dem:lammps", "lammps"].map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
+    all.push(bulk::beginning("position of a grain of the column over .12 √(d/g), worst", runs));
     all
 }
 

@@ -3,6 +3,7 @@
 #[path = "bulk.rs"]
 mod bulk;
 
+use crate::rows;
 use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::row;
 use bulk::BULK;
@@ -161,6 +162,8 @@ fn claims() -> Vec<Claim> {
         all.extend([FRICTION, PACKING, INERTIA].map(|quantity| scales(variant, about, quantity)));
         all.extend([FRICTION, PACKING].map(|quantity| beside(variant, about, quantity)));
     }
+    let runs = ["dem:lammps", "lammps"].map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
+    all.push(rows::bulk::beginning("position of a disc over .4 √(m/P), worst", runs));
     all
 }
 

@@ -14,7 +14,8 @@ pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
     let allowed = judged(1e-11, "the same cycle: order of sums; in units of its radius");
     let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
     row(quantity, "m", allowed, runs, control, |done| {
-        worst(done, &["one.x", "one.y", "one.z"], done[0].scene.grains[0].radius)
+        let axes = &["one.x", "one.y", "one.z"][..done[0].scene.dimension.count()];
+        worst(done, axes, done[0].scene.grains[0].radius)
     })
 }
 
