@@ -4,6 +4,7 @@ use crate::rows::programs::{PAIRS, row};
 use crate::sources::prototype::event_driven_gas::{COOLING_RATE, SPREAD};
 use grainbench_harness::course::samples;
 use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
@@ -145,6 +146,7 @@ fn claims() -> Vec<Claim> {
         let allowed = rounding(2.0, "the same cycle; of an energy twice that of velocities");
         let control = Control::ours("dashpots × 1.001 in ours", |scene| {
             scene.change_laws(|law| law.damping_ratio *= 1.001);
+            scene.duration = Duration::Seconds(FORETOLD);
         });
         let runs = pair.map(|solver| run(PLAIN, solver));
         let quantity = format!("kinetic energy over the first {FORETOLD} s, worst");

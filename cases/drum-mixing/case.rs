@@ -28,7 +28,7 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The published initial state is not part of the repository. Without it the claims that need it are \
-               `not-available`, and the other claims test 0.1 s of a small drum with little mixing. After 1 s the published \
+               `not-available`, and the other claims test 0.06 s of a small drum with little mixing. After 1 s the published \
                codes differ by more than 1 %, and nothing is tested.",
     levels: LEVELS,
     default_level: LEVELS[0],
@@ -161,7 +161,7 @@ fn beginning() -> Claim {
 
 /// Claims a time average from the time at which the bed moves with the drum.
 fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], control: Control) -> Claim {
-    bulk::mean(&format!("mean {words} from .03 to .1 s"), unit, (column, 0.03), runs, control)
+    bulk::mean(&format!("mean {words} from .03 to .06 s"), unit, (column, 0.03), runs, control)
 }
 
 /// Returns the figures: counts in zone 2 over time with those of the codes, if the published start is given;

@@ -2,6 +2,7 @@
 
 use crate::sources::prototype::two_elastic_discs::{ENERGY_OF_2000, OBLIQUE_SPIN, RESTITUTION};
 use grainbench_harness::prelude::*;
+use grainbench_scene::scene::Duration;
 use std::f64::consts::SQRT_2;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
@@ -101,6 +102,10 @@ fn claims() -> Vec<Claim> {
                 ))
                 .refuses(Control::scene("one disc faster by a millionth", |scene| {
                     scene.grains[0].velocity *= 1.0 + 1e-6;
+                    // The sum is wrong from the start.
+                    if let Duration::Seconds(time) = &mut scene.duration {
+                        *time *= 0.1;
+                    }
                 })),
         );
     }
@@ -190,7 +195,8 @@ fn oblique() -> Vec<Claim> {
             Run::new("oblique", "mpm", grid(16.0)).slow().known(
                 "the points' own spin, without resistance from neighbours, lets the surface layer yield along the contact: the \
                  spin does not converge to the reference",
-            ),
+            )
+            .up_to(0.05),
             "ΩR/v₀ after an oblique impact, μ = .9, 16 cells a radius",
             "what the prototype is certain of",
             Control::without_the_error("APIC, whose spin is the grid's", "mpm+apic", grid(16.0)),
