@@ -315,10 +315,10 @@ impl Silo {
     /// this one runs our solver.
     fn beginning(&self) -> Claim {
         let run = |solver| Run::new("beginning", solver, self.run.resolution);
-        let time: f64 = if self.run.set == Set::Long { 0.05 } else { 0.2 };
+        let time = if self.run.set == Set::Long { 0.05 } else { 0.2 };
         let allowed = rounding(
-            2.0 * (time / 0.033).exp(),
-            "order of sums, which grows by e every .033 τ; of an energy twice that of velocities",
+            2.0 * (0.2_f64 / 0.033).exp(),
+            "order of sums, which grows by e every .033 τ, up to .2 τ; of an energy twice that of velocities",
         );
         let control =
             Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));
