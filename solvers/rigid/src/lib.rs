@@ -17,6 +17,9 @@
 //! - restitution acts once, at the end of the step in which a contact first carries load, on the approach velocity at
 //!   the beginning of that step. A contact that carried load before is at rest and does not bounce, unless e = 1.
 //!   Grains that start in contact and at rest do not bounce;
+//! - a contact carries load up to one small step before the surfaces meet. If this is the last small step of a step,
+//!   restitution separates the grains before they meet, and a part of the friction impulse is missing. It happens in one
+//!   of `iterations` impacts for any Δt. `cases/separate-balls/derivation.md` gives the formula;
 //! - a contact point is fixed on its grain for a step: rotation lifts it by R(1 − cos ΩΔt), and the contact carries no
 //!   load until the grain has fallen back. With e = 1 it then bounces, which a resting grain should not do;
 //! - the correction towards zero overlap acts as a soft spring: at rest the overlap is g/(2πf)², f = 60 Hz at fixed
