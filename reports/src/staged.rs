@@ -135,8 +135,8 @@ impl StagedDir {
     /// Moves all files to the directory. Files of the same name are replaced, files of an earlier run are removed, and
     /// other files stay unchanged.
     ///
-    /// If a file cannot be moved, the files that were already moved are restored. During the commit the manifest states
-    /// that the directory is mixed. A lock excludes other processes.
+    /// If a file cannot be moved, the directory is restored. During the commit the manifest states that the directory
+    /// is mixed. A lock excludes other processes.
     ///
     /// # Errors
     /// When a file cannot be moved; all files are then unchanged.
@@ -175,33 +175,33 @@ impl StagedDir {
         self.refuse_others()?;
         let _lock = Lock::of(&self.target).map_err(at_target)?;
         after();
+        let mut moves = Moves { target: &self.target, holder: &holder, done: Vec::new() };
         if !self.manifest {
-            self.replace_files(&holder, after)?;
+            moves.undone_by_error(|moves| moves.replace_all(&self.files, after))?;
             self.made.clear();
             return Ok(());
         }
-        let before = Manifest::read(&self.target);
-        let stood = before.as_ref().map(|of| of.files.clone()).unwrap_or_default();
+        let stood = Manifest::read(&self.target).map(|before| before.files).unwrap_or_default();
+        let stale: Vec<PathBuf> = stood.iter().filter(|name| !self.names.contains(*name)).cloned().collect();
+        if keep {
+            manifest.files.extend(stale.iter().cloned());
+        }
         let both = stood.iter().chain(&self.files).cloned().collect();
-        Manifest { whole: false, files: both }.write(&self.target).map_err(at_target)?;
-        after();
-        if let Err(error) = self.replace_files(&holder, after) {
-            let _ = match before {
-                Some(before) => before.write(&self.target),
-                None => fs::remove_file(self.target.join(MANIFEST)),
-            };
-            return Err(error);
+        // Both manifests are written before a file is moved, because the disk may be full afterwards.
+        let [mixed, whole] = ["mixed", "whole"].map(|name| holder.join(name));
+        for (folder, manifest) in [(&mixed, &Manifest { whole: false, files: both }), (&whole, &manifest)] {
+            fs::create_dir(folder).and_then(|()| manifest.write(folder)).map_err(at_target)?;
         }
-        for left in stood.iter().filter(|name| !self.names.contains(*name)) {
-            if keep {
-                manifest.files.push(left.clone());
-            } else {
-                remove_within(&self.target, left);
-                after();
+        moves.undone_by_error(|moves| {
+            moves.replace(&mixed.join(MANIFEST), Path::new(MANIFEST), after)?;
+            moves.replace_all(&self.files, after)?;
+            for name in stale.iter().filter(|_| !keep) {
+                moves.remove(name, after)?;
             }
-        }
-        manifest.write(&self.target).map_err(at_target)?;
+            fs::rename(whole.join(MANIFEST), self.target.join(MANIFEST)).map_err(at_target)
+        })?;
         after();
+        stale.iter().filter(|_| !keep).for_each(|name| remove_empty_folders(&self.target, name));
         self.made.clear();
         Ok(())
     }
@@ -227,26 +227,58 @@ impl StagedDir {
     fn staging(&self) -> io::Result<&Path> {
         self.holder.as_ref().map(TempDir::path).ok_or_else(|| io::Error::other("the output directory was not prepared"))
     }
+}
 
-    fn replace_files(&self, holder: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
-        // Path of each replaced file, and path of its backup if there was a file.
-        let mut done: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
-        for name in &self.files {
-            let place = self.target.join(name);
-            match replace(&holder.join("new").join(name), &place, &holder.join("old").join(name), after) {
-                Ok(old) => done.push((place, old)),
-                Err(source) => {
-                    for (place, old) in done.into_iter().rev() {
-                        // If the disk rejects the restoration, nothing more can be done.
-                        let _ = match old {
-                            Some(old) => fs::rename(old, place),
-                            None => fs::remove_file(place),
-                        };
-                    }
-                    return Err(WriteError::new(place, source));
-                }
+/// Moves of files into and out of a directory, which an error undoes.
+struct Moves<'a> {
+    target: &'a Path,
+    holder: &'a Path,
+    /// Path of each changed file, and path of its backup if there was a file.
+    done: Vec<(PathBuf, Option<PathBuf>)>,
+}
+
+impl Moves<'_> {
+    /// Makes moves, and undoes all of them in the reverse order if one fails.
+    fn undone_by_error(&mut self, moves: impl FnOnce(&mut Self) -> Result<(), WriteError>) -> Result<(), WriteError> {
+        let result = moves(self);
+        if result.is_err() {
+            for (place, old) in self.done.drain(..).rev() {
+                // If the disk rejects the restoration, nothing more can be done.
+                let _ = match old {
+                    Some(old) => fs::rename(old, place),
+                    None => fs::remove_file(place),
+                };
             }
         }
+        result
+    }
+
+    /// Moves the staged files of these names to the directory.
+    fn replace_all(&mut self, names: &[PathBuf], after: &mut dyn FnMut()) -> Result<(), WriteError> {
+        names.iter().try_for_each(|name| self.replace(&self.holder.join("new").join(name), name, after))
+    }
+
+    /// Moves a file to a name in the directory and keeps a backup of the file that it replaces.
+    fn replace(&mut self, new: &Path, name: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
+        let (place, old) = (self.target.join(name), self.holder.join("old").join(name));
+        let kept = replace(new, &place, &old, after).map_err(|source| WriteError::new(&place, source))?;
+        self.done.push((place, kept));
+        Ok(())
+    }
+
+    /// Moves a file of an earlier run out of the directory. Names in a manifest that lead out of the directory are
+    /// ignored.
+    fn remove(&mut self, name: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
+        let (place, old) = (self.target.join(name), self.holder.join("old").join(name));
+        let is_linked = name.parent().is_some_and(|folder| link_on_the_way(self.target, folder).is_some());
+        let is_inside = name.components().all(|part| matches!(part, Component::Normal(_)));
+        if is_linked || !is_inside || !fs::symlink_metadata(&place).is_ok_and(|found| !found.is_dir()) {
+            return Ok(());
+        }
+        let moved = fs::create_dir_all(parent_of(&old)).and_then(|()| fs::rename(&place, &old));
+        moved.map_err(|source| WriteError::new(&place, source))?;
+        self.done.push((place, Some(old)));
+        after();
         Ok(())
     }
 }
@@ -292,14 +324,13 @@ fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
     paths.into_iter().find(|path| fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink()))
 }
 
-/// Removes a file of an earlier run, and folders that become empty. Names in a manifest that lead out of the directory
-/// are ignored.
-fn remove_within(directory: &Path, name: &Path) {
+/// Removes the folders of a file of an earlier run that have become empty.
+fn remove_empty_folders(directory: &Path, name: &Path) {
+    let is_inside = name.components().all(|part| matches!(part, Component::Normal(_)));
     let is_linked = name.parent().is_some_and(|folder| link_on_the_way(directory, folder).is_some());
-    if is_linked || !name.components().all(|part| matches!(part, Component::Normal(_))) {
+    if is_linked || !is_inside {
         return;
     }
-    let _ = fs::remove_file(directory.join(name));
     for folder in name.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
         let _ = fs::remove_dir(directory.join(folder));
     }
@@ -420,6 +451,34 @@ mod tests {
         assert!(message.contains("c.txt"), "{message}");
         assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "old");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+
+    /// The last move of a commit fails, as on a full disk: the directory is as before, and the next commit succeeds.
+    #[test]
+    fn a_commit_whose_manifest_cannot_be_moved_undoes_itself() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        staged(&target, "old").commit().unwrap();
+        let before = Manifest::read(&target);
+        let new = staged(&target, "new");
+        let prepared = new.staging().unwrap().join("whole");
+        let error = new.put_in_place(false, &mut || drop(fs::remove_dir_all(&prepared)));
+        assert!(error.is_err());
+        assert_eq!((found_in(&target), Manifest::read(&target)), (run_of("old"), before));
+        staged(&target, "new").commit().unwrap();
+        assert_eq!(found_in(&target), run_of("new"));
+        assert!(crate::refuse_mixed(&target).is_ok());
+    }
+
+    /// A folder of the user that a manifest takes for a file stays.
+    #[test]
+    fn folders_are_not_removed_as_files() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::create_dir(dir.path().join("mine")).unwrap();
+        fs::write(dir.path().join("mine/a.txt"), "").unwrap();
+        Manifest { whole: true, files: vec!["mine".into()] }.write(dir.path()).unwrap();
+        staged(dir.path(), "new").commit().unwrap();
+        assert!(dir.path().join("mine/a.txt").exists());
     }
 
     #[test]
