@@ -347,6 +347,33 @@ fn a_full_disk_loses_nothing() {
     assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
 }
 
+/// A full disk keeps the earlier plan, and leaves nothing of a first one.
+#[test]
+fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
+    let directory = planned();
+    let here = directory.path();
+    // The head of the second plan is too long for the limit of a file: 512 bytes.
+    let plan = |out: &str, limit: &str| {
+        let script = format!("trap '' XFSZ; {limit} exec \"$0\" plan run belt --out {out}");
+        let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
+        let ended = std::process::Command::new("sh").args(command).current_dir(here).output().unwrap();
+        (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
+    };
+    let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
+    for out in ["p", "new"] {
+        let (code, said) = plan(out, "ulimit -f 1;");
+        assert!(code == Some(1) || code == Some(2), "{said}");
+        assert!(said.contains("cannot write"), "{said}");
+    }
+    assert_eq!(kept, ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap()));
+    assert!(!here.join("new").exists());
+    fs::create_dir_all(here.join("new/.grainbench-1@elsewhere-x")).unwrap();
+    for out in ["p", "new"] {
+        assert_eq!(plan(out, ""), (Some(0), String::new()), "{out}");
+        ok(&grainbench(here, &["status", out]));
+    }
+}
+
 /// Concurrent workers share a plan.
 #[test]
 fn two_at_once_do_each_task_once() {
@@ -424,16 +451,6 @@ fn what_is_no_plan_is_refused() {
     fs::write(here.join("full/notes"), "").unwrap();
     let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
     assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
-    // A full disk leaves the folders of a plan without its head: they are taken over, as long as they are empty.
-    for (left, code) in [("results", Some(0)), ("running", Some(0)), ("results/a.log", Some(2))] {
-        let place = here.join("left");
-        for folder in ["results", "running", left] {
-            fs::create_dir_all(place.join(folder)).unwrap();
-        }
-        let answer = grainbench(here, &["plan", "sweep.toml", "--out", "left"]);
-        assert_eq!(answer.code, code, "{left}: {}", answer.err);
-        fs::remove_dir_all(place).unwrap();
-    }
     for chunk in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
         assert_eq!(grainbench(here, &["work", "p", "--chunk", chunk]).code, Some(2), "{chunk}");
     }

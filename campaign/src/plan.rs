@@ -3,7 +3,7 @@
 use crate::chunk;
 use crate::fault::Fault;
 use crate::task::{self, Task};
-use grainbench_reports::{WriteError, write_file};
+use grainbench_reports::{StagedDir, WriteError, is_scratch};
 use grainbench_scene::text::line_of;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -127,12 +127,15 @@ impl Plan {
         if head.chunks == 0 {
             head.chunks = chunk::count(&tasks);
         }
-        for folder in [path.to_owned(), path.join(RESULTS), path.join(RUNNING)] {
+        let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
+        // The head is moved first: a directory with a head takes a new plan after a kill between the two moves.
+        let mut out = StagedDir::new(path)?.without_manifest();
+        out.write(HEAD, words)?;
+        out.write(TASKS, text)?;
+        out.commit()?;
+        for folder in [path.join(RESULTS), path.join(RUNNING)] {
             fs::create_dir_all(&folder).map_err(|source| WriteError::new(folder, source))?;
         }
-        write_file(path.join(TASKS), text)?;
-        let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
-        write_file(path.join(HEAD), words)?;
         Ok(Self { path: path.to_owned(), head, tasks })
     }
 
@@ -211,24 +214,15 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
     let expected = "a new directory, an empty one, or one with a plan";
     match fs::read_dir(path) {
         Ok(mut entries) => {
-            // A full disk leaves the folders of a plan, empty, and no head.
-            let is_left = |entry: std::io::Result<fs::DirEntry>| {
-                entry.is_ok_and(|entry| {
-                    [RESULTS, RUNNING].iter().any(|name| entry.file_name() == *name) && is_empty(&entry.path())
-                })
-            };
+            // A killed process leaves temporary files.
+            let is_left =
+                |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| is_scratch(&entry.file_name()));
             let is_ours = path.join(HEAD).is_file() || entries.all(is_left);
             if is_ours { Ok(()) } else { Err(Fault::in_file(path, expected, "other files")) }
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(Fault::in_file(path, expected, error)),
     }
-}
-
-/// Returns whether a path is a directory without entries; a link is none.
-fn is_empty(path: &Path) -> bool {
-    let is_directory = fs::symlink_metadata(path).is_ok_and(|found| found.is_dir());
-    is_directory && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
 }
 
 /// Returns the hash of a file's content, or `unreadable`, which equals no hash, if the file cannot be read.

@@ -39,7 +39,7 @@ pub use manifest::refuse_mixed;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
-pub use scratch::sweep;
+pub use scratch::{is_scratch, sweep};
 pub use staged::{StagedDir, refuse_other_programs};
 pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
 pub use terminal::summary_table;

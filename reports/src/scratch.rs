@@ -26,6 +26,12 @@ pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
     Builder::new().prefix(&prefix()).tempdir_in(parent).map_err(without_its_path)
 }
 
+/// Returns true for the name of a temporary file or a lock.
+#[must_use]
+pub fn is_scratch(name: &std::ffi::OsStr) -> bool {
+    name.to_string_lossy().starts_with(PREFIX)
+}
+
 /// Returns the start of the names of this process. A random suffix without a dash follows.
 fn prefix() -> String {
     format!("{PREFIX}{}@{}-", process::id(), machine())
