@@ -226,6 +226,20 @@ fn an_exact_scene_is_stepped_in_time() {
     assert!(script.contains("timestep"), "{script}");
 }
 
+/// A second deck replaces the first one, whose files belong to another scene.
+#[test]
+fn a_directory_holds_one_deck() {
+    let directory = tempfile::tempdir().unwrap();
+    for (program, script) in [("lammps", "in.lammps"), ("liggghts", "in.liggghts")] {
+        let answer = grainbench(directory.path(), &["deck", "incline-sphere", "--for", program, "--out", "d"]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+        let found = files(&directory.path().join("d"));
+        assert!(found.contains(&"manifest.json".to_owned()), "{found:?}");
+        let scripts: Vec<&String> = found.iter().filter(|name| name.starts_with("in.")).collect();
+        assert_eq!(scripts, [script]);
+    }
+}
+
 #[test]
 fn the_command_refuses_and_leaves_nothing() {
     let directory = tempfile::tempdir().unwrap();

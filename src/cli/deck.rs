@@ -60,7 +60,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Resolution(_) => Fault::input(error),
     })?;
     check_folder(&arguments.out)?;
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?.without_manifest();
+    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     for (name, text) in &deck.files {
         out.write(name, text).map_err(Fault::writing)?;
     }
