@@ -40,6 +40,21 @@ fn what_does_not_fit_into_memory_is_counted_and_refused() {
     assert!(code == 2 && said.contains("points, about"), "{said}");
 }
 
+/// The list of steps and the series once filled the memory.
+#[test]
+fn more_output_than_fits_into_memory_is_refused_by_each_solver() {
+    let long = RIGID.replace("duration = 0.01", "duration = 1e9");
+    for solver in ["dem", "rigid"] {
+        for (output, key) in [("snapshots = 1000000000", "output.snapshots"), ("every = 1e-9", "output.every")] {
+            let (code, said) = simulated(&long, &format!("[output]\n{output}\n"), &[solver]);
+            let expected = format!("s.toml: {solver}: {key}: expected ");
+            assert!(code == 2 && said.contains(&expected) && said.contains("that fit into memory, found "), "{said}");
+        }
+    }
+    let (code, said) = simulated(RIGID, "[output]\nsnapshots = 1000000000\nevery = 1e-9\n", &["dem"]);
+    assert_eq!(code, 0, "a short run has few steps: {said}");
+}
+
 #[test]
 fn bodies_that_the_grid_does_not_see_are_refused() {
     let body = "reference_length = 20.0\n";

@@ -21,7 +21,7 @@ use grainbench::scene::solver::{Ahead, Method, NotStored, Resolution, RunError, 
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Arguments of the command.
@@ -243,7 +243,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
 
 /// Returns the error of a run. The output of a crashed or interrupted run is written nevertheless.
 fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore, arguments: &Arguments) -> Fault {
-    let Some(series) = remains else { return fault(error) };
+    let Some(series) = remains else { return fault(error, arguments) };
     let formats = formats(&snapshots, arguments);
     let mut write = || -> Result<(), Fault> {
         let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
@@ -309,7 +309,8 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
     Ok(resolution)
 }
 
-fn fault(error: &RunError) -> Fault {
+/// Returns the error of a run without output. An error in an input file names the file.
+fn fault(error: &RunError, arguments: &Arguments) -> Fault {
     match error {
         RunError::Broken(_)
         | RunError::Program { .. }
@@ -317,12 +318,16 @@ fn fault(error: &RunError) -> Fault {
         | RunError::Interrupted { .. }
         | RunError::NotStored(_)
         | RunError::Checkpoint(CheckpointError::NotStored(_)) => Fault::Broken(error.to_string()),
-        RunError::Unsupported { .. }
-        | RunError::Resolution { .. }
-        | RunError::NotAvailable { .. }
-        | RunError::Stale { .. }
-        | RunError::Checkpoint(_) => Fault::input(error),
+        RunError::Checkpoint(_) => {
+            Fault::input(arguments.restart.as_ref().map_or_else(|| error.to_string(), |path| in_file(path, error)))
+        }
+        RunError::Resolution { .. } => Fault::input(in_file(&arguments.scene, error)),
+        RunError::Unsupported { .. } | RunError::NotAvailable { .. } | RunError::Stale { .. } => Fault::input(error),
     }
+}
+
+fn in_file(path: &Path, error: &RunError) -> String {
+    format!("{}: {error}", path.display())
 }
 
 /// Returns the information that is known before the first step.

@@ -11,7 +11,7 @@ use grainbench_scene::memory;
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run, beyond_steps};
 use grainbench_scene::space::{Plane, Solid, Space};
 use std::f64::consts::PI;
 
@@ -123,7 +123,7 @@ impl Mpm {
             return Err(self.resolution_error(format!("expected damping times step below 2, found {damped}")));
         }
         let settling = scene.start.settle.map_or(0.0, |settle| settle.duration / (time / steps));
-        if let Some(refusal) = beyond_steps(steps).or_else(|| beyond_steps(settling)) {
+        if let Some(refusal) = beyond_run(scene, time / steps, steps).or_else(|| beyond_steps(settling)) {
             return Err(self.resolution_error(refusal));
         }
         Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })

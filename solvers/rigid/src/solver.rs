@@ -7,7 +7,7 @@ use crate::simulation::Simulation;
 use grainbench_scene::drive::{Course, Driven, Stepper};
 use grainbench_scene::record::{Counts, Look, Provenance, Record};
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_steps};
+use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run};
 use grainbench_scene::terms::{Less, Terms};
 
 /// Version of rapier.
@@ -98,7 +98,7 @@ impl Rigid {
         };
         // The number of steps is whole; the tolerance prevents rounding from adding a step.
         let steps = (time / step * (1.0 - 1e-12)).ceil().max(1.0) * f64::from(substeps);
-        if let Some(refusal) = beyond_steps(steps) {
+        if let Some(refusal) = beyond_run(scene, time / steps, steps) {
             return Err(error(refusal));
         }
         Ok((time / steps, steps as u64, iterations as usize))

@@ -1,5 +1,6 @@
 //! Recorder of a run. It knows the steps at which output is due, and records it.
 
+use crate::memory;
 use crate::probe;
 use crate::record::{Look, Series, Snapshot};
 use crate::scene::{Sampling, Scene};
@@ -21,11 +22,7 @@ impl Recorder {
     /// Creates the recorder of a run of `steps` steps of `time_step` (s).
     #[must_use]
     pub fn new(scene: &Scene, time_step: f64, steps: u64) -> Self {
-        let interval = match scene.sampling {
-            Sampling::Cycles(cycles) => cycles,
-            Sampling::Seconds(time) => (time / time_step).round() as u64,
-            Sampling::Count(count) => steps / count.max(1),
-        };
+        let interval = interval(scene, time_step, steps);
         // There is at most one snapshot per step, whatever number was requested.
         let parts = (u128::from(scene.snapshots) + 1).min(u128::from(steps.max(1)));
         let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
@@ -34,7 +31,7 @@ impl Recorder {
         snapshot_steps.sort_unstable();
         snapshot_steps.dedup();
         let series = probe::empty_series(scene);
-        Self { interval: interval.max(1), snapshot_steps, steps, series, snapshots: Vec::new() }
+        Self { interval, snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
     /// Returns whether all samples are finite, as they are when a run goes on.
@@ -147,6 +144,40 @@ impl Recorder {
     pub fn finish(self) -> (Series, Vec<Snapshot>) {
         (self.series, self.snapshots)
     }
+}
+
+/// Memory of a snapshot in the list of due steps and in the index of the stored snapshots (B).
+const BYTES_OF_A_SNAPSHOT: f64 = 200.0;
+/// Memory of a value in a time series (B). A growing list holds up to twice its values.
+const BYTES_OF_A_VALUE: f64 = 16.0;
+
+/// Returns the number of steps between samples.
+fn interval(scene: &Scene, time_step: f64, steps: u64) -> u64 {
+    let interval = match scene.sampling {
+        Sampling::Cycles(cycles) => cycles,
+        Sampling::Seconds(time) => (time / time_step).round() as u64,
+        Sampling::Count(count) => steps / count.max(1),
+    };
+    interval.max(1)
+}
+
+/// Describes the output of a run that does not fit into memory, with its key; `None` if it fits. The rows of snapshots
+/// do not count, because they can be written to the disk one snapshot after the other.
+pub(crate) fn beyond_memory(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
+    let samples = steps / interval(scene, time_step, steps as u64) as f64;
+    let key = match scene.sampling {
+        Sampling::Cycles(_) => "output.every_cycles",
+        Sampling::Seconds(_) | Sampling::Count(_) => "output.every",
+    };
+    // Each sample has a step and a time too.
+    let values = samples * (probe::empty_series(scene).columns.len() + 2) as f64;
+    let of_samples = (key, "values of samples", values, BYTES_OF_A_VALUE);
+    let snapshots = f64::from(scene.snapshots).min(steps);
+    let of_snapshots = ("output.snapshots", "snapshots", snapshots, BYTES_OF_A_SNAPSHOT);
+    [of_samples, of_snapshots].into_iter().find_map(|(key, what, count, bytes)| {
+        let found = memory::beyond(count, what, bytes)?;
+        Some(format!("{key}: expected {what} that fit into memory, found {found}"))
+    })
 }
 
 #[cfg(test)]

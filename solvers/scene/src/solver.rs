@@ -4,6 +4,7 @@ use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::end_state::EndState;
 use crate::record::{Record, Remains, Snapshot};
+use crate::recorder;
 use crate::scene::{Duration, Scene};
 use nalgebra::Vector3;
 use std::fmt;
@@ -112,7 +113,7 @@ impl Resolution {
             Duration::Cycles(cycles) => cycles as f64,
             Duration::Seconds(time) => time / wanted,
         };
-        if let Some(refusal) = beyond_steps(asked) {
+        if let Some(refusal) = beyond_run(scene, wanted, asked) {
             return Err(refusal);
         }
         Ok(match (scene.duration, self) {
@@ -139,7 +140,7 @@ impl Resolution {
         if !(wanted.is_finite() && wanted > 0.0) {
             return Err(format!("expected a material that deforms and positive numbers, found none at {self}"));
         }
-        beyond_steps(time / wanted).map_or_else(|| Ok(whole_steps(time, wanted)), Err)
+        beyond_run(scene, wanted, time / wanted).map_or_else(|| Ok(whole_steps(time, wanted)), Err)
     }
 }
 
@@ -158,6 +159,13 @@ const MOST_STEPS: f64 = 1e15;
 pub fn beyond_steps(steps: f64) -> Option<String> {
     (steps.is_nan() || steps >= MOST_STEPS)
         .then(|| format!("expected fewer than {MOST_STEPS:e} steps, found {steps:.3e}"))
+}
+
+/// Describes a run of steps of `time_step` (s) that has too many steps, or whose record does not fit into memory;
+/// `None` if neither is so.
+#[must_use]
+pub fn beyond_run(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
+    beyond_steps(steps).or_else(|| recorder::beyond_memory(scene, time_step, steps))
 }
 
 impl fmt::Display for Resolution {
