@@ -55,6 +55,22 @@ fn more_output_than_fits_into_memory_is_refused_by_each_solver() {
     assert_eq!(code, 0, "a short run has few steps: {said}");
 }
 
+/// Random and packed grains of absurd sizes once were tried for hours.
+#[test]
+fn grains_that_cannot_be_placed_end_in_an_error() {
+    let scene = |grains: &str| {
+        format!("domain = {{ low = [0.0, 0.0], high = [1.0, 1.0] }}\n{ELASTIC}[grains.a]\nmaterial = 'm'\n{grains}\n")
+    };
+    for (grains, reason) in [
+        ("packed = { seed = 1, radii = [[1e200, 3000]] }", "expected grains that fill"),
+        ("packed = { seed = 1, radii = [[1000.0, 3000]] }", "expected grains that fill"),
+        ("radius = 1e200\nrandom = { count = 3000, seed = 1 }", "expected grains that find room"),
+    ] {
+        let (code, said) = simulated(&scene(grains), "", &["dem"]);
+        assert!(code == 2 && said.contains(reason), "{grains}: {said}");
+    }
+}
+
 #[test]
 fn bodies_that_the_grid_does_not_see_are_refused() {
     let body = "reference_length = 20.0\n";

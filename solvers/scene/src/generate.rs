@@ -6,6 +6,7 @@ use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::cell::Cell;
 
 /// Returns the centres of a square or simple-cubic lattice (m); x varies fastest.
 #[must_use]
@@ -60,11 +61,23 @@ pub struct Placed {
     pub velocity: Vector3<f64>,
 }
 
+/// Number of visits of spheres and cells before the search for room ends; about a minute.
+const VISITS: u64 = 20_000_000_000;
+
+/// Reason that grains could not be placed at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoRoom {
+    /// Fraction of the domain that all grains would fill.
+    pub share: f64,
+    /// True if the search needs too much work; false if tries found no room for a grain.
+    pub is_costly: bool,
+}
+
 /// Places `count` grains without overlap in `domain`, large grains first. Grains do not cross the faces of axes that
 /// are not periodic. The same seed gives the same grains on every machine.
 ///
 /// # Errors
-/// When 10,000 tries find no room for a grain. The error is the fraction of the domain that all grains would fill.
+/// When 10,000 tries find no room for a grain, or the search needs too much work.
 pub fn random(
     count: u32,
     seed: u64,
@@ -72,7 +85,18 @@ pub fn random(
     speed: f64,
     domain: &Domain,
     dimension: Dimension,
-) -> Result<Vec<Placed>, f64> {
+) -> Result<Vec<Placed>, NoRoom> {
+    random_within(VISITS, (count, seed), radii, speed, domain, dimension)
+}
+
+fn random_within(
+    most: u64,
+    (count, seed): (u32, u64),
+    radii: &Radii,
+    speed: f64,
+    domain: &Domain,
+    dimension: Dimension,
+) -> Result<Vec<Placed>, NoRoom> {
     const TRIES: u32 = 10_000;
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
@@ -81,14 +105,17 @@ pub fn random(
     let mut taken = Taken::new(cell, sizes.len(), dimension);
     let mut placed = Vec::with_capacity(sizes.len());
     for &radius in &sizes {
-        let position = (0..TRIES).find_map(|_| {
+        let position = (0..TRIES).take_while(|_| taken.visits.get() < most).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
             // Most positions are taken, so images are made only if the position itself is free.
             let is_free = taken.is_free(centre, radius)
                 && images(centre, domain, cell)[1..].iter().all(|&image| taken.is_free(image, radius));
             is_free.then_some(centre)
         });
-        let position = position.ok_or_else(|| filled(sizes.iter().copied(), domain, dimension))?;
+        let position = position.ok_or_else(|| NoRoom {
+            share: filled(sizes.iter().copied(), domain, dimension),
+            is_costly: taken.visits.get() >= most,
+        })?;
         taken.add(position, radius);
         let velocity = direction(&mut generator, dimension) * speed;
         placed.push(Placed { position, radius, velocity });
@@ -147,12 +174,14 @@ struct Taken {
     layers: usize,
     /// Centre (m) and radius (m) of the spheres in each bucket.
     buckets: Vec<Vec<(Vector3<f64>, f64)>>,
+    /// Number of cells and spheres visited so far.
+    visits: Cell<u64>,
 }
 
 impl Taken {
     fn new(cell: f64, most: usize, dimension: Dimension) -> Self {
         let layers = if dimension == Dimension::Two { 1 } else { 3 };
-        Self { cell, layers, buckets: vec![Vec::new(); most.next_power_of_two()] }
+        Self { cell, layers, buckets: vec![Vec::new(); most.next_power_of_two()], visits: Cell::new(0) }
     }
 
     /// Returns the cell of a position along each axis.
@@ -190,7 +219,9 @@ impl Taken {
     fn overlaps_in(&self, cell: [i64; 3], centre: Vector3<f64>, radius: f64) -> bool {
         // Most spheres are farther apart than rounding, and need no square root.
         const ROUNDING: f64 = 1.0 + 1e-12;
-        self.buckets[self.bucket(cell)].iter().any(|(other, size)| {
+        let spheres = &self.buckets[self.bucket(cell)];
+        self.visits.update(|visits| visits + 1 + spheres.len() as u64);
+        spheres.iter().any(|(other, size)| {
             let (between, reach) = (centre - other, radius + size);
             between.norm_squared() <= reach * reach * ROUNDING && between.norm() < reach
         })
@@ -200,6 +231,18 @@ impl Taken {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The work of grains that find room late is bounded, and the error tells it from a lack of room.
+    #[test]
+    fn a_costly_search_ends() {
+        let high = Vector3::new(1.0, 1.0, 0.5);
+        let domain = Domain { low: Vector3::new(0.0, 0.0, -0.5), high, periodic: [false; 3] };
+        let placed =
+            |most, radius| random_within(most, (200, 1), &Radii::Uniform([radius; 2]), 0.0, &domain, Dimension::Two);
+        assert!(placed(1_000_000, 0.01).is_ok());
+        assert!(placed(1000, 0.01).is_err_and(|error| error.is_costly && (error.share - 0.0628).abs() < 1e-4));
+        assert!(placed(VISITS, 0.1).is_err_and(|error| !error.is_costly));
+    }
 
     /// Each grain has six nearest neighbours in the plane and twelve in space, one spacing away.
     #[test]

@@ -10,7 +10,7 @@ use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -23,12 +23,16 @@ const STAGES: u32 = 60;
 const SWEEPS_PER_STAGE: u32 = 20;
 /// Number of sweeps at full size before a packing counts as impossible.
 const SWEEPS: u32 = 40_000;
+/// Number of visits of pairs and cells before a packing counts as impossible; about a minute.
+const VISITS: u64 = 10_000_000_000;
+/// Visits that count for one grain when pairs are listed: the cells around it for each class of radii.
+const VISITS_OF_A_GRAIN: u64 = 100;
 /// Relative oversize of grains while the last overlaps are removed, so that the result has gaps.
 const MARGIN: f64 = 1e-4;
 
 /// Returns the centres (m) of grains of the given radii (m), in their order, in `domain`. Grains touch their images
 /// across periodic faces; other faces are smooth walls. `None` means that overlaps remain, because the grains are too
-/// many for the box. The same seed gives the same packing on every machine.
+/// many for the box or need too much work. The same seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, false)
@@ -71,31 +75,41 @@ fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: 
             place
         })
     };
-    place.get_or_init(|| made(radii, seed, domain, dimension, cut, SWEEPS)).clone()
+    place.get_or_init(|| made(radii, seed, domain, dimension, cut, SWEEPS, VISITS)).clone()
 }
 
 /// Returns the fraction of the domain that grains of these radii (m) would fill.
 #[must_use]
 pub fn filled(radii: impl Iterator<Item = f64>, domain: &Domain, dimension: Dimension) -> f64 {
     let axes = dimension.count();
-    let ball = |radius: f64| if axes == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
-    let room: f64 = (0..axes).map(|axis| domain.high[axis] - domain.low[axis]).product();
-    radii.map(ball).sum::<f64>() / room
+    // Products of absurd lengths overflow, but their ratios do not.
+    let part = |radius: f64| (0..axes).map(|axis| radius / (domain.high[axis] - domain.low[axis])).product::<f64>();
+    let ball = if axes == 2 { PI } else { 4.0 / 3.0 * PI };
+    ball * radii.map(part).sum::<f64>()
 }
 
-/// Returns the largest fraction of the domain that these grains can fill without overlap after scaling them down
-/// together. The fraction is rounded to a hundredth; fractions below one half are not tried. The search uses fewer
-/// sweeps than a packing.
+/// Returns a large fraction of the domain that these grains can fill without overlap after scaling them down together,
+/// by bisection. The fraction is rounded to a hundredth; fractions below one half are not tried. The search uses less
+/// work than a packing.
 #[must_use]
 pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<f64> {
     let asked = filled(radii.iter().copied(), domain, dimension);
     // No packing of equal discs or spheres is denser (Thue, Hales). Packings of several sizes may be slightly denser.
     let most: u32 = if dimension == Dimension::Two { 90 } else { 74 };
-    (50..=most).rev().map(|percent| f64::from(percent) / 100.0).filter(|share| *share < asked).find(|share| {
-        let scale = if dimension == Dimension::Two { (share / asked).sqrt() } else { libm::cbrt(share / asked) };
+    let can_be_packed = |percent: u32| {
+        let part = f64::from(percent) / 100.0 / asked;
+        let scale = if dimension == Dimension::Two { part.sqrt() } else { libm::cbrt(part) };
         let shrunk: Vec<f64> = radii.iter().map(|radius| radius * scale).collect();
-        made(&shrunk, seed, domain, dimension, cut, SWEEPS / 20).is_some()
-    })
+        made(&shrunk, seed, domain, dimension, cut, SWEEPS / 20, VISITS / 20).is_some()
+    };
+    // `low` was packed, and `high` is too dense.
+    let (mut low, mut high) =
+        (49, (50..=most).find(|percent| f64::from(*percent) / 100.0 >= asked).unwrap_or(most + 1));
+    while high - low > 1 {
+        let middle = u32::midpoint(low, high);
+        if can_be_packed(middle) { low = middle } else { high = middle }
+    }
+    (low >= 50).then(|| f64::from(low) / 100.0)
 }
 
 fn made(
@@ -105,10 +119,11 @@ fn made(
     dimension: Dimension,
     cut: bool,
     sweeps: u32,
+    visits: u64,
 ) -> Option<Vec<Vector3<f64>>> {
     let axes = dimension.count();
-    // Grains that fill more than the box are not tried; all their pairs would be listed.
-    if filled(radii.iter().copied(), domain, dimension) > 1.0 {
+    // Grains that fill more than the box, or have no size in numbers, are not tried; all their pairs would be listed.
+    if !(0.0..=1.0).contains(&filled(radii.iter().copied(), domain, dimension)) {
         return None;
     }
     let mut generator = Pcg64::seed_from_u64(seed);
@@ -133,19 +148,27 @@ fn made(
         pairs: Vec::new(),
         listed: Vec::new(),
         skin: smallest,
+        classes: classes(radii),
+        visits,
     };
     for stage in 1..=STAGES {
         packing.scale = SMALL + (1.0 - SMALL) * f64::from(stage) / f64::from(STAGES);
         packing.list();
         for _ in 0..SWEEPS_PER_STAGE {
-            if packing.sweep() == 0.0 {
+            if packing.visits == 0 || packing.sweep() == 0.0 {
                 break;
             }
         }
     }
     packing.scale = 1.0 + MARGIN;
     packing.list();
-    (0..sweeps).any(|_| packing.sweep() < MARGIN * smallest && packing.is_free()).then_some(packing.centres)
+    let is_done = (0..sweeps).any(|_| packing.visits == 0 || packing.sweep() < MARGIN * smallest && packing.is_free());
+    (is_done && packing.visits > 0).then_some(packing.centres)
+}
+
+/// Returns the number of classes of radii within a factor of two.
+fn classes(radii: &[f64]) -> u64 {
+    radii.iter().map(|radius| libm::ilogb(*radius)).collect::<BTreeSet<_>>().len() as u64
 }
 
 struct Packing<'a> {
@@ -163,6 +186,10 @@ struct Packing<'a> {
     listed: Vec<Vector3<f64>>,
     /// Skin (m).
     skin: f64,
+    /// Number of classes of radii.
+    classes: u64,
+    /// Visits of pairs and cells that are left.
+    visits: u64,
 }
 
 impl Packing<'_> {
@@ -179,14 +206,16 @@ impl Packing<'_> {
     /// Lists the pairs whose gap is below the skin.
     fn list(&mut self) {
         let radii: Vec<f64> = self.radii.iter().map(|radius| radius * self.scale).collect();
-        let mut pairs = Vec::new();
+        let (mut pairs, mut seen) = (Vec::new(), 0);
         let _ = near_pairs(&self.centres, &radii, self.skin, Some(self.domain), |a, b| {
+            seen += 1;
             let touch = (self.radii[a] + self.radii[b]) * self.scale + self.skin;
             if self.between(a, b).norm_squared() < touch * touch {
                 pairs.push((a.min(b) as u32, a.max(b) as u32));
             }
             ControlFlow::Continue(())
         });
+        self.visits = self.visits.saturating_sub(seen + VISITS_OF_A_GRAIN * self.classes * radii.len() as u64);
         // The order of the pairs affects the result.
         pairs.sort_unstable();
         pairs.dedup();
@@ -205,6 +234,7 @@ impl Packing<'_> {
     /// Moves every overlapping pair apart and grains off the walls. Returns the largest overlap found (m).
     fn sweep(&mut self) -> f64 {
         let mut worst: f64 = 0.0;
+        self.visits = self.visits.saturating_sub((self.pairs.len() + self.radii.len()) as u64);
         for at in 0..self.pairs.len() {
             let (a, b) = (self.pairs[at].0 as usize, self.pairs[at].1 as usize);
             let apart = self.between(a, b);
@@ -298,6 +328,17 @@ mod tests {
             let edge = edge(&radii(60), fraction);
             assert_eq!(pack(&radii(60), 1, &domain(edge, false), Dimension::Two), None, "{fraction}");
         }
+    }
+
+    /// Radii and boxes of any size are refused, and grains of many sizes end the search after its visits.
+    #[test]
+    fn absurd_grains_end_the_search() {
+        let far = domain(1e200, false);
+        assert_eq!(pack(&vec![1e200; 3000], 1, &far, Dimension::Two), None);
+        assert_eq!(pack(&vec![f64::MAX; 3000], 1, &domain(1e-200, true), Dimension::Two), None);
+        let many: Vec<f64> = (0..5000).map(|number| libm::pow(2.0, -f64::from(number % 900))).collect();
+        let edge = edge(&many, 0.9);
+        assert_eq!(made(&many, 1, &domain(edge, false), Dimension::Two, false, SWEEPS, 20_000_000), None);
     }
 
     /// A fraction reported as reachable is reached, and it is a dense packing.

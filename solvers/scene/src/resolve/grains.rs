@@ -4,7 +4,7 @@ use super::{Groups, Resolver};
 use crate::end_state::Springs;
 use crate::error::SceneError;
 use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec, SpacingSpec};
-use crate::generate;
+use crate::generate::{self, NoRoom};
 use crate::memory;
 use crate::overlap::{self, Deepest};
 use crate::packing;
@@ -135,9 +135,13 @@ impl Resolver<'_> {
             let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
             let density = density()?;
             let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension)
-                .map_err(|share| {
+                .map_err(|NoRoom { share, is_costly }| {
                     let place = if random.region.is_some() { "region" } else { "domain" };
                     let found = format!("{} that would fill {share:.2} of it", random.count);
+                    if is_costly {
+                        let expected = format!("a count and radii for which room in the {place} is found in a minute");
+                        return check.error(&key("count"), &expected, &found);
+                    }
                     let help = "one after the other at random, equal discs fill .55 and spheres .38 at most; `packed` is denser";
                     let expected = format!("grains that find room in the {place}");
                     check.source.error(&key("count"), &expected, &found, Some(help.to_owned()))
