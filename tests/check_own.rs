@@ -230,6 +230,11 @@ fn files_that_do_not_tell_are_refused() {
         let entry = format!("<DataSet timestep=\"0\" file=\"{path}\"/>");
         refused("list.pvd", list(&entry).as_bytes(), "list.pvd:1: expected a path inside the folder of the collection");
     }
+    refused(
+        "list.pvd",
+        list("<DataSet timestep=\"0\" file=\"none.vtp\"/>").as_bytes(),
+        "list.pvd:1: expected the name of a file",
+    );
     // One sphere and one plane allow 17 rows: 16 contacts of the grain, and one with the plane.
     refused("many_5.vtp", points(&"0 ".repeat(54)).as_bytes(), "many_5.vtp:1: expected at most 17 grains");
 }

@@ -71,6 +71,19 @@ fn grains_that_cannot_be_placed_end_in_an_error() {
     }
 }
 
+/// Words and lists of a scene are shortened in messages.
+#[test]
+fn long_values_are_quoted_in_short() {
+    for (from, to) in [
+        ("radius = 0.1", format!("radius = 0.1\n{} = 1", "x".repeat(5000))),
+        ("position = [0.0, 0.0]", format!("position = [{}0.0]", "0.0, ".repeat(5000))),
+        ("material = 'm'", format!("material = '{}'", "(".repeat(5000))),
+    ] {
+        let (code, said) = simulated(&RIGID.replace(from, &to), "", &["dem"]);
+        assert!(code == 2 && said.len() < 500 && said.contains("expected") && said.contains('…'), "{said}");
+    }
+}
+
 #[test]
 fn bodies_that_the_grid_does_not_see_are_refused() {
     let body = "reference_length = 20.0\n";

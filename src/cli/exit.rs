@@ -1,7 +1,7 @@
 //! Exit codes, messages, and printing.
 
 use grainbench::scene::error::{SceneError, did_you_mean};
-use grainbench::scene::text::tamed;
+use grainbench::scene::text::{shortened, tamed};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -71,7 +71,7 @@ impl Fault {
         };
         say("error", message);
         for name in names {
-            let _ = writeln!(io::stderr(), "  {}", tamed(name, |_| false));
+            let _ = writeln!(io::stderr(), "  {}", tamed(&shortened(name), |_| false));
         }
         ExitCode::from(code)
     }
@@ -95,7 +95,7 @@ impl From<SceneError> for Fault {
 /// Prints a line on the standard error. A closed standard error is ignored.
 pub(crate) fn say(kind: &str, message: &str) {
     let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&one_line, |_| false));
+    let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&shortened(&one_line), |_| false));
 }
 
 /// Prints text on the standard output. A reader that closes the pipe early, as `head` does, is not an error.

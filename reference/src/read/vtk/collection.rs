@@ -9,8 +9,8 @@ use std::path::{Component, Path, PathBuf};
 /// Reads the files of a collection with their times (s), in the order of the collection.
 ///
 /// # Errors
-/// If the collection cannot be read or lists no files. If an entry has no time, no file name, or a path that leaves the
-/// folder of the collection.
+/// If the collection cannot be read or lists no files. If an entry has no time, no file name, or the path of a file that
+/// does not exist or is outside the folder of the collection.
 pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
     let name = path.to_string_lossy();
     let bytes = whole(path)?;
@@ -39,7 +39,16 @@ pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadEr
                     let expected = "a path inside the folder of the collection in `file`";
                     return Err(ReadError::at(&name, line(at), expected, quoted(&file)));
                 }
-                files.push((time, folder.join(file)));
+                let path = folder.join(&file);
+                if !path.exists() {
+                    return Err(ReadError::at(
+                        &name,
+                        line(at),
+                        "the name of a file that exists in `file`",
+                        quoted(&file),
+                    ));
+                }
+                files.push((time, path));
             }
             Ok(Event::Eof) => break,
             Ok(_) => {}
