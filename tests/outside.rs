@@ -509,3 +509,33 @@ fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
         answer.out
     );
 }
+
+/// An interrupt ends a silent program at once, and leaves no half-written output.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_silent_program() {
+    let silent = MANIFEST.replace("seconds = 2", "seconds = 900");
+    let run = "run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]";
+    let worker = silent.replace(run, "worker = [\"sh\", \"liar.sh\"]");
+    for (number, (manifest, signal)) in
+        [(&silent, "-TERM"), (&worker, "-INT"), (&worker, "-TERM")].into_iter().enumerate()
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let mark = format!("314{number}5.9");
+        write(folder.path(), manifest, &format!("touch {}/begun; sleep {mark}", folder.path().display()));
+        let mut program = common::program();
+        program.args(["run", CASE, "--solver", "SOLVER.toml", "--out", "out", "-q"]).current_dir(folder.path());
+        let mut child =
+            program.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).spawn().unwrap();
+        while !folder.path().join("begun").exists() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(1));
+        assert!(!running().contains(&mark), "it goes on");
+        let results: Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("out/results.json")).unwrap()).unwrap();
+        assert_eq!(results["verdicts"].as_array().unwrap().len(), 0, "a run that was ended is no result");
+        assert!(results["provenance"]["options"].to_string().contains("interrupted: "));
+    }
+}

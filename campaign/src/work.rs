@@ -38,6 +38,10 @@ pub trait Watch: Send + Sync {
     fn goes_on(&self) -> bool {
         true
     }
+    /// Returns false if an interrupt may have spoilt the results. They are then not written.
+    fn are_results_valid(&self) -> bool {
+        true
+    }
     /// Called when `tasks` tasks are started.
     fn begins(&self, _tasks: usize) {}
     /// Called when a task is finished.
@@ -91,6 +95,9 @@ impl Desk {
 
     /// Writes a result that is already JSON on one line.
     pub fn leave_text(&self, id: Id, state: State, seconds: f64, json: &str) {
+        if !self.watch.are_results_valid() {
+            return;
+        }
         let load = if self.timed { machine::load() } else { None };
         let added =
             self.log.lock().unwrap_or_else(PoisonError::into_inner).add(&Line { id, state, seconds, load, json });

@@ -22,6 +22,7 @@ pub mod round_robin;
 mod run_files;
 pub mod stored;
 
+pub use process::{end_programs_at, has_ended_programs};
 pub use read::atom::Atom;
 pub use read::data_file::{DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;

@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -69,6 +71,34 @@ pub(crate) struct Limits {
     pub(crate) threads: u16,
 }
 
+impl Limits {
+    /// Returns an error if the time limit has expired or our process was interrupted.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if INTERRUPT.get().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            HAS_ENDED.store(true, Ordering::Relaxed);
+            return Err(Failure::Interrupted);
+        }
+        self.deadline.check()
+    }
+}
+
+/// Flag that ends all programs.
+static INTERRUPT: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+
+/// True if a program was ended by the flag.
+static HAS_ENDED: AtomicBool = AtomicBool::new(false);
+
+/// Ends running programs once a flag is set. The first call in a process counts.
+pub fn end_programs_at(interrupt: Arc<AtomicBool>) {
+    let _ = INTERRUPT.set(interrupt);
+}
+
+/// Returns true if an interrupt ended a program. Errors after that may be due to the interrupt.
+#[must_use]
+pub fn has_ended_programs() -> bool {
+    HAS_ENDED.load(Ordering::Relaxed)
+}
+
 /// Shell script that runs a program. It ends the program and all child processes when its own standard input closes.
 /// This happens when we close it and when our process ends for any reason.
 ///
@@ -98,8 +128,8 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
             Ok(Some(status)) => break status,
             Err(error) => Failure::NotRun(error.to_string()),
             Ok(None) if size(folder) > limits.bytes => too_much(limits.bytes),
-            Ok(None) => match limits.deadline.check() {
-                Err(time_out) => time_out,
+            Ok(None) => match limits.check() {
+                Err(failure) => failure,
                 Ok(()) => {
                     // The pause is at most a twentieth of the elapsed time, so late detection costs at most 5 %.
                     sleep((start.elapsed() / 20).clamp(Duration::from_micros(500), Duration::from_millis(20)));

@@ -1,5 +1,6 @@
-//! Ctrl-C: the first stops the work after the current items, and the second ends the program.
+//! Ctrl-C: the first ends external programs and stops the work after the current items, and the second ends our program.
 
+use grainbench::reference::end_programs_at;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ impl Interrupt {
                 let _ = flag::register(signal, Arc::clone(&asked.0));
             }
         }
+        // An external program may be silent for hours, so it does not count as a current item.
+        end_programs_at(Arc::clone(&asked.0));
         asked
     }
 

@@ -22,6 +22,7 @@ use grainbench::harness::run::{Done, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Control, Severity, Verdict};
+use grainbench::reference::has_ended_programs;
 use grainbench::reference::outside::Outside;
 use grainbench::reports::judged::Judged;
 use grainbench::reports::measured::Measurements;
@@ -35,6 +36,7 @@ use grainbench::studies::run_cache::RunCache;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
@@ -363,8 +365,13 @@ fn judge(
     let tasks = tasks(selected, !options.no_controls);
     let progress = Progress::new(tasks.len() as u64, "checks");
     let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
-    let do_piece = |piece: usize| do_task(&work, &tasks[piece], &progress, options.verbose);
-    let left = share(tasks.len(), jobs, || !interrupt.is_asked(), do_piece);
+    let cut = AtomicUsize::new(0);
+    let do_piece = |piece: usize| {
+        if !do_task(&work, &tasks[piece], &progress, options.verbose) {
+            cut.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let left = share(tasks.len(), jobs, || !interrupt.is_asked(), do_piece) + cut.load(Ordering::Relaxed);
     drop(progress);
     (work.into_iter().map(Work::section).collect(), left)
 }
@@ -393,26 +400,41 @@ fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
     tasks.into_iter().map(|(_, task)| task).chain(figures).collect()
 }
 
-fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
+/// Does a work item. Returns false if an interrupt ended a run that the item needs; it then has no result.
+fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) -> bool {
     let (Task::Judge(case, _) | Task::Control(case, _) | Task::Draw(case)) = *task;
     let at = &work[case];
     progress.now(at.selected.case.name);
     match *task {
         Task::Judge(_, gate) => {
-            let row = at.verdicts[gate].get_or_init(|| at.runner.judge(&at.selected.claims[gate]));
+            let row = at.runner.judge(&at.selected.claims[gate]);
+            if has_ended_programs() && matches!(row.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable)
+            {
+                return false;
+            }
+            let row = at.verdicts[gate].get_or_init(|| row);
             if verbose {
                 progress.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
             }
         }
         Task::Control(_, gate) => {
             let gate_of = &at.selected.claims[gate];
-            let verdict = at.verdicts[gate].get_or_init(|| at.runner.judge(gate_of));
-            if at.runner.tries_control(gate_of, verdict) {
-                at.controls[gate].get_or_init(|| at.runner.control(gate_of));
+            let row = at.verdicts[gate].get().cloned().unwrap_or_else(|| at.runner.judge(gate_of));
+            if at.runner.tries_control(gate_of, &row) {
+                let control = at.runner.control(gate_of);
+                // A run that ends with an error would count as a control that turned red.
+                if has_ended_programs() {
+                    return false;
+                }
+                at.controls[gate].get_or_init(|| control);
             }
         }
         Task::Draw(_) => {
-            at.figures.get_or_init(|| draw(at.selected, &at.runner));
+            let figures = draw(at.selected, &at.runner);
+            if has_ended_programs() && figures.is_err() {
+                return false;
+            }
+            at.figures.get_or_init(|| figures);
         }
     }
     progress.advance();
@@ -420,6 +442,7 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) {
 
 impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
+    true
         Self {
             selected,
             solvers: Arc::clone(&solvers),

@@ -126,8 +126,8 @@ impl Worker {
                         if process::size(out) > limits.bytes || process::size(self.folder.path()) > limits.bytes {
                             break Err(process::too_much(limits.bytes));
                         }
-                        if let Err(time_out) = limits.deadline.check() {
-                            break Err(time_out);
+                        if let Err(failure) = limits.check() {
+                            break Err(failure);
                         }
                     }
                 }

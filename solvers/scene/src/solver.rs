@@ -522,6 +522,9 @@ pub enum Failure {
     /// The program or the reading of its output exceeded the time limit.
     #[error("was not done after {0} s")]
     TimeOut(u64),
+    /// The program was ended by an interrupt of our process.
+    #[error("was ended by an interrupt")]
+    Interrupted,
     /// The program ended with an error code.
     #[error("failed: {0}")]
     Crash(String),

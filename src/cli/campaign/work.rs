@@ -14,6 +14,7 @@ use grainbench::campaign::log::Worker;
 use grainbench::campaign::plan::Plan;
 use grainbench::campaign::work::{Asked, Summary, Watch, work as do_chunk};
 use grainbench::campaign::{machine, slurm};
+use grainbench::reference::has_ended_programs;
 use grainbench::reports::number;
 use std::env;
 use std::path::PathBuf;
@@ -126,6 +127,10 @@ struct Told {
 impl Watch for Told {
     fn goes_on(&self) -> bool {
         !self.interrupt.is_asked()
+    }
+
+    fn are_results_valid(&self) -> bool {
+        !has_ended_programs()
     }
 
     fn begins(&self, tasks: usize) {
