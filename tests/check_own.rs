@@ -564,3 +564,17 @@ fn no_option_allows_samples_far_apart() {
     assert_eq!(checked_scene(&own, &ends, &[]).code, Some(0));
     assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
 }
+
+/// A file equals itself, however few digits it has.
+#[test]
+fn a_file_is_equal_to_itself() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("a.csv"), "time,x,q\n0.0,0.0,0.0\n1.0,2.0,0.3\n2.0,7.0,0.1\n").unwrap();
+    let answer = grainbench(directory.path(), &["compare", "a.csv", "a.csv", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let rows = results["verdicts"].as_array().unwrap();
+    assert!(rows.iter().all(|row| row["verdict"] == "pass"), "{rows:#?}");
+    fs::write(directory.path().join("b.csv"), "time,x,q\n0.0,0.0,0.00\n1.0,2.0,0.30\n2.0,7.0,0.10\n").unwrap();
+    let answer = grainbench(directory.path(), &["compare", "a.csv", "b.csv", "--json"]);
+    assert!(answer.out.contains("cannot tell"), "the second file has more digits: {}", answer.out);
+}

@@ -108,10 +108,13 @@ impl Column {
             if self.is_coordinate && change > 0.0 { change } else { self.magnitudes[which] }
         };
         let extents = [of(0), of(1)];
-        // Columns that are zero throughout are equal, however few digits they have.
         let extent = extents.into_iter().find(|extent| *extent > 0.0);
         self.difference.scale = extent.unwrap_or(1.0);
-        self.difference.open = extent.map_or(0.0, |_| self.difference.open + interpolated);
+        // Numbers that are printed alike throughout are equal, however few digits they have.
+        let [a, b] = self.printed;
+        let is_alike = a.digits == b.digits && a.scale == b.scale && interpolated == 0.0;
+        let is_equal = extent.is_none() || is_alike && self.difference.course.iter().all(|sample| sample.off == 0.0);
+        self.difference.open = if is_equal { 0.0 } else { self.difference.open + interpolated };
         self.difference
     }
 }
