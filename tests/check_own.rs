@@ -565,6 +565,31 @@ fn no_option_allows_samples_far_apart() {
     assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
 }
 
+/// A sample at a time of no step is missing, and is not left out of the comparison without a word.
+#[test]
+fn a_sample_between_steps_is_missing() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "title = 't'\ndimension = 2\nduration = 0.04\n[materials.m]\ndensity = 1000.0\n\
+         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n[grains.a]\nmaterial = 'm'\nradius = 0.1\n\
+         position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
+    fs::write(directory.path().join("s.toml"), scene).unwrap();
+    let judged = |time: &str| {
+        let rows: String = ["0,0.0,0.0", "1,1e-6,1e-6", "10000,0.01,0.01"].map(|row| format!("{row},1.0\n")).concat();
+        let table =
+            format!("step,time,a.x,a.vx\n{rows}20000,{time},0.02,1.0\n30000,0.03,0.03,1.0\n40000,0.04,0.04,1.0\n");
+        fs::write(directory.path().join("t.csv"), table).unwrap();
+        let words = ["check", "s.toml", "--dump", "t.csv", "--dt", "1e-6", "--power", "off", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let results: Value =
+            serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+        let rows = results["verdicts"].as_array().unwrap().clone();
+        rows.into_iter().find(|row| row["quantity"].as_str().unwrap().starts_with("a.x, worst of")).unwrap()
+    };
+    assert_eq!(judged("0.02")["verdict"], "pass");
+    let row = judged("0.02000002");
+    assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are missing"), "{row}");
+}
+
 /// A file equals itself, however few digits it has.
 #[test]
 fn a_file_is_equal_to_itself() {

@@ -118,6 +118,15 @@ impl Covered {
         if self.is_whole() { samples } else { format!("{samples} to t = {} s", number::significant(self.reached, 6)) }
     }
 
+    /// Makes a result amber if some samples were not compared, because our run has none at their times.
+    pub(super) fn all(&self, compared: usize, row: Verdict) -> Verdict {
+        let missing = self.samples.saturating_sub(compared);
+        if missing == 0 || row.outcome != Outcome::Pass {
+            return row;
+        }
+        row.left(Outcome::NoReference, format!("{missing} samples are missing: no step of the run has their times"))
+    }
+
     /// Returns the reason why claims about the whole run have no result; `None` if the output covers the whole run.
     pub(super) fn why_not(&self) -> Option<String> {
         let short = || match self.whole {

@@ -154,5 +154,5 @@ fn column(
         ..row(format!("{}, {}", of.name, covered.words()), of.unit)
     };
     let beside = Beside { floor: FLOOR, times, conventions: "conventions" };
-    super::judged_in_time(row, of, &beside, outputs)
+    covered.all(of.samples.len(), super::judged_in_time(row, of, &beside, outputs))
 }
