@@ -17,8 +17,11 @@ pub use read::Read;
 use crate::registry::HOME;
 use claims_file::{Claimed, ClaimsFile};
 use grainbench_harness::case::{Case, Home, fraction};
-use grainbench_harness::claim::Claim;
+use grainbench_harness::claim::{Claim, claim};
+use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
+use grainbench_harness::run::Missing;
+use grainbench_harness::tolerance::exactly;
 use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::{line_of, written};
 use row::Reader;
@@ -114,12 +117,21 @@ pub(crate) const EMPTY: Case = Case {
     home: &HOME,
 };
 
-/// Returns the claims of a case in the registry from the text of its file. A wrong file has no claims; the tests compare
-/// the number of claims with the file.
+/// Returns the claims of a case in the registry from the text of its file. A wrong file has one claim, which is red.
 pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
-    let claims = toml::from_str(text).map(|file: ClaimsFile| file.claims).unwrap_or_default();
-    rows(claims, &Reader { folder: &folder, source: &source, plots: false }).unwrap_or_default()
+    let claims = toml::from_str(text).map_err(|error| error.message().replace('\n', " "));
+    let read = claims
+        .and_then(|file: ClaimsFile| rows(file.claims, &Reader { folder: &folder, source: &source, plots: false }));
+    read.unwrap_or_else(|reason| vec![unreadable(format!("{}: {reason}", folder.join(CLAIMS).display()))])
+}
+
+/// Returns a claim that needs no run and always ends with an error.
+fn unreadable(reason: String) -> Claim {
+    claim("claims that can be read", "1")
+        .holds("the file of claims is valid", move |_| Err(Missing(format!("claims that can be read: {reason}"))))
+        .within(exactly("there is nothing to measure"))
+        .refuses(Control::scene("none", |_| ()))
 }
 
 /// Converts the claims of a file.
@@ -159,4 +171,24 @@ fn text_of(file: &Path) -> Result<String, NoCase> {
     let told =
         |(expected, found)| NoCase { file: file.to_owned(), what: format!("expected {expected}, found {found}") };
     written(file).map_err(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{CASES, runner};
+    use grainbench_harness::verdict::Outcome;
+
+    /// A case whose file of claims cannot be read is red, and not without claims.
+    #[test]
+    fn claims_that_cannot_be_read_are_red() {
+        let case = CASES[0];
+        for text in ["[[claims]]\nno-such-key = 1\n", "= 1"] {
+            let claims = claims(case, text);
+            let rows: Vec<_> = claims.iter().map(|claim| runner(case).judge(claim)).collect();
+            assert_eq!(rows.iter().map(|row| row.outcome).collect::<Vec<_>>(), [Outcome::Fail], "{text}");
+            let said = rows[0].detail.clone().unwrap_or_default();
+            assert!(said.contains("claims.toml: "), "{said}");
+        }
+    }
 }
