@@ -149,6 +149,13 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
     let again = quantities("old");
     assert!(!again.is_empty() && again.iter().all(|quantity| control == **quantity), "{again:?}");
+    // Without names, the cases of the interrupted run are repeated, and not the whole registry.
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["controls"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &["--rerun-failed", "--out", "old"]).code, Some(0));
+    assert_eq!(quantities("old"), again);
 }
 
 /// A wrong report for the comparison is an error before any run and any output.

@@ -47,6 +47,17 @@ impl Earlier {
         serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
     }
 
+    /// Returns the cases that an interrupted run named; none for another run or for all cases.
+    pub(crate) fn cases(&self) -> Vec<String> {
+        let options = if self.is_interrupted() { &self.provenance.options[..] } else { &[] };
+        let is_case = |words: &&String| !words.starts_with("--") && !words.starts_with("interrupted:");
+        options.iter().take_while(is_case).cloned().collect()
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.provenance.options.iter().any(|words| words.starts_with("interrupted:"))
+    }
+
     /// Returns true if a claim of a case was red: its result with this solver was red, or its control stayed green.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
@@ -55,9 +66,8 @@ impl Earlier {
 
     /// Returns true if an interrupted run left out a claim of a case, or its control.
     pub(crate) fn was_left_out(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
-        let is_interrupted = self.provenance.options.iter().any(|words| words.starts_with("interrupted:"));
         let (rows, controls) = self.of_claim(case, solver, claim);
-        is_interrupted && (rows.is_empty() || with_controls && controls.is_empty())
+        self.is_interrupted() && (rows.is_empty() || with_controls && controls.is_empty())
     }
 
     /// Returns the results and the controls of a claim.

@@ -118,6 +118,10 @@ pub(crate) struct Options {
 /// Runs the named cases; all cases if none is named.
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let filters = Filters::read(&options.filter)?;
+    // Without names, the cases of the earlier run are repeated.
+    let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
+    let of_before = before.as_ref().map(Earlier::cases).unwrap_or_default();
+    let cases = if cases.is_empty() { &of_before[..] } else { cases };
     let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
     let mut selected = select::select(cases, &options.solver, &options.levels)?;
     narrow(&mut selected, options, &filters)?;
@@ -438,11 +442,11 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) -
         }
     }
     progress.advance();
+    true
 }
 
 impl<'a> Work<'a> {
     fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
-    true
         Self {
             selected,
             solvers: Arc::clone(&solvers),
