@@ -119,7 +119,7 @@ pub(crate) struct Options {
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let filters = Filters::read(&options.filter)?;
     // Without names, the cases of the earlier run are repeated.
-    let before = if options.rerun_failed { Some(Earlier::read("--rerun-failed", &options.out)?) } else { None };
+    let before = if options.retry_failed { Some(Earlier::read("--retry-failed", &options.out)?) } else { None };
     let of_before = before.as_ref().map(Earlier::cases).unwrap_or_default();
     let cases = if cases.is_empty() { &of_before[..] } else { cases };
     let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
