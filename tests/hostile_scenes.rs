@@ -64,7 +64,7 @@ fn grains_that_cannot_be_placed_end_in_an_error() {
     for (grains, reason) in [
         ("packed = { seed = 1, radii = [[1e200, 3000]] }", "expected grains that fill"),
         ("packed = { seed = 1, radii = [[1000.0, 3000]] }", "expected grains that fill"),
-        ("radius = 1e200\nrandom = { count = 3000, seed = 1 }", "expected grains that find room"),
+        ("radius = 1000.0\nrandom = { count = 3000, seed = 1 }", "expected grains that find room"),
     ] {
         let (code, said) = simulated(&scene(grains), "", &["dem"]);
         assert!(code == 2 && said.contains(reason), "{grains}: {said}");

@@ -96,6 +96,9 @@ pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension
     let asked = filled(radii.iter().copied(), domain, dimension);
     // No packing of equal discs or spheres is denser (Thue, Hales). Packings of several sizes may be slightly denser.
     let most: u32 = if dimension == Dimension::Two { 90 } else { 74 };
+    if !asked.is_finite() {
+        return None;
+    }
     let can_be_packed = |percent: u32| {
         let part = f64::from(percent) / 100.0 / asked;
         let scale = if dimension == Dimension::Two { part.sqrt() } else { libm::cbrt(part) };
