@@ -574,9 +574,16 @@ fn a_sample_between_steps_is_missing() {
          position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
     fs::write(directory.path().join("s.toml"), scene).unwrap();
     let judged = |time: &str| {
-        let rows: String = ["0,0.0,0.0", "1,1e-6,1e-6", "10000,0.01,0.01"].map(|row| format!("{row},1.0\n")).concat();
-        let table =
-            format!("step,time,a.x,a.vx\n{rows}20000,{time},0.02,1.0\n30000,0.03,0.03,1.0\n40000,0.04,0.04,1.0\n");
+        // The interval of 20 samples is 2000 steps. The sample after one step makes our run sample each step.
+        let row = |step: u32, time: &str| format!("{step},{time},{:.6},1.000000\n", f64::from(step) * 1e-6);
+        let other = |step: u32| row(step, &format!("{:.6}", f64::from(step) * 1e-6));
+        let rows: String =
+            (0..=20)
+                .map(|at| {
+                    if at == 10 { row(20_000, time) } else { other(2000 * at) + &other(1).repeat(usize::from(at == 0)) }
+                })
+                .collect();
+        let table = format!("step,time,a.x,a.vx\n{rows}");
         fs::write(directory.path().join("t.csv"), table).unwrap();
         let words = ["check", "s.toml", "--dump", "t.csv", "--dt", "1e-6", "--power", "off", "--json"];
         let answer = grainbench(directory.path(), &words);
@@ -585,7 +592,7 @@ fn a_sample_between_steps_is_missing() {
         let rows = results["verdicts"].as_array().unwrap().clone();
         rows.into_iter().find(|row| row["quantity"].as_str().unwrap().starts_with("a.x, worst of")).unwrap()
     };
-    assert_eq!(judged("0.02")["verdict"], "pass");
+    assert_eq!(judged("0.020000")["verdict"], "pass");
     let row = judged("0.02000002");
     assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are missing"), "{row}");
 }

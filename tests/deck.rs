@@ -211,7 +211,15 @@ fn the_command_leaves_a_whole_deck() {
     insta::assert_snapshot!(answer.out);
     assert_eq!(
         files(directory.path()),
-        ["d/data.grains", "d/in.liggghts", "d/wall-1.stl", "d/wall-2.stl", "d/wall-3.stl", "d/wall-4.stl"]
+        [
+            "d/data.grains",
+            "d/in.liggghts",
+            "d/manifest.json",
+            "d/wall-1.stl",
+            "d/wall-2.stl",
+            "d/wall-3.stl",
+            "d/wall-4.stl"
+        ]
     );
 }
 
