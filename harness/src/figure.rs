@@ -26,7 +26,7 @@ impl Axis {
     }
 }
 
-/// Line style of a curve. The colour follows from the order of the curves.
+/// Line style of a curve. The colour follows from the solver that the label names, or from the order of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
     /// A solid line.

@@ -44,8 +44,8 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
 }
 
-/// Returns the figure of error against time over all cases. The table of factors serves as its legend.
-pub(crate) fn picture(costs: &Costs) -> String {
+/// Returns the graph of error against time over all cases. The table of factors serves as its legend.
+fn over_cases(costs: &Costs) -> Graph {
     let mut curves = Vec::new();
     for line in &costs.lines {
         let means =
@@ -59,14 +59,19 @@ pub(crate) fn picture(costs: &Costs) -> String {
         .zip(&costs.lines)
         .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
         .collect();
-    let graph = Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves };
+    Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves }
+}
+
+/// Returns the figure of error against time over all cases.
+pub(crate) fn picture(costs: &Costs) -> String {
     let form = Form { width: 560.0, height: 470.0, legend: false };
-    plot::markup(&graph::draw_as("Error against time, over all cases", &graph, form))
+    plot::markup(&graph::draw_as("Error against time, over all cases", &over_cases(costs), form))
 }
 
 /// Returns the table of factors, and a note about their definition.
 pub(crate) fn factors(costs: &Costs) -> Markup {
     let stamp = &costs.stamp;
+    let graph = over_cases(costs);
     html! {
         table {
             thead {
@@ -76,9 +81,9 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
                 }
             }
             tbody {
-                @for (at, line) in costs.lines.iter().enumerate() {
+                @for (line, (_, key)) in costs.lines.iter().zip(graph::keys(&graph)) {
                     tr class=[stamp.is_old(&line.solver).then_some("old")] {
-                        th scope="row" { (graph::key(at)) " " (line.solver) }
+                        th scope="row" { (key) " " (line.solver) }
                         @for factor in &line.factors { td.n { (cell(factor.as_ref(), line.asked)) } }
                     }
                 }

@@ -6,6 +6,9 @@ pub const FAINT: &str = "#666";
 /// Colours of Okabe and Ito, without yellow, which is too pale on white, and without black, which dashed curves have.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
+/// Solvers whose colour and marker are the same in all figures.
+pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
+
 /// Shades of dashed curves, which are exact solutions and limits.
 const SHADES: [&str; 3] = ["#222", "#666", "#999"];
 
@@ -68,14 +71,29 @@ impl Marker {
     }
 }
 
-/// Returns the colour of a curve; `place` is its index among the curves that are not dashed.
+/// Returns the indices of the styles of curves that are not dashed. The only curve of a solver in [`SOLVERS`] has the index
+/// of its solver, and the other curves have the free indices. The name of the solver is the label up to ` (` or `: `.
+#[must_use]
+pub fn places(labels: &[&str]) -> Vec<usize> {
+    let solver = |label: &&str| {
+        let name = label.split(" (").next()?.split(": ").next()?;
+        SOLVERS.iter().position(|solver| *solver == name)
+    };
+    let solvers: Vec<Option<usize>> = labels.iter().map(solver).collect();
+    let is_only = |place: &usize| solvers.iter().filter(|other| **other == Some(*place)).count() == 1;
+    let mut free = (0..).filter(|place| !solvers.contains(&Some(*place)));
+    let place = |solver: &Option<usize>| solver.filter(is_only).or_else(|| free.next()).unwrap_or_default();
+    solvers.iter().map(place).collect()
+}
+
+/// Returns the colour of a curve; `place` is an index of [`places`].
 #[must_use]
 pub fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
 }
 
-/// Returns the marker of a curve; `place` is its index among the curves that are not dashed. With seven markers and six
-/// colours, pairs repeat after 42 curves.
+/// Returns the marker of a curve; `place` is an index of [`places`]. With seven markers and six colours, pairs repeat after
+/// 42 curves.
 #[must_use]
 pub fn marker(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
@@ -91,4 +109,17 @@ pub fn shade(place: usize) -> &'static str {
 #[must_use]
 pub fn dash(place: usize) -> (u32, u32) {
     DASHES[place % DASHES.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_solver_has_the_same_colour_in_all_figures() {
+        assert_eq!(places(&["lammps", "dem (not asked)", "yade", "mpm: bias 1 %"]), [3, 0, 1, 2]);
+        assert_eq!(places(&["Δt = .1", "Δt = .2"]), [0, 1]);
+        // Two curves of one solver need two colours.
+        assert_eq!(places(&["dem (μ = .3)", "dem (μ = .6)"]), [1, 2]);
+    }
 }

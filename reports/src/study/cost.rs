@@ -3,10 +3,9 @@
 use super::Study;
 use super::point::{Counts, Diagram, Point, Standing};
 use crate::number;
+use crate::plot::palette::SOLVERS;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Solvers of every diagram in a fixed order, so that each has the same colour in all diagrams.
-const OWN: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 /// Errors for which the cost is stated.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 /// Smallest plotted error; smaller errors are rounding and are plotted here.
@@ -29,7 +28,7 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
 
 /// Returns the solvers of some diagrams: ours first, then all others with points.
 pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
-    let mut lines = OWN.to_vec();
+    let mut lines = SOLVERS.to_vec();
     for point in diagrams.into_iter().flat_map(|diagram| &diagram.points) {
         if !lines.contains(&point.solver.as_str()) {
             lines.push(&point.solver);
@@ -131,7 +130,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
         bars.extend(floors(diagram, line));
     }
     if !bars.is_empty() {
-        curves.push(Curve::new("floor: what refining does not take away", Stroke::Bars, bars));
+        curves.push(Curve::new("floor: error that refining does not reduce", Stroke::Bars, bars));
     }
     let all = front(&diagram.points);
     let mut stairs = Vec::new();

@@ -110,16 +110,18 @@ impl Form {
     pub const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
 }
 
-/// Draws the marker and the colour of a curve, for a table that serves as legend. `place` is its index among the curves
-/// that are not dashed.
+/// Draws the samples of the curves with labels, for a legend beside the drawing.
 #[must_use]
-pub fn key(place: usize) -> Markup {
-    let look = Look { colour: palette::colour(place), marker: palette::marker(place), dash: None };
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
-            (curves::sample(Stroke::MarkedLine, &look, (2.0, 6.0), (24.0, 6.0)))
+pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
+    let labelled = graph.curves.iter().zip(looks(&graph.curves)).filter(|(curve, _)| !curve.label.is_empty());
+    let sample = |(curve, look): (&'_ Curve, Look)| {
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
+                (curves::sample(curve.stroke, &look, (2.0, 6.0), (24.0, 6.0)))
+            }
         }
-    }
+    };
+    labelled.map(|(curve, look)| (curve.label.as_str(), sample((curve, look)))).collect()
 }
 
 /// Draws a graph as a complete SVG document.
@@ -211,9 +213,12 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
-/// Returns the style of each curve. Computed curves cycle through colours, dashed curves through shades.
+/// Returns the style of each curve. Computed curves have the colours of their solvers, dashed curves cycle through shades.
 fn looks(curves: &[Curve]) -> Vec<Look> {
-    let (mut coloured, mut dashed) = (0, 0);
+    let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
+    let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
+    let mut coloured = palette::places(&labels).into_iter();
+    let mut dashed = 0;
     let mut before = Look { colour: palette::colour(0), marker: palette::marker(0), dash: None };
     curves
         .iter()
@@ -223,12 +228,12 @@ fn looks(curves: &[Curve]) -> Vec<Look> {
                 Stroke::Bars => return Look { colour: palette::FAINT, ..before },
                 _ => {}
             }
-            let place = if curve.stroke == Stroke::Dashed { &mut dashed } else { &mut coloured };
-            let here = *place;
-            *place += 1;
             if curve.stroke == Stroke::Dashed {
+                let here = dashed;
+                dashed += 1;
                 Look { colour: palette::shade(here), marker: palette::marker(here), dash: Some(palette::dash(here)) }
             } else {
+                let here = coloured.next().unwrap_or_default();
                 before = Look { colour: palette::colour(here), marker: palette::marker(here), dash: None };
                 before
             }
