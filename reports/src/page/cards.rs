@@ -106,7 +106,7 @@ fn card(
         }
     };
     html! {
-        div.card class=(class) data-card=(solver) {
+        div class={ "card " (class) } data-card=(solver) {
             h3 { (filter(None, html! { (solver) })) span { (pass) "/" (all) } }
             dl {
                 div { dt { "passed" } dd { (kinds(report, solver)) } }

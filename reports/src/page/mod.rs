@@ -167,6 +167,15 @@ mod tests {
         assert_eq!(page.matches("<script").count(), 1);
     }
 
+    /// A browser ignores the second attribute of the same name.
+    #[test]
+    fn no_tag_has_two_classes() {
+        let page = html(&sample::report());
+        for tag in page.split('<').filter_map(|rest| rest.split('>').next()) {
+            assert!(tag.matches(" class=").count() <= 1, "{tag}");
+        }
+    }
+
     #[test]
     fn hostile_text_stays_text() {
         let page = html(&sample::hostile());

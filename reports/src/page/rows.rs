@@ -59,7 +59,7 @@ fn row(verdict: &Verdict, id: &str) -> Markup {
     html! {
         tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) id=(id) class=(class) {
             td {
-                span.mark class=(class) { (symbol) " " (verdict.outcome.word()) }
+                span class={ "mark " (class) } { (symbol) " " (verdict.outcome.word()) }
                 @if let Some(detail) = &verdict.detail { span.fine { (detail) } }
             }
             th scope="row" { (verdict.quantity) @if !verdict.variant.is_empty() { span.fine { (verdict.variant) } } }

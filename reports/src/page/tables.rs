@@ -25,7 +25,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
                 @for control in controls {
                     @let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
                     tr class=(class) {
-                        td { span.mark class=(class) { (result) } " by " (control.how.word()) }
+                        td { span class={ "mark " (class) } { (result) } " by " (control.how.word()) }
                         th scope="row" {
                             (control.quantity)
                             @if !control.variant.is_empty() { span.fine { (control.variant) } }

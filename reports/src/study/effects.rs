@@ -209,7 +209,7 @@ fn table(ledger: &[Entry]) -> Markup {
                         th scope="row" { (entry.case) @if !entry.variant.is_empty() { "/" (entry.variant) } }
                         td { (entry.effect) }
                         td { @if entry.on { (entry.key) } @else { "off; tried with " (entry.tried.join(", ")) } }
-                        td.verdict { span.mark class=(class(entry.worth)) { (entry.worth.word()) } }
+                        td.verdict { span class={ "mark " (class(entry.worth)) } { (entry.worth.word()) } }
                         td.wide {
                             @if let Some(shift) = farthest(entry) {
                                 (shift.quantity) ", " (shift.solver) ": " (number::error(shift.with)) " → "

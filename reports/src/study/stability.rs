@@ -269,7 +269,7 @@ fn matrix(rows: &[Hard]) -> Markup {
                             td {
                                 @if let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) {
                                     @let (symbol, class) = sign(row.standing);
-                                    span.mark class=(class) { (symbol) " " (row.standing.word()) }
+                                    span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
                                     @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
                                 }
                             }
