@@ -1,9 +1,9 @@
-//! Stored measurements of cost and stability, with the hashes of the solver sources.
+//! Stored measurements of cost, stability and effects, with the hashes of the solver sources.
 
 pub use grainbench_cases::kept::sources;
-use grainbench_reports::measured::{Costs, Measurements, Stability};
+use grainbench_reports::measured::{Costs, Effects, Measurements, Stability};
 use grainbench_reports::study::Study;
-use grainbench_studies::kept::{COST, STABILITY};
+use grainbench_studies::kept::{COST, EFFECTS, STABILITY};
 
 /// Cost measurements of external solvers and of our solvers in some scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
@@ -19,5 +19,6 @@ pub fn measured() -> Result<Measurements, String> {
     let mut cost = Costs::of(&read("studies/kept/cost.json", COST)?, &sources);
     cost.add(Costs::of(&read("peers/cost.json", PEERS)?, &sources));
     let stability = Stability::of(&read("studies/kept/stability.json", STABILITY)?, &sources);
-    Ok(Measurements { cost: Some(cost), stability: Some(stability) })
+    let effects = Effects::of(&read("studies/kept/effects.json", EFFECTS)?, &sources);
+    Ok(Measurements { cost: Some(cost), stability: Some(stability), effects: Some(effects) })
 }

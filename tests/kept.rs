@@ -1,4 +1,4 @@
-//! Stored studies of cost and stability for the first screen of a page.
+//! Stored studies of cost, stability and effects for the first screen of a page.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -17,7 +17,7 @@ fn study(name: &str) -> Study {
 /// The source tree of each stored number must be available to a reader.
 #[test]
 fn what_is_kept_says_of_which_sources_it_is() {
-    for name in ["cost", "stability"] {
+    for name in ["cost", "stability", "effects"] {
         let study = study(name);
         assert!(!study.provenance.commit.contains("changes"), "{name} was measured of a tree that nobody has");
         assert!(!study.provenance.options.iter().any(|word| word.contains("unfinished")), "{name} is half a study");
@@ -32,8 +32,9 @@ fn what_is_kept_says_of_which_sources_it_is() {
 #[test]
 fn a_solver_that_changed_is_told() {
     let measured = measured().unwrap();
-    let (cost, stability) = (measured.cost.unwrap(), measured.stability.unwrap());
-    for (stamp, study) in [(&cost.stamp, study("cost")), (&stability.stamp, study("stability"))] {
+    let (cost, stability, effects) = (measured.cost.unwrap(), measured.stability.unwrap(), measured.effects.unwrap());
+    let stamps = [(&cost.stamp, "cost"), (&stability.stamp, "stability"), (&effects.stamp, "effects")];
+    for (stamp, study) in stamps.map(|(stamp, name)| (stamp, study(name))) {
         for solver in ["dem", "mpm", "rigid"] {
             assert_eq!(stamp.is_old(solver), study.sources.get(solver) != sources(solver).as_ref(), "{solver}");
         }

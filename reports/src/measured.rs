@@ -1,8 +1,9 @@
-//! Summaries of stored studies of cost and stability by solver, for the top of a page.
+//! Summaries of stored studies of cost, stability and effects, for the first screen of a page.
 
 use crate::report::Provenance;
+use crate::study::effects::Entry;
 use crate::study::point::{Diagram, Standing};
-use crate::study::stability::Hardness;
+use crate::study::stability::{Hard, Hardness, Limit};
 use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -20,6 +21,9 @@ pub struct Measurements {
     pub cost: Option<Costs>,
     /// Stability.
     pub stability: Option<Stability>,
+    /// Effects.
+    #[serde(default)]
+    pub effects: Option<Effects>,
 }
 
 /// Provenance of a measurement, and the solvers that changed since.
@@ -40,6 +44,9 @@ pub struct Costs {
     pub quantities: usize,
     /// One entry per solver, ours first.
     pub lines: Vec<Line>,
+    /// Example for the first screen: the first quantity for which most solvers reach an error of 1 %.
+    #[serde(default)]
+    pub example: Option<Diagram>,
 }
 
 /// Cost of accuracy of one solver.
@@ -78,6 +85,21 @@ pub struct Stability {
     pub stamp: Stamp,
     /// One entry per solver.
     pub lines: Vec<Hold>,
+    /// Largest stable steps.
+    #[serde(default)]
+    pub limits: Vec<Limit>,
+    /// Hard cases.
+    #[serde(default)]
+    pub hard: Vec<Hard>,
+}
+
+/// Effects that are on in the scenes of the cases.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effects {
+    /// Provenance of the measurement.
+    pub stamp: Stamp,
+    /// One entry per scene and effect.
+    pub ledger: Vec<Entry>,
 }
 
 /// Stability of one solver.
@@ -162,7 +184,11 @@ impl Costs {
             points: study.diagrams.iter().flat_map(|diagram| places(diagram, name, &names)).collect(),
             factors: TARGETS.map(|target| factor(study, name, &names, target)),
         });
-        Self { stamp: Stamp::of(study, &names, today), quantities: study.diagrams.len(), lines: lines.collect() }
+        let count = |diagram: &&Diagram| names.iter().filter(|name| time(diagram, name, TARGETS[AT]).is_some()).count();
+        // The maximum of the reversed order is the first one.
+        let example = study.diagrams.iter().rev().max_by_key(count).cloned();
+        let stamp = Stamp::of(study, &names, today);
+        Self { stamp, quantities: study.diagrams.len(), lines: lines.collect(), example }
     }
 }
 
@@ -218,7 +244,18 @@ impl Stability {
             }
         }
         let lines = names.iter().map(|name| hold(study, name)).collect();
-        Self { stamp: Stamp::of(study, &names, today), lines }
+        let stamp = Stamp::of(study, &names, today);
+        Self { stamp, lines, limits: study.limits.clone(), hard: study.hard.clone() }
+    }
+}
+
+impl Effects {
+    /// Summarises a stored study.
+    #[must_use]
+    pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
+        let names: Vec<&str> = study.sources.keys().map(String::as_str).collect();
+        let ledger = study.ledger.iter().filter(|entry| entry.on).cloned().collect();
+        Self { stamp: Stamp::of(study, &names, today), ledger }
     }
 }
 

@@ -286,7 +286,7 @@ pub(crate) fn report() -> Report {
         sections: vec![backspin(), nine_discs()],
         judged: Vec::new(),
         shown: Vec::new(),
-        measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None },
+        measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None, effects: None },
         red_because: Vec::new(),
     };
     report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];

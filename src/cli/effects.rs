@@ -1,7 +1,8 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
-use super::cost::Follower;
+use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::keep::keep_study;
 use super::provenance::provenance;
 use super::solver;
 use super::step::Step;
@@ -33,6 +34,9 @@ pub(crate) struct Arguments {
     /// Repeat finished parts.
     #[arg(long)]
     no_cache: bool,
+    /// Store the values for the first screen of the page in the source tree: all cases.
+    #[arg(long, conflicts_with = "cases")]
+    update_stored: bool,
     /// Directory for the report and the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
@@ -111,7 +115,12 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             options.push(format!("unfinished: {} of {count} cases", at + 1));
         }
         study.provenance = provenance(options, start.elapsed().as_secs_f64());
+        let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
+        study.sources = sources(&solvers.collect::<Vec<_>>());
         write_study(&arguments.out, &study).map_err(Fault::writing)?;
+    }
+    if arguments.update_stored {
+        keep_study("effects", &study)?;
     }
     let reused = follower.end();
     tell(&study, arguments, &format!("{reused} of {pieces} pieces were done before\n"))

@@ -1,4 +1,4 @@
-//! Stored studies of `cost --update-stored` and `stability --update-stored` in this crate's folder.
+//! Stored studies of `cost`, `stability` and `effects` with `--update-stored`, in this crate's folder.
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 pub const COST: &str = include_str!("../kept/cost.json");
 /// Stored result of `stability --update-stored`.
 pub const STABILITY: &str = include_str!("../kept/stability.json");
+
+/// Stored result of `effects --update-stored`.
+pub const EFFECTS: &str = include_str!("../kept/effects.json");
 
 /// Returns the path of a stored study.
 #[must_use]

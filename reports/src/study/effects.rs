@@ -98,11 +98,6 @@ pub(crate) fn render(study: &Study) -> Markup {
                 (count(Worth::Inert)) " inert, " (count(Worth::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }
-            p.note {
-                "Of an effect that is on: what changes most without it, in units of what its gate allows, and what "
-                "it costs as particle-steps and contact evaluations with it over those without. Of one that is off: "
-                "= where it is inert in every bit, ≠ where not."
-            }
             (heat(&study.ledger))
             h3 { "The ledger" }
             (table(&study.ledger))
@@ -131,8 +126,20 @@ fn moved(shift: &Shift) -> f64 {
     }
 }
 
+/// Returns the change of the answer without the effect, as a fraction of its scale; none if a value is missing.
+pub(crate) fn change(shift: &Shift) -> Option<f64> {
+    Some((shift.without? - shift.with?).abs()).filter(|change| change.is_finite())
+}
+
+/// Returns the claimed quantity with the median change, or one without a value.
+pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
+    let mut shifts: Vec<&Shift> = entry.shifts.iter().filter(|shift| change(shift).is_some()).collect();
+    shifts.sort_by(|a, b| change(a).unwrap_or_default().total_cmp(&change(b).unwrap_or_default()));
+    shifts.get(shifts.len() / 2).copied().or_else(|| entry.shifts.first())
+}
+
 /// Renders the matrix of scenes and effects. Colour and number show the change without the effect.
-fn heat(ledger: &[Entry]) -> Markup {
+pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let mut effects: Vec<&str> = Vec::new();
     let mut scenes: Vec<(&str, &str)> = Vec::new();
     for entry in ledger {
@@ -159,29 +166,31 @@ fn heat(ledger: &[Entry]) -> Markup {
             }
         }
     };
-    scrolling("Scenes by effects", &table)
+    html! {
+        p.note {
+            "Of an effect that is on: the change of the answer without it, as the median over the claims, and its cost: "
+            "particle-steps and contact evaluations with it over those without. Green: every claim passes without it. "
+            "Of one that is off: = where it changes no bit, ≠ where it does."
+        }
+        (scrolling("Scenes by effects", &table))
+    }
 }
 
 fn warmth(entry: &Entry) -> Markup {
     if !entry.on {
         return html! { @if entry.worth == Worth::NotInert { b.f0 { "≠" } } @else { "=" } };
     }
-    let moved = farthest(entry).map(moved);
-    let class = match moved {
-        None => "",
-        Some(moved) if moved <= 1.0 => "c0",
-        Some(moved) if moved <= 10.0 => "k0",
-        Some(moved) if moved <= 1e3 => "k1",
-        Some(_) => "k2",
-    };
-    let words = match moved {
-        None => "—".to_owned(),
-        Some(moved) if moved.is_finite() => number::significant(moved, 2),
-        Some(_) => "∞".to_owned(),
+    let change = median(entry).and_then(change);
+    let class = match (entry.worth, change) {
+        (Worth::NotWorthSimulating, _) => "c0",
+        (Worth::Needed, Some(change)) if change <= 0.01 => "k0",
+        (Worth::Needed, Some(change)) if change <= 0.5 => "k1",
+        (Worth::Needed, _) => "k2",
+        _ => "cannot",
     };
     html! {
         div class=(class) {
-            b { (words) }
+            b { (change.map_or_else(|| "no value".to_owned(), number::fraction)) }
             @if let Some(counts) = entry.counts { span.fine { "× " (number::significant(counts, 3)) } }
         }
     }

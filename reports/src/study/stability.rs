@@ -2,7 +2,7 @@
 
 use super::Study;
 use super::page::figure;
-use crate::measured::Stability;
+use crate::measured::{Hold, Stability};
 use crate::number;
 use crate::page::scrolling;
 use crate::plot::DrawError;
@@ -90,7 +90,7 @@ pub struct Hard {
 }
 
 /// Returns the values without duplicates, in the order of their first occurrence.
-fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+pub(crate) fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for value in values {
         if !seen.contains(&value) {
@@ -102,37 +102,47 @@ fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// Returns figures of the largest stable step against the parameter, one for each unit of the step.
 #[must_use]
-pub fn figures(study: &Study) -> Vec<Figure> {
-    let maps = distinct(study.limits.iter().map(|limit| limit.unit.as_str())).into_iter().filter_map(|unit| {
-        map(study.limits.iter().filter(|limit| limit.unit == unit && limit.at.is_some()).collect(), unit)
-    });
-    against_exact(study).into_iter().chain(maps).collect()
+pub fn figures(limits: &[Limit]) -> Vec<Figure> {
+    let units = distinct(limits.iter().map(|limit| limit.unit.as_str()));
+    let of_unit =
+        |unit: &str| limits.iter().filter(|limit| limit.unit == unit && limit.at.is_some()).collect::<Vec<_>>();
+    let maps = units.into_iter().filter_map(|unit| map(&of_unit(unit), unit));
+    against_exact(limits).into_iter().chain(maps).collect()
 }
 
-fn map(rows: Vec<&Limit>, unit: &str) -> Option<Figure> {
+/// Points of a curve: parameter and step.
+type Points = Vec<(f64, f64)>;
+
+fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
     let knob = rows.first()?.knob.clone();
     let exact = rows.iter().any(|row| row.exact.is_some());
-    for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
-        let of = |solver: &str, value: fn(&Limit) -> Option<f64>| -> Vec<(f64, f64)> {
-            let mine = rows.iter().filter(|row| row.scene == scene && row.solver == solver);
-            let mut points: Vec<(f64, f64)> = mine.filter_map(|row| Some((row.at?, value(row)?))).collect();
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            points
-        };
-        for solver in distinct(rows.iter().filter(|row| row.scene == scene).map(|row| row.solver.as_str())) {
-            let found = of(solver, |row| row.found);
-            if !found.is_empty() {
-                let stroke = if exact { Stroke::Markers } else { Stroke::MarkedLine };
-                curves.push(Curve::new(
-                    if exact { format!("{scene}, {solver}") } else { solver.to_owned() },
-                    stroke,
-                    found,
-                ));
-            }
+    let points = |of: &dyn Fn(&Limit) -> Option<f64>| -> Points {
+        let mut points: Points = rows.iter().filter_map(|row| Some((row.at?, of(row)?))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    // Equal curves of several solvers would cover each other, so they are one curve.
+    let mut groups = Vec::<(Vec<&str>, Points)>::new();
+    for solver in distinct(rows.iter().map(|row| row.solver.as_str())) {
+        let found = points(&|row| row.found.filter(|_| row.solver == solver));
+        match groups.iter_mut().find(|(_, points)| *points == found) {
+            Some((solvers, _)) => solvers.push(solver),
+            None => groups.push((vec![solver], found)),
         }
+    }
+    let stroke = if exact { Stroke::Markers } else { Stroke::MarkedLine };
+    for (solvers, found) in groups.into_iter().filter(|(_, found)| !found.is_empty()) {
+        let label = match solvers.split_first() {
+            Some((first, [])) => (*first).to_owned(),
+            Some((first, others)) => format!("{first} (and {}: equal)", others.join(", ")),
+            None => continue,
+        };
+        curves.push(Curve::new(label, stroke, found));
+    }
+    for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
         let first = rows.iter().find(|row| row.scene == scene).map_or("", |row| row.solver.as_str());
-        let line = of(first, |row| row.exact);
+        let line = points(&|row| row.exact.filter(|_| row.scene == scene && row.solver == first));
         if line.len() > 1 {
             curves.push(Curve::new(format!("{scene}, exact"), Stroke::Dashed, line));
         }
@@ -155,11 +165,11 @@ fn map(rows: Vec<&Limit>, unit: &str) -> Option<Figure> {
 }
 
 /// Returns the figure of largest stable steps against the exact limits.
-fn against_exact(study: &Study) -> Option<Figure> {
+fn against_exact(limits: &[Limit]) -> Option<Figure> {
     let mut curves = Vec::new();
     let mut ends = (f64::INFINITY, 0.0_f64);
-    for solver in distinct(study.limits.iter().map(|row| row.solver.as_str())) {
-        let mine = study.limits.iter().filter(|row| row.solver == solver);
+    for solver in distinct(limits.iter().map(|row| row.solver.as_str())) {
+        let mine = limits.iter().filter(|row| row.solver == solver);
         let points: Vec<(f64, f64)> = mine.filter_map(|row| Some((row.exact?, row.found?))).collect();
         for (exact, _) in &points {
             ends = (ends.0.min(*exact), ends.1.max(*exact));
@@ -182,7 +192,7 @@ fn against_exact(study: &Study) -> Option<Figure> {
 }
 
 /// Renders the table of totals: one row per solver with its limits and its outcomes in hard cases.
-fn totals(study: &Study) -> Markup {
+fn totals(lines: &[Hold]) -> Markup {
     let table = html! {
         table {
             thead {
@@ -196,7 +206,7 @@ fn totals(study: &Study) -> Markup {
                 }
             }
             tbody {
-                @for line in &Stability::of(study, &|_| None).lines {
+                @for line in lines {
                     tr {
                         th scope="row" { (line.solver) }
                         td {
@@ -218,33 +228,41 @@ fn totals(study: &Study) -> Markup {
 
 /// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
-    let pictures: Vec<Markup> = figures(study).iter().map(figure).collect::<Result<_, _>>()?;
+    let tables = tables(&Stability::of(study, &|_| None))?;
     Ok(html! {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What stays stable" }
-            p.lead {
-                "The largest stable step of every solver, found by bisection on a typed failure, beside the \
-                 exact limit where there \
-                 is one; and hard cases, each with what must hold."
-            }
-            h3 { "Totals" }
-            (totals(study))
-            @if !study.hard.is_empty() {
-                h3 { "Hard cases" }
-                (matrix(&study.hard))
-                (details_of(&study.hard))
-            }
-            @if !study.limits.is_empty() {
-                h3 { "Largest stable steps" }
-                @for picture in &pictures { (picture) }
-                (limits(&study.limits))
-            }
+            (tables)
         }
     })
 }
 
-const fn sign(standing: Hardness) -> (&'static str, &'static str) {
+/// Renders the figures and tables.
+pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
+    let pictures: Vec<Markup> = figures(&stability.limits).iter().map(figure).collect::<Result<_, _>>()?;
+    Ok(html! {
+        p.lead {
+            "The largest stable step of every solver, found by bisection on a typed failure, beside the exact limit where "
+            "there is one; and hard cases, each with what must hold."
+        }
+        h3 { "Totals" }
+        (totals(&stability.lines))
+        @if !stability.hard.is_empty() {
+            h3 { "Hard cases" }
+            (matrix(&stability.hard))
+            (details_of(&stability.hard))
+        }
+        @if !stability.limits.is_empty() {
+            h3 { "Largest stable steps" }
+            div.figures { @for picture in &pictures { (picture) } }
+            details { summary { "Every limit" } (limits(&stability.limits)) }
+        }
+    })
+}
+
+/// Returns the symbol and the CSS class of an outcome.
+pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
     match standing {
         Hardness::Holds => ("✓", "pass"),
         Hardness::HoldsAtASmallerStep | Hardness::TypedFailure => ("▲", "amber"),

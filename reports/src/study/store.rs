@@ -5,7 +5,7 @@ use super::load::Load;
 use super::point::Point;
 use super::stability::{Hard, Limit};
 use super::step::Model;
-use super::{Study, cost, load, page, stability};
+use super::{Study, cost, effects, load, page, stability};
 use crate::report::Provenance;
 use crate::staged::StagedDir;
 use crate::store::{LoadError, SaveError};
@@ -91,12 +91,13 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
     });
-    let others = cost::scatters(study).into_iter().chain(load::figure(&study.loads)).chain(stability::figures(study));
+    let others =
+        cost::scatters(study).into_iter().chain(load::figure(&study.loads)).chain(stability::figures(&study.limits));
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
 /// Returns the text of a study for storage in the source tree. It has the Pareto front of each solver, without the
-/// repetitions, the cost model and the costs against grains.
+/// repetitions, the cost model and the costs against grains. It has the effects that are on, each with its median change.
 ///
 /// # Errors
 /// When a value has no JSON form; this does not occur in studies of this project.
@@ -104,6 +105,10 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     let mut study = study.clone();
     study.model = None;
     study.loads = Vec::new();
+    study.ledger.retain(|entry| entry.on);
+    for entry in &mut study.ledger {
+        entry.shifts = effects::median(entry).cloned().into_iter().collect();
+    }
     for diagram in &mut study.diagrams {
         let mut kept: Vec<Point> = Vec::new();
         for line in cost::lines([&*diagram]) {
