@@ -126,6 +126,15 @@ if (film) {
 }
 await page.close();
 
+// The first screen: three questions, each with a picture and a link to its section.
+const first = await open(1440);
+const questions = await first.evaluate(() => [...document.querySelectorAll(".question")].map((question) => ({
+  bottom: question.getBoundingClientRect().bottom,
+  holds: question.querySelector(".plot svg") !== null && document.querySelector(question.querySelector("h2 a").hash) !== null,
+})));
+check(questions.length === 3 && questions.every(({ bottom, holds }) => bottom <= 900 && holds), `first screen: ${JSON.stringify(questions)}`);
+await first.close();
+
 // The three ways from the first screen, each by a watch that starts where the page is seen.
 const ways = await open(1440);
 const watch = async (question, answer) => {

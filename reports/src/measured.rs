@@ -305,6 +305,13 @@ mod tests {
         assert!(line.asked == 2 && line.factors[2].is_none());
     }
 
+    /// The example of the first screen is the quantity that most solvers reach within 1 %: not the last one.
+    #[test]
+    fn the_example_is_what_most_solvers_reach() {
+        let example = Costs::of(&sample::costs(), &|_| None).example.unwrap();
+        assert_eq!(example.quantity, "velocity");
+    }
+
     #[test]
     fn what_was_measured_of_other_sources_is_old() {
         let study = sample::costs();

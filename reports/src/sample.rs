@@ -1,6 +1,8 @@
 //! A small report for tests, with every kind of result and figure.
 
+use crate::study::effects::{Entry, Shift, Worth};
 use crate::study::point::{Counts, Diagram, Point, Standing};
+use crate::study::stability::{Hard, Hardness, Limit};
 use grainbench_harness::control::Red;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::Expected;
@@ -9,7 +11,7 @@ use grainbench_harness::tolerance::Made;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::judged::Judged;
-use crate::measured::{Costs, Measurements};
+use crate::measured::{Costs, Effects, Measurements, Stability};
 use crate::report::{Provenance, Report, RunCost, Section};
 use crate::study::Study;
 
@@ -286,7 +288,11 @@ pub(crate) fn report() -> Report {
         sections: vec![backspin(), nine_discs()],
         judged: Vec::new(),
         shown: Vec::new(),
-        measured: Measurements { cost: Some(Costs::of(&costs(), &|_| None)), stability: None, effects: None },
+        measured: Measurements {
+            cost: Some(Costs::of(&costs(), &|_| None)),
+            stability: Some(Stability::of(&stability(), &|_| None)),
+            effects: Some(Effects::of(&effects(), &|_| None)),
+        },
         red_because: Vec::new(),
     };
     report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];
@@ -333,6 +339,78 @@ pub(crate) fn costs() -> Study {
     study
 }
 
+/// Returns the stability of two solvers: stable steps with and without an exact limit, and two hard cases.
+pub(crate) fn stability() -> Study {
+    let limit = |solver: &str, unit: &str, at: f64, found: f64, exact: Option<f64>| Limit {
+        scene: "disc on a wall".into(),
+        knob: "k_s/k_n".into(),
+        at: Some(at),
+        solver: solver.into(),
+        unit: unit.into(),
+        found: Some(found),
+        unstable: None,
+        exact,
+        error: None,
+        default: Some(0.2),
+        margin: None,
+        detail: String::new(),
+    };
+    let hard = |case: &str, solver: &str, standing: Hardness| Hard {
+        case: case.into(),
+        must: "velocities stay those of two points".into(),
+        solver: solver.into(),
+        standing,
+        resolution: "dt=.1".into(),
+        detail: String::new(),
+    };
+    let mut study = Study::new(report_provenance());
+    study.limits = vec![
+        limit("dem", "√(m/k)", 0.0, 1.99, Some(2.0)),
+        limit("lammps", "√(m/k)", 0.0, 1.99, Some(2.0)),
+        limit("dem", "√(m/k)", 1.0, 1.15, Some(1.155)),
+        limit("lammps", "√(m/k)", 1.0, 1.15, Some(1.155)),
+        limit("mpm", "h/c", 25.0, 2.1, None),
+    ];
+    study.hard = vec![
+        hard("mass-ratio", "dem", Hardness::Holds),
+        hard("mass-ratio", "lammps", Hardness::Holds),
+        hard("fast-impact", "dem", Hardness::HoldsAtASmallerStep),
+        hard("fast-impact", "lammps", Hardness::QuietlyWrong),
+    ];
+    study
+}
+
+/// Returns effects of two scenes. Without friction, the answers change by a tenth, a fifth and a half.
+pub(crate) fn effects() -> Study {
+    let shift = |without: f64| Shift {
+        quantity: "velocity".into(),
+        solver: "dem".into(),
+        with: Some(0.0),
+        without: Some(without),
+        allowed: 1e-3,
+        red: true,
+    };
+    let entry = |effect: &str, on: bool, worth: Worth, shifts: Vec<Shift>| Entry {
+        case: "backspin".into(),
+        variant: "plain".into(),
+        effect: effect.into(),
+        on,
+        key: "contact.friction".into(),
+        worth,
+        shifts,
+        counts: Some(1.1),
+        time: None,
+        tried: Vec::new(),
+    };
+    let mut study = Study::new(report_provenance());
+    study.ledger = vec![
+        entry("friction", true, Worth::Needed, vec![shift(0.5), shift(-0.1), shift(0.2)]),
+        entry("gravity", true, Worth::NotWorthSimulating, vec![shift(1e-7)]),
+        entry("cohesion", false, Worth::Inert, Vec::new()),
+    ];
+    study
+}
+
 /// Returns the report with text in every field that breaks out of a page without escaping.
 pub(crate) fn hostile() -> Report {
     const TEXT: &str =
@@ -345,6 +423,9 @@ pub(crate) fn hostile() -> Report {
                 let is_word = fixed.contains(&text.as_str())
                     || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Standing>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Hardness>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Worth>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Made>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Red>(text.as_str().into()).is_ok();
                 if !is_word {

@@ -11,18 +11,6 @@ use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
 
-/// Kinds of evidence, strongest first.
-const KINDS: [Evidence; 8] = [
-    Evidence::Analytic,
-    Evidence::Experiment,
-    Evidence::OtherCode,
-    Evidence::Paper,
-    Evidence::Prototype,
-    Evidence::Convergence,
-    Evidence::Invariant,
-    Evidence::Regression,
-];
-
 /// Returns the solvers of a report: ours by method first, and settings of a single case last.
 pub(crate) fn solvers(report: &Report) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
@@ -55,14 +43,15 @@ pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str
     };
     html! {
         @if !solvers.is_empty() {
-            div.cards aria-label="Solvers" role="group" {
+            div.cards id="solvers" aria-label="Solvers" role="group" {
                 @for solver in solvers { (card(report, &lead, solver, (cost, stability))) }
             }
         }
     }
 }
 
-fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Verdict> {
+/// Returns the results of a solver.
+pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Verdict> {
     report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
 }
 
@@ -109,47 +98,22 @@ fn card(
         div class={ "card " (class) } data-card=(solver) {
             h3 { (filter(None, html! { (solver) })) span { (pass) "/" (all) } }
             dl {
-                div { dt { "passed" } dd { (kinds(report, solver)) } }
                 (compared(report, solver))
                 @if let Some((_, row)) = worst {
+                    @let times = used_tolerance(row);
                     div {
-                        dt { (if row.outcome == Outcome::Known { "gets wrong" } else { "fails" }) }
+                        dt { (filter(Some(row.outcome.word()), html! { (count(row.outcome)) " " (row.outcome.word()) })) }
                         dd {
-                            a.bad href={ "#" (lead(row)) } { (row.quantity) ", " (row.case) }
-                            ": off " (number::error(row.error)) (times(row))
-                            @if let Some(detail) = &row.detail { "; " (first_sentence(detail)) }
-                            " " @let others = count(row.outcome) - 1;
-                            @if others > 0 { (filter(Some(row.outcome.word()), html! { "and " (others) " more" })) }
+                            "worst " @if times.is_finite() { (number::significant(times, 2)) "× allowed, " }
+                            a.bad href={ "#" (lead(row)) } title=(row.quantity) { (row.case) }
                         }
                     }
-                } @else { div { dt { "gets wrong" } dd { "nothing that is judged here" } } }
+                }
                 @if let Some((of, hold)) = hold { (stable(of, hold)) }
                 @if let Some((of, line)) = line { (price(of, line)) }
             }
         }
     }
-}
-
-fn times(row: &Verdict) -> String {
-    let used = used_tolerance(row);
-    if used.is_finite() { format!(", {} times what is allowed", number::significant(used, 2)) } else { String::new() }
-}
-
-/// Returns the text up to its first colon, semicolon or full stop after 30 bytes. The full text is in the table of
-/// results.
-fn first_sentence(text: &str) -> &str {
-    let ends_there = |&at: &usize| at > 30 && text[at + 1..].chars().next().is_none_or(char::is_whitespace);
-    let end = text.match_indices([':', ';', '.']).map(|(at, _)| at).find(ends_there);
-    &text[..end.unwrap_or(text.len())]
-}
-
-fn kinds(report: &Report, solver: &str) -> String {
-    let of = |kind: Evidence| {
-        let mine = || rows(report, solver).filter(|row| row.evidence == kind);
-        let (pass, all) = (mine().filter(|row| row.outcome == Outcome::Pass).count(), mine().count());
-        (all > 0).then(|| format!("{} {pass}/{all}", kind.word()))
-    };
-    KINDS.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
 }
 
 /// Renders the number of results of other solvers that are compared with this program, and how many of them agree.
@@ -163,84 +127,41 @@ fn compared(report: &Report, solver: &str) -> Markup {
     let agree = rows.iter().filter(|row| row.outcome == Outcome::Pass).count();
     html! {
         @if !rows.is_empty() {
-            div { dt { "its runs" } dd { (agree) " of " (rows.len()) " rows of ours agree with them" } }
+            div { dt { "its runs" } dd { (agree) " of " (rows.len()) " of our results agree" } }
         }
     }
 }
 
 fn stable(of: &Stability, hold: &Hold) -> Markup {
     let class = of.stamp.is_old(&hold.solver).then_some("old");
-    let number = |value: f64| number::significant(value, 4);
+    let range = |[low, high]: [f64; 2]| format!("{}–{}", number::significant(low, 3), number::significant(high, 3));
     html! {
-        @if let Some(([low, high], count)) = hold.limit {
-            div class=[class] {
-                dt { "largest stable step" }
-                dd { (number(low)) "–" (number(high)) " of the exact limit (" (count) " assemblies)" }
-            }
-        } @else if let Some(([low, high], unit)) = &hold.found {
-            div class=[class] { dt { "largest stable step" } dd { (number(*low)) "–" (number(*high)) " " (unit) } }
+        @if let Some((ends, _)) = hold.limit {
+            div class=[class] { dt { "stable step" } dd { (range(ends)) " of the exact limit" } }
+        } @else if let Some((ends, unit)) = &hold.found {
+            div class=[class] { dt { "stable step" } dd { (range(*ends)) " " (unit) } }
         }
         @if hold.asked() > 0 {
             div class=[class] {
                 dt { "hard cases" }
                 dd {
-                    (hold.holds) " of " (hold.asked()) " hold"
-                    @if hold.smaller > 0 { ", " (hold.smaller) " at a smaller step" }
-                    @if hold.typed > 0 { ", " (hold.typed) " end in an error" }
+                    (hold.holds) "/" (hold.asked()) " held"
                     @if hold.wrong > 0 { ", " b.bad { (hold.wrong) " quietly wrong" } }
                 }
             }
         }
-        @if class.is_some() { div.old { dt { "measured" } dd { (of.stamp.day()) (OLD) } } }
     }
 }
 
-/// Note on measurements whose solver sources changed since, or are not known to be unchanged.
-const OLD: &str = ", of sources that have changed or are not known";
-
 fn price(of: &Costs, line: &Line) -> Markup {
-    let is_old = of.stamp.is_old(&line.solver);
     html! {
-        div class=[is_old.then_some("old")] {
+        div class=[of.stamp.is_old(&line.solver).then_some("old")] {
             dt { "1 % costs" }
             dd {
                 @if let Some(factor) = line.factors[AT] {
-                    "× " (number::significant(factor.times, 2)) " the cheapest ("
-                    (number::seconds(factor.seconds[0])) " … " (number::seconds(factor.seconds[1])) "), reached in "
-                    (factor.reached) " of " (line.asked)
+                    "× " (number::significant(factor.times, 2)) " the cheapest (" (factor.reached) " of " (line.asked) ")"
                 } @else { "not reached in any of " (line.asked) }
-                @if is_old { "; measured " (of.stamp.day()) (OLD) }
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::first_sentence;
-
-    /// A sentence does not end within a number or at its very beginning.
-    #[test]
-    fn a_sentence_ends_before_a_space() {
-        for (text, first) in [
-            (
-                "two of five beds send the ball back at 1.11 m/s, more slowly; one goes",
-                "two of five beds send the ball back at 1.11 m/s, more slowly",
-            ),
-            (
-                "slow elements are looser than others by .003 there.",
-                "slow elements are looser than others by .003 there",
-            ),
-            (
-                "grains: what rests on springs of half their stiffness sinks. It",
-                "grains: what rests on springs of half their stiffness sinks",
-            ),
-            (
-                "no end at all is in this text, which is long enough",
-                "no end at all is in this text, which is long enough",
-            ),
-        ] {
-            assert_eq!(first_sentence(text), first);
         }
     }
 }

@@ -10,6 +10,7 @@ mod overview;
 mod peers;
 mod prose;
 pub(crate) mod provenance;
+mod questions;
 mod rows;
 mod section;
 pub(crate) mod summary;
@@ -45,7 +46,10 @@ pub struct Page {
 pub fn render(report: &Report) -> Result<Page, DrawError> {
     let counts = Headline::of_report(report);
     let report = &*report.view();
-    let mut taken = BTreeSet::from(["summary", "peers", "provenance", "tools", "matrix"].map(str::to_owned));
+    let mut taken = BTreeSet::from(
+        ["summary", "peers", "provenance", "tools", "matrix", "solvers", "costs", "stability", "effects"]
+            .map(str::to_owned),
+    );
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
     let names = figure_names(report);
@@ -54,7 +58,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
         pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
     }
     let head = overview::render(report, counts, &anchors, &|_| true).into_string();
-    let foot = html! { (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
+    let foot = html! { (questions::sections(&report.measured)?) (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
     pieces.push(budget::Piece::Fixed(foot));
     pieces[0] = budget::Piece::Fixed(head.clone());
     let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();

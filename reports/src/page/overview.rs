@@ -1,77 +1,82 @@
-//! Top of the page: counts, failures, one card per solver, the matrix of cases and solvers, and the cost of accuracy.
+//! Top of the page: counts, failures, three questions, one card per solver, and the matrix of cases and solvers.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::{cards, matrix, sign, summary};
+use super::{cards, matrix, questions, sign, summary};
 use crate::headline::{Headline, OUTCOMES};
 use crate::report::Report;
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, Severity};
 
 /// Renders the top of the page; `is_there` returns true if the page has an anchor for a result.
 ///
 /// `counts` are the counts of all results; `report` holds only the results that are shown.
 pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
-    let wrong = counts.red();
     let cases = report.sections.len();
-    let costs = report.measured.cost.as_ref();
     html! {
         header id="summary" {
             p.kicker {
                 "grainbench " (report.provenance.version) " · " (report.provenance.date)
-                " · commit " (report.provenance.commit)
+                " · commit " (report.provenance.commit) " · " (cases) (if cases == 1 { " case" } else { " cases" })
             }
-            h1 {
-                @if counts.rows() == 0 {
-                    "Nothing was judged"
-                } @else if wrong > 0 {
-                    (wrong) " of " (counts.rows()) " rows " (if wrong == 1 { "fails" } else { "fail" })
-                } @else if counts.amber() > 0 {
-                    (counts.pass) " of " (counts.rows()) " rows pass, none fails"
-                } @else {
-                    "All " (counts.rows()) " rows pass"
-                }
-            }
+            h1 { (headline(counts)) }
             @if shown < counts.rows() {
                 p.back { "This page shows " (shown) " of " (counts.rows()) " results." }
             }
-            ul.counts aria-label="Rows by outcome" {
-                li { (cases) (if cases == 1 { " case" } else { " cases" }) }
-                @for outcome in OUTCOMES {
-                    @let count = counts.count(outcome);
+            ul.counts aria-label="Results that are not green, by outcome and solver" {
+                @for outcome in OUTCOMES.into_iter().filter(|outcome| outcome.severity() != Severity::Green) {
                     @let (symbol, class) = sign(outcome);
-                    @if count > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail) {
-                        li class={ (class) @if count == 0 { " none" } } {
-                            b { (count) } " "
-                            span {
-                                (symbol) " " (outcome.word())
-                                @if outcome == Outcome::Pass && counts.regression > 0 {
-                                    ", " (counts.regression) " of them regression"
-                                }
-                            }
-                        }
+                    @if counts.count(outcome) > 0 {
+                        li class=(class) { b { (counts.count(outcome)) } " " span { (symbol) " " (outcome.word()) } (by_solver(report, outcome)) }
                     }
                 }
-                li class={ "controls " @if counts.controls_red < counts.controls { "fail" } } {
-                    b { (counts.controls_red) " of " (counts.controls) } " "
-                    span {
-                        "negative controls turned red"
-                        @if counts.controls_broken > 0 { ", " (counts.controls_broken) " by breaking" }
-                    }
-                }
+                @if counts.regression > 0 { li { b { (counts.regression) } " of the passed compare with earlier values only" } }
+                @if counts.controls_broken > 0 { li { b { (counts.controls_broken) } " controls failed by an error" } }
             }
             (summary::failing(report, anchors))
         }
-        (tools())
+        (questions::render(report))
         (cards::render(report, anchors, is_there))
-        div.overview {
-            (matrix::render(report, anchors))
-            @if let Some(costs) = costs {
-                div {
-                    h2 id="costs" { "What accuracy costs" }
-                    div.plot.small { (PreEscaped(summary::picture(costs))) }
-                    (summary::factors(costs))
-                }
+        (tools())
+        (matrix::render(report, anchors))
+    }
+}
+
+/// Returns one sentence with the counts.
+fn headline(counts: Headline) -> String {
+    if counts.rows() == 0 {
+        return "Nothing was judged".to_owned();
+    }
+    let colour = |count: usize, word: &str| match count {
+        0 => format!("none is {word}"),
+        1 => format!("1 is {word}"),
+        _ => format!("{count} are {word}"),
+    };
+    format!(
+        "{} of {} results pass, {}, {}; {} of {} negative controls fail as they must",
+        counts.pass,
+        counts.rows(),
+        colour(counts.red(), "red"),
+        colour(counts.amber(), "amber"),
+        counts.controls_red,
+        counts.controls
+    )
+}
+
+/// Renders the number of known errors of each solver.
+fn by_solver(report: &Report, outcome: Outcome) -> Markup {
+    let count = |solver: &str| cards::rows(report, solver).filter(|row| row.outcome == outcome).count();
+    let counts: Vec<(&str, usize)> = cards::solvers(report)
+        .into_iter()
+        .map(|solver| (solver, count(solver)))
+        .filter(|(_, count)| *count > 0 && outcome == Outcome::Known)
+        .collect();
+    html! {
+        @if !counts.is_empty() {
+            " errors: "
+            @for (at, (solver, count)) in counts.into_iter().enumerate() {
+                @if at > 0 { ", " }
+                a href="#matrix" data-solver=(solver) data-outcome=(outcome.word()) { (solver) } " " (count)
             }
         }
     }

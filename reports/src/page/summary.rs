@@ -11,7 +11,7 @@ use crate::plot::graph::{self, Form};
 use crate::report::Report;
 
 /// Largest number of failures shown at the top of the page.
-const LINES: usize = 12;
+const LINES: usize = 6;
 /// Smallest error that is plotted in the figure over all cases.
 const LEAST: f64 = 1e-10;
 

@@ -250,7 +250,7 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
         (totals(&stability.lines))
         @if !stability.hard.is_empty() {
             h3 { "Hard cases" }
-            (matrix(&stability.hard))
+            details { summary { "Every case" } (matrix(&stability.hard)) }
             (details_of(&stability.hard))
         }
         @if !stability.limits.is_empty() {

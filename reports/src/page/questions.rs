@@ -1,0 +1,301 @@
+//! Three questions of the first screen, each with a picture and a sentence, and the sections with all their numbers.
+
+use grainbench_harness::figure::{Drawing, Figure};
+use grainbench_harness::verdict::Outcome;
+use maud::{Markup, PreEscaped, html};
+
+use super::{scrolling, summary};
+use crate::measured::{AT, Costs, Effects, Hold, Measurements, Stability, Stamp, TARGETS};
+use crate::number;
+use crate::plot::graph::{self, Form};
+use crate::plot::scale::Scale;
+use crate::plot::{self, DrawError, FONTS, palette};
+use crate::report::Report;
+use crate::study::effects::{Entry, Worth, change, median};
+use crate::study::stability::{Hardness, distinct, sign};
+use crate::study::{cost, effects, stability};
+
+/// Size of a graph of the first screen (drawing units).
+const FORM: Form = Form { width: 480.0, height: 360.0, legend: false };
+/// Least and largest change of an answer in the picture of the effects; others are at its ends.
+const CHANGES: [f64; 2] = [1e-5, 10.0];
+
+/// Anchors and headings of the questions.
+const QUESTIONS: [(&str, &str); 3] =
+    [("costs", "What accuracy costs"), ("stability", "What stays stable"), ("effects", "Which effects matter")];
+
+/// Returns anchors and headings of the questions that have stored measurements.
+pub(crate) fn links(measured: &Measurements) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_there = [measured.cost.is_some(), measured.stability.is_some(), measured.effects.is_some()];
+    QUESTIONS.into_iter().zip(is_there).filter(|(_, is_there)| *is_there).map(|(question, _)| question)
+}
+
+/// Renders the three questions of the first screen.
+pub(crate) fn render(report: &Report) -> Markup {
+    let measured = &report.measured;
+    html! {
+        div.questions {
+            @for (id, heading) in links(measured) {
+                div.question {
+                    h2 { a href={ "#" (id) } { (heading) } }
+                    @match id {
+                        "costs" => { @if let Some(costs) = &measured.cost { (accuracy(report, costs)) } }
+                        "stability" => { @if let Some(stability) = &measured.stability { (steps(stability)) } }
+                        _ => { @if let Some(effects) = &measured.effects { (changes(effects)) } }
+                    }
+                    p.note { a href={ "#" (id) } { "All numbers" } " · " (age(measured, id)) }
+                }
+            }
+        }
+    }
+}
+
+/// Renders the sections with all numbers of the three questions.
+///
+/// # Errors
+/// When a figure cannot be drawn.
+pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
+    let stable = measured.stability.as_ref().map(stability::tables).transpose()?;
+    Ok(html! {
+        @for (id, heading) in links(measured) {
+            section id=(id) {
+                h2 { (heading) }
+                @match id {
+                    "costs" => {
+                        @if let Some(costs) = &measured.cost {
+                            div.overview { div.plot.small { (PreEscaped(summary::picture(costs))) } div { (summary::factors(costs)) } }
+                        }
+                    }
+                    "stability" => { @if let Some(stable) = &stable { (stable) } }
+                    _ => { @if let Some(of) = &measured.effects { details { summary { "Every scene" } (effects::heat(&of.ledger)) } } }
+                }
+            }
+        }
+    })
+}
+
+/// Returns the date of a measurement, and the solvers that have changed since.
+fn age(measured: &Measurements, id: &str) -> Markup {
+    let stamp: Option<&Stamp> = match id {
+        "costs" => measured.cost.as_ref().map(|of| &of.stamp),
+        "stability" => measured.stability.as_ref().map(|of| &of.stamp),
+        _ => measured.effects.as_ref().map(|of| &of.stamp),
+    };
+    let Some(stamp) = stamp else { return html! {} };
+    let changed: Vec<&str> = palette::SOLVERS.into_iter().filter(|solver| stamp.is_old(solver)).collect();
+    html! {
+        "measured " (stamp.day())
+        @if !changed.is_empty() { "; " span.old { "▲ outdated" } ": " (changed.join(", ")) " changed since" }
+    }
+}
+
+/// Renders a graph with its legend.
+fn drawn(figure: &Figure) -> Markup {
+    let Drawing::Graph(graph) = &figure.drawing else { return html! {} };
+    let is_drawn = |label: &str| graph.curves.iter().any(|curve| curve.label == label && !curve.points.is_empty());
+    html! {
+        div.plot { (PreEscaped(plot::markup(&graph::draw_as(&figure.title, graph, FORM)))) }
+        p.key {
+            @for (label, sample) in graph::keys(graph) { @if is_drawn(label) { span { (sample) " " (label) } } }
+        }
+    }
+}
+
+/// Renders error against computing time for one quantity.
+fn accuracy(report: &Report, costs: &Costs) -> Markup {
+    let Some(diagram) = &costs.example else { return html! {} };
+    let mut figure = cost::figure(diagram);
+    figure.title = format!("{}, {}", diagram.case, diagram.variant);
+    let section = report.sections.iter().find(|section| section.name == diagram.case);
+    let times: Vec<String> = costs
+        .lines
+        .iter()
+        .filter_map(|line| {
+            let point = cost::cheapest(diagram, &line.solver, TARGETS[AT])?;
+            Some(format!("{} {}", line.solver, number::seconds(point.wall_seconds?)))
+        })
+        .collect();
+    let passed = |solver: &str| {
+        let rows = section.into_iter().flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
+        let (pass, all) =
+            rows.fold((0, 0), |(pass, all), row| (pass + usize::from(row.outcome == Outcome::Pass), all + 1));
+        (all > 0).then(|| format!("{solver} {pass}/{all}"))
+    };
+    let solvers = super::cards::solvers(report).into_iter().filter(|solver| !solver.contains('+'));
+    let passed: Vec<String> = solvers.filter_map(passed).collect();
+    html! {
+        (drawn(&figure))
+        p {
+            (number::fraction(TARGETS[AT])) " of the " (diagram.quantity)
+            @if let Some(section) = section { " (" (section.title) ")" }
+            " costs " b { (times.join(", ")) } "."
+        }
+        @if !passed.is_empty() { p { "Results that pass in this case: " (passed.join(", ")) "." } }
+    }
+}
+
+/// Renders the largest stable steps, and one row of marks for each hard case that some solver does not hold.
+fn steps(stability: &Stability) -> Markup {
+    let figure = stability::figures(&stability.limits).into_iter().find(|figure| figure.name == "stable-step-springs");
+    let lines: Vec<&Hold> = palette::SOLVERS
+        .iter()
+        .filter_map(|solver| stability.lines.iter().find(|line| line.solver == **solver))
+        .collect();
+    let found = |case: &str, solver: &str| {
+        stability.hard.iter().find(|row| row.case == case && row.solver == solver).map(|row| row.standing)
+    };
+    let is_held = |case: &str| {
+        let is_not = |standing| {
+            matches!(standing, Hardness::HoldsAtASmallerStep | Hardness::TypedFailure | Hardness::QuietlyWrong)
+        };
+        !lines.iter().any(|line| found(case, &line.solver).is_some_and(is_not))
+    };
+    let (held, hard): (Vec<&str>, Vec<&str>) =
+        distinct(stability.hard.iter().map(|row| row.case.as_str())).into_iter().partition(|case| is_held(case));
+    let table = html! {
+        table.marks {
+            thead { tr { th scope="col" { "Hard case" } @for line in &lines { th scope="col" { (line.solver) } } } }
+            tbody {
+                @for case in hard {
+                    tr {
+                        th scope="row" { (case.replace('-', " ")) }
+                        @for line in &lines {
+                            @let standing = found(case, &line.solver).unwrap_or(Hardness::Unsupported);
+                            @let (symbol, class) = sign(standing);
+                            td { span class={ "mark " (class) } title=(standing.word()) { (symbol) } }
+                        }
+                    }
+                }
+                tr {
+                    th scope="row" { (held.len()) " other cases" }
+                    @for line in &lines {
+                        @let holds = held.iter().filter(|case| found(case, &line.solver) == Some(Hardness::Holds)).count();
+                        td { span.mark.pass { "✓" (holds) } }
+                    }
+                }
+            }
+        }
+    };
+    html! {
+        @if let Some(figure) = &figure { (drawn(figure)) }
+        p { (limits(&lines)) }
+        (scrolling("Hard cases by solver", &table))
+        p.note { "✓ holds · ▲ at a smaller step or error message · ✗ quietly wrong · – cannot express it" }
+    }
+}
+
+/// Returns the largest stable steps in one sentence.
+fn limits(lines: &[&Hold]) -> String {
+    let range = |[low, high]: [f64; 2]| format!("{}–{}", number::significant(low, 3), number::significant(high, 3));
+    let exact: Vec<&&Hold> = lines.iter().filter(|line| line.limit.is_some()).collect();
+    let names: Vec<&str> = exact.iter().map(|line| line.solver.as_str()).collect();
+    let ends = exact.iter().filter_map(|line| line.limit).map(|(ends, _)| ends);
+    let ends = ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    let exact = ends.map(|ends| format!("{} {} of the exact limit", names.join(", "), range(ends)));
+    let found = lines.iter().filter_map(|line| {
+        let (ends, unit) = line.found.as_ref()?;
+        Some(format!("{} {} {unit}, without an exact limit", line.solver, range(*ends)))
+    });
+    format!("Largest stable step: {}.", exact.into_iter().chain(found).collect::<Vec<_>>().join("; "))
+}
+
+/// Renders the change of the answer without each effect, one mark per scene, and the cost of the effect.
+fn changes(effects: &Effects) -> Markup {
+    const ROW: f64 = 36.0;
+    const FRAME: [f64; 2] = [150.0, 400.0];
+    let names = distinct(effects.ledger.iter().map(|entry| entry.effect.as_str()));
+    let of = |name: &str| effects.ledger.iter().filter(move |entry| entry.effect == name).collect::<Vec<_>>();
+    let scale = Scale::fit(CHANGES.into_iter(), true, 0.03, 7);
+    let across = |value: f64| FRAME[0] + (FRAME[1] - FRAME[0]) * scale.position(value);
+    let bottom = 34.0 + ROW * names.len() as f64;
+    let marks = |entries: &[&Entry], worth: Worth, y: f64| -> String {
+        let places = entries.iter().filter(|entry| entry.worth == worth).filter_map(|entry| change(median(entry)?));
+        places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
+    };
+    let mut order = names.clone();
+    order.sort_by_key(|name| std::cmp::Reverse(needed(&of(name)).0));
+    let most = order.iter().take(3).map(|name| {
+        let (count, all) = needed(&of(name));
+        format!("without {name} in {count} of {all}")
+    });
+    let most = most.collect::<Vec<_>>().join(", ");
+    let title = "Change of the answer without each effect, by scene";
+    html! {
+        div.plot {
+            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 480 {}", bottom + 50.0)) width="100%" role="img"
+                aria-label=(title) font-family=(FONTS) font-size="14" {
+                title { (title) }
+                g fill="#222" {
+                text x="480" y="17" text-anchor="end" fill="#666" { "cost of the effect" }
+                @for tick in scale.ticks().iter().filter(|tick| tick.label.is_some()) {
+                    path d=(format!("M{:.1} 26V{bottom}", across(tick.value))) stroke="#ddd" {}
+                    text x=(format!("{:.1}", across(tick.value))) y=(bottom + 20.0) text-anchor="middle" { (tick.label.as_deref().unwrap_or_default()) }
+                }
+                path d=(format!("M{} {bottom}H{}", FRAME[0], FRAME[1])) stroke="#222" {}
+                @for (at, name) in names.iter().enumerate() {
+                    @let (y, entries) = (34.0 + ROW * at as f64, of(name));
+                    text x="0" y=(y + 9.0) { (name) }
+                    text x="0" y=(y + 24.0) font-size="12" fill="#666" { "needed in " (needed(&entries).0) " of " (needed(&entries).1) }
+                    path d=(marks(&entries, Worth::Needed, y)) stroke="#222" stroke-width="2" stroke-opacity=".55" {}
+                    path d=(marks(&entries, Worth::NotWorthSimulating, y + 8.0)) stroke="#d55e00" stroke-width="2" {}
+                    text x="480" y=(y + 13.0) text-anchor="end" { (expense(&entries)) }
+                }
+                text x=(0.5 * (FRAME[0] + FRAME[1])) y=(bottom + 43.0) text-anchor="middle" font-size="15" { "|change| / scale of the answer" }
+                }
+            }
+        }
+        p.key {
+            span { "│ a claim fails without it" } span.amber { span.mark { "╷" } " every claim passes without it" }
+        }
+        p { "A claim fails " b { (most) } " scenes." }
+        p.note {
+            "One mark per scene: the median over its claims. Cost: median of particle-steps and contact evaluations, with over "
+            "without the effect. Changes below 10⁻⁵ and above 10 are at the ends."
+        }
+    }
+}
+
+/// Returns the number of scenes in which an effect is needed, and of those whose claims can be judged without it.
+fn needed(entries: &[&Entry]) -> (usize, usize) {
+    let count = |worth: Worth| entries.iter().filter(|entry| entry.worth == worth).count();
+    (count(Worth::Needed), count(Worth::Needed) + count(Worth::NotWorthSimulating))
+}
+
+/// Returns the median cost of an effect.
+fn expense(entries: &[&Entry]) -> String {
+    let mut counts: Vec<f64> = entries.iter().filter_map(|entry| entry.counts).collect();
+    counts.sort_by(f64::total_cmp);
+    counts.get(counts.len() / 2).map_or_else(|| "—".to_owned(), |count| format!("× {}", number::significant(*count, 2)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn each_question_has_a_picture_and_a_sentence() {
+        let page = render(&sample::report()).into_string();
+        for sentence in [
+            ") costs <b>dem 1",
+            "Largest stable step: dem, lammps 0.995–0.996 of the exact limit; mpm 2.1–2.1 h/c, without an exact limit.",
+            "A claim fails <b>without friction in 1 of 1, without gravity in 0 of 1</b> scenes.",
+            "dem (and lammps: equal)",
+            "fast impact",
+        ] {
+            assert!(page.contains(sentence), "{sentence} is not in {page}");
+        }
+        assert_eq!(page.matches("role=\"img\"").count(), 3);
+        // No sources are known, so all measurements are old.
+        assert_eq!(page.matches("outdated").count(), 2);
+    }
+
+    #[test]
+    fn what_is_stored_has_the_median_change_of_each_effect() {
+        let text = crate::study::kept_text(&sample::effects()).unwrap();
+        let study: crate::study::Study = serde_json::from_str(&text).unwrap();
+        let changes: Vec<Option<f64>> = study.ledger.iter().map(|entry| change(median(entry)?)).collect();
+        assert_eq!(changes, [Some(0.2), Some(1e-7)]);
+        assert!(study.ledger.iter().all(|entry| entry.shifts.len() == 1));
+    }
+}
