@@ -21,18 +21,18 @@ pub const ALLOWED: f64 = 1e-6;
 ///
 /// # Errors
 /// When the scene of the case is wrong.
-pub fn verify(of: &Reference) -> Result<Vec<Verdict>, SceneError> {
-    let scene = of.scene()?;
+pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
+    let scene = reference.scene()?;
     let row = Verdict {
-        variant: of.id.clone(),
-        solver: of.program.name().to_owned(),
-        resolution: of.run.resolution.to_string(),
+        variant: reference.id.clone(),
+        solver: reference.program.name().to_owned(),
+        resolution: reference.run.resolution.to_string(),
         allowed: ALLOWED,
         tolerance: Made::Computed,
         evidence: Evidence::OtherCode,
-        ..Verdict::open(of.case.name, "the stored run, run again", "1")
+        ..Verdict::open(reference.case.name, "the stored run, run again", "1")
     };
-    let directory = folder(of.program, &of.id);
+    let directory = folder(reference.program, &reference.id);
     if !directory.is_dir() {
         return Ok(vec![row.left(Outcome::NoReference, "nothing is stored of that name")]);
     }
@@ -41,13 +41,13 @@ pub fn verify(of: &Reference) -> Result<Vec<Verdict>, SceneError> {
         Ok(stored) => stored,
         // A damaged file is an error of this project, not of the program.
         Err(error) => {
-            return Ok(vec![row.left(Outcome::Fail, unusable(of.program, &error).to_string())]);
+            return Ok(vec![row.left(Outcome::Fail, unusable(reference.program, &error).to_string())]);
         }
     };
-    if let Err(error) = stored.record(&scene, &of.run.resolution, of.program) {
+    if let Err(error) = stored.record(&scene, &reference.run.resolution, reference.program) {
         return Ok(ended(&error));
     }
-    let rerun = match Live::find(of.program).run(&scene, &of.run.resolution, &mut ()) {
+    let rerun = match Live::find(reference.program).run(&scene, &reference.run.resolution, &mut ()) {
         Ok(rerun) => rerun,
         Err(error) => return Ok(ended(&error)),
     };

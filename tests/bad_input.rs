@@ -198,8 +198,8 @@ fn a_value_of_another_shape_is_shown_the_shape() {
         (TABLE, "[output]\nsnapshot_times = 0.5\n[grains.lower]"),
         (TABLE, "[removal]\nlow = [0.0, 0.0]\n[grains.lower]"),
     ];
-    let told: String = edits.iter().map(|(from, to)| format!("{to}\n  {}", refused(from, to))).collect();
-    insta::assert_snapshot!(told);
+    let messages: String = edits.iter().map(|(from, to)| format!("{to}\n  {}", refused(from, to))).collect();
+    insta::assert_snapshot!(messages);
 }
 
 /// Error messages for invalid motions of walls and of grains with prescribed motion.
@@ -234,8 +234,8 @@ fn motions_that_are_none() {
         "grains = \"lower\"\nmotion = [{ velocity = [1.0, 0.0], stop_cycle = 3 }]",
     ];
     let driven = driven.map(|keys| {
-        let told = refused("[grains.lower]", &format!("[driven.some]\n{keys}\n[grains.lower]"));
-        format!("{keys}\n  {told}")
+        let message = refused("[grains.lower]", &format!("[driven.some]\n{keys}\n[grains.lower]"));
+        format!("{keys}\n  {message}")
     });
     insta::assert_snapshot!(walls.concat() + &driven.concat());
 }
@@ -498,7 +498,7 @@ fn checkpoints() {
 /// Resolution options of another kind of solver are errors.
 #[test]
 fn options_of_other_solvers() {
-    let mut told = String::new();
+    let mut messages = String::new();
     for options in [
         ["--cells", "4"],
         ["--substeps", "4"],
@@ -515,14 +515,14 @@ fn options_of_other_solvers() {
         arguments.extend(options);
         let set = ["--set=materials.rock.young_modulus=1e7", "--set=materials.rock.poisson_ratio=.3"];
         arguments.extend(set);
-        told += &format!("{}\n  {}", options.join(" "), refusal(directory.path(), &arguments));
+        messages += &format!("{}\n  {}", options.join(" "), refusal(directory.path(), &arguments));
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(messages);
 }
 
 #[test]
 fn a_probe_of_a_place_or_a_wall_that_is_not_there() {
     let probes = ["contact = [\"upper\", \"flor\"]", "point = { grain = \"upper\", at = [0.0, 0.9] }"];
-    let told = probes.map(|probe| refused("upper = { grain = \"upper\" }", &format!("upper = {{ {probe} }}")));
-    insta::assert_snapshot!(told.concat());
+    let messages = probes.map(|probe| refused("upper = { grain = \"upper\" }", &format!("upper = {{ {probe} }}")));
+    insta::assert_snapshot!(messages.concat());
 }

@@ -27,10 +27,10 @@ fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u6
     let results = fs::read_to_string(directory.join(out).join("results.json")).unwrap();
     let results: serde_json::Value = serde_json::from_str(&results).unwrap();
     let options = results["provenance"]["options"].as_array().unwrap();
-    let said = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
+    let count_text = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
     let page = fs::read_to_string(directory.join(out).join("index.html")).unwrap();
-    assert_eq!(page.contains("runs taken from the cache"), said.is_some(), "the page tells it too");
-    (code, said.map_or(0, |(number, _)| number.parse().unwrap()))
+    assert_eq!(page.contains("runs taken from the cache"), count_text.is_some(), "the page tells it too");
+    (code, count_text.map_or(0, |(number, _)| number.parse().unwrap()))
 }
 
 fn rows(directory: &Path, out: &str) -> String {
@@ -75,8 +75,8 @@ fn a_folder_of_everybody_is_not_used() {
     let mode = |mode| fs::set_permissions(here.join("cache"), fs::Permissions::from_mode(mode)).unwrap();
     mode(0o777);
     let answer = program(here, "open").output().unwrap();
-    let said = String::from_utf8_lossy(&answer.stderr).into_owned();
-    assert!(answer.status.success() && said.contains("not used") && said.contains("mode 777"), "{said}");
+    let message = String::from_utf8_lossy(&answer.stderr).into_owned();
+    assert!(answer.status.success() && message.contains("not used") && message.contains("mode 777"), "{message}");
     assert_eq!(taken(&mut program(here, "open"), here, "open"), (Some(0), 0));
     mode(0o775);
     assert!(taken(&mut program(here, "group"), here, "group").1 > 5);
@@ -156,10 +156,10 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
         // The process may have ended already.
         Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
         let ended = child.wait_with_output().unwrap();
-        let said = String::from_utf8(ended.stderr).unwrap();
+        let message = String::from_utf8(ended.stderr).unwrap();
         // Before its handler is installed, a signal ends the process as any program.
-        let told = said.contains("the next run goes on from the runs that were");
-        assert!(ended.status.code() != Some(1) || told, "{said}");
+        let is_announced = message.contains("the next run goes on from the runs that were");
+        assert!(ended.status.code() != Some(1) || is_announced, "{message}");
         let now = if here.join("cache").exists() { entries(here).len() } else { 0 };
         assert!(now >= last, "finished runs are lost: {now} after {last}");
         last = now;

@@ -183,11 +183,16 @@ fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
     // A disc rolls or slips as expected by both methods, because the springs of the case are stiff enough.
     let results = json(&report.join("results.json"));
     let verdicts = results["verdicts"].as_array().unwrap();
-    let of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
-    assert!(of("pass") > 35 && of("pass") + of("fail") == POINTS, "{} {}", of("pass"), of("fail"));
+    let count_of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
+    assert!(
+        count_of("pass") > 35 && count_of("pass") + count_of("fail") == POINTS,
+        "{} {}",
+        count_of("pass"),
+        count_of("fail")
+    );
     // A quantity without an expectation is reported without a verdict. Without friction it is sin θ, at most 0.87.
-    let told: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
-    assert!(told.len() == POINTS && told.iter().all(|row| row["value"].as_f64() < Some(0.87)));
+    let unjudged: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
+    assert!(unjudged.len() == POINTS && unjudged.iter().all(|row| row["value"].as_f64() < Some(0.87)));
 }
 
 /// A report of some of the tasks is red, also when it is written again.
@@ -252,8 +257,8 @@ fn failures_keep_their_type() {
     fs::write(here.join("sweep.toml"), sweep).unwrap();
     ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
     ok(&grainbench(here, &["work", "p"]));
-    let told = status(here, "p");
-    assert_eq!((told["tasks"].as_u64(), told["failed"].as_u64()), (Some(3), Some(2)), "{told}");
+    let progress = status(here, "p");
+    assert_eq!((progress["tasks"].as_u64(), progress["failed"].as_u64()), (Some(3), Some(2)), "{progress}");
     ok(&grainbench(here, &["collect", "p"]));
     let results = json(&here.join("p/report/results.json"));
     let ended: Vec<&str> =
@@ -316,9 +321,9 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     ok(&grainbench(here, &["work", "p"]));
     let ids = done(&here.join("p"));
     assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
-    let told = status(here, "p");
+    let progress = status(here, "p");
     assert_eq!(
-        (told["twice"].as_u64(), told["waiting"].as_u64(), told["running"].as_u64()),
+        (progress["twice"].as_u64(), progress["waiting"].as_u64(), progress["running"].as_u64()),
         (Some(0), Some(0), Some(0))
     );
     ok(&grainbench(here, &["collect", "p"]));
@@ -338,8 +343,8 @@ fn a_full_disk_loses_nothing() {
         .current_dir(here)
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&full.stderr).into_owned();
-    assert!(!full.status.success() && said.contains("cannot write"), "{said}");
+    let message = String::from_utf8_lossy(&full.stderr).into_owned();
+    assert!(!full.status.success() && message.contains("cannot write"), "{message}");
     let before = done(&here.join("p")).len();
     assert!((1..POINTS).contains(&before), "{before}");
     assert_eq!(status(here, "p")["damaged"], 0, "what the disk did not take whole is not there");
@@ -425,14 +430,14 @@ fn what_is_no_plan_is_refused() {
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
         refused(to);
     }
-    for (from, to, said) in [
+    for (from, to, message) in [
         ("sweep.toml\"]", "sweep.toml\", \"--nothing\"]", "arguments"),
         ("program = \"", "program = \"0", "the program that planned"),
     ] {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
         let answer = grainbench(here, &["work", "p"]);
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     }
     fs::write(&whole[0].0, head).unwrap();
     // Foreign files among the results are ignored.
@@ -461,7 +466,7 @@ fn what_is_no_plan_is_refused() {
 fn what_is_no_sweep_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    let mut told = String::new();
+    let mut messages = String::new();
     for (from, to) in [
         ("title = 'Slopes'\n", ""),
         ("title", "titel"),
@@ -510,14 +515,14 @@ fn what_is_no_sweep_is_refused() {
         fs::write(here.join("sweep.toml"), text).unwrap();
         let answer = grainbench(here, &["plan", "sweep.toml", "--out", "p"]);
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{to}: {}", answer.err);
-        told += &format!("{}\n{}\n", to.trim(), answer.err);
+        messages += &format!("{}\n{}\n", to.trim(), answer.err);
         assert!(!here.join("p").exists(), "{to}");
     }
     for text in ["", "\0", "title", "[", "title = 1"] {
         fs::write(here.join("sweep.toml"), text).unwrap();
         assert_eq!(grainbench(here, &["plan", "sweep.toml", "--out", "p"]).code, Some(2), "{text}");
     }
-    insta::assert_snapshot!("campaign_sweep_refused", told);
+    insta::assert_snapshot!("campaign_sweep_refused", messages);
 }
 
 /// An external solver with a manifest takes part in a sweep at each point.
@@ -611,8 +616,11 @@ fn slurm_is_asked_for_what_is_missing() {
     let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
     // Array indices are below MaxArraySize.
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: chunks 1-3 of 3\n"), "{}", answer.err);
-    let told = fs::read_to_string(here.join("sbatch.txt")).unwrap();
-    assert!(told.contains("--partition=short --time=5") && told.contains("p/slurm/submit-1.sh"), "{told}");
+    let submitted = fs::read_to_string(here.join("sbatch.txt")).unwrap();
+    assert!(
+        submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh"),
+        "{submitted}"
+    );
     let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
     // A second submission needs `--resubmit`.

@@ -141,9 +141,10 @@ fn a_table_is_judged_too() {
     let answer = grainbench(directory.path(), &arguments);
     let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
     let rows = results["verdicts"].as_array().unwrap();
-    let of = |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
+    let row_of =
+        |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
     // The rigid solution has the same mean motion as the scene's soft contact, but not its oscillation.
-    assert_eq!((&of("grain.x")["verdict"], &of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
+    assert_eq!((&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
     assert_eq!((rows.len(), answer.code), (5, Some(1)));
 }
 
@@ -218,7 +219,7 @@ fn what_cannot_be_judged_is_refused_with_the_reason() {
     write("lj.log", "units lj\nStep Time\n0 0\n");
     write("contacts", &snapshot("ITEM: TIME\n0\n", "c_1", "1").replace("ATOMS", "ENTRIES"));
     write("other.csv", "a,b\n0,1\n");
-    let mut said = String::new();
+    let mut messages = String::new();
     for arguments in [
         &["incline-disc/60deg-mu.9", "--dump", "missing"][..],
         &["incline-disc/60deg-mu.9", "--dump", "empty"],
@@ -238,13 +239,13 @@ fn what_cannot_be_judged_is_refused_with_the_reason() {
         &["incline-disc", "--dump", "si"],
     ] {
         let message = refusal(directory.path(), &[&["check"][..], arguments].concat());
-        said.push_str(&format!("{}\n    {}\n", arguments.join(" "), message.lines().next().unwrap_or_default()));
+        messages.push_str(&format!("{}\n    {}\n", arguments.join(" "), message.lines().next().unwrap_or_default()));
     }
     for arguments in [["si", "other.csv"], ["other.csv", "si"], ["si", "contacts"]] {
         let message = refusal(directory.path(), &[&["compare"][..], &arguments].concat());
-        said.push_str(&format!("compare {}\n    {}", arguments.join(" "), message));
+        messages.push_str(&format!("compare {}\n    {}", arguments.join(" "), message));
     }
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(messages);
 }
 
 #[test]
@@ -385,7 +386,7 @@ fn grains_of_another_radius_or_mass_are_refused() {
     let whole = unpacked("lammps-incline.dump.gz");
     let row =
         |radius: &str, mass: &str| whole.replace("\n1 1 0.5 2356.1944901923448 ", &format!("\n1 1 {radius} {mass} "));
-    for (radius, mass, said) in [
+    for (radius, mass, reason) in [
         (
             "0.5005",
             "2356.1944901923448",
@@ -395,7 +396,7 @@ fn grains_of_another_radius_or_mass_are_refused() {
     ] {
         fs::write(directory.path().join("other"), row(radius, mass)).unwrap();
         let message = refusal(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "other"]);
-        assert!(message.contains(said), "{message}");
+        assert!(message.contains(reason), "{message}");
     }
     // Six digits of the mass are its first six.
     fs::write(directory.path().join("rounded"), row("0.5", "2356.19")).unwrap();

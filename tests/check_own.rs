@@ -62,8 +62,8 @@ fn at_numbers(files: &[&str], others: &[&str]) -> (Option<i32>, Vec<Value>) {
     judged(&words)
 }
 
-fn count(rows: &[Value], of: impl Fn(&Value) -> bool) -> usize {
-    rows.iter().filter(|row| of(row)).count()
+fn count(rows: &[Value], condition: impl Fn(&Value) -> bool) -> usize {
+    rows.iter().filter(|row| condition(row)).count()
 }
 
 /// A hand-written deck, from its dump and from its VTK files. The time step comes from the log beside them.
@@ -134,8 +134,8 @@ fn a_folder_of_outputs_is_judged_together() {
     fs::rename(folder.join(log), folder.join("log.liggghts")).unwrap();
     let runs = directory.path().join("runs").display().to_string();
     let (code, rows) = judged(&["--all", &runs]);
-    let of = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
-    assert!(code == Some(0) && of("incline-disc") == 9 && of("backspin") > 5, "{rows:#?}");
+    let passes = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
+    assert!(code == Some(0) && passes("incline-disc") == 9 && passes("backspin") > 5, "{rows:#?}");
     // The content of a file decides, not its name; what is not judged is red unless it is ignored by name.
     let place = directory.path().join("runs/incline-disc/60deg-mu.9");
     fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
@@ -158,9 +158,9 @@ fn a_folder_of_outputs_is_judged_together() {
     into("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz");
     fs::remove_file(directory.path().join("runs/incline-disc/60deg-mu.9/lammps-incline.dump.gz")).unwrap();
     assert_eq!(judged(&["--all", &runs]).0, Some(1));
-    let refused = |folder: &Path, said: &str| {
+    let refused = |folder: &Path, message: &str| {
         let answer = grainbench(directory.path(), &["check", "--all", &folder.display().to_string()]);
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     };
     refused(&directory.path().join("nowhere"), "expected a folder that can be read");
     // A folder of a case without output is red, also if only its log is there or if no case has its name.
@@ -172,9 +172,9 @@ fn a_folder_of_outputs_is_judged_together() {
     fs::copy(folder.join("liggghts-backspin.dump.gz"), partly.join("backspin/sphere/dump.gz")).unwrap();
     fs::copy(folder.join("log.liggghts"), partly.join("backspin/sphere/log.liggghts")).unwrap();
     let (code, rows) = judged(&["--all", &partly.display().to_string()]);
-    let red = |name: &str, said: &str| {
+    let red = |name: &str, message: &str| {
         let is_it = |row: &Value| row["quantity"] == format!("{name}, not judged") && row["verdict"] == "fail";
-        count(&rows, |row| is_it(row) && row["detail"].as_str().unwrap().contains(said)) == 1
+        count(&rows, |row| is_it(row) && row["detail"].as_str().unwrap().contains(message)) == 1
     };
     assert!(code == Some(1) && count(&rows, |row| row["case"] == "files") == 4, "{rows:#?}");
     assert!(red("incline-disc/60deg-mu.9", "found none") && red("oblique-impact", "found none"), "{rows:#?}");
@@ -192,14 +192,14 @@ fn a_folder_of_outputs_is_judged_together() {
 #[test]
 fn files_that_do_not_tell_are_refused() {
     let directory = tempfile::tempdir().unwrap();
-    let refused = |name: &str, bytes: &[u8], said: &str| {
+    let refused = |name: &str, bytes: &[u8], message: &str| {
         let path = directory.path().join(name);
         fs::write(&path, bytes).unwrap();
         let answer = grainbench(
             directory.path(),
             &["check", &file("slope.toml"), "--time-step", "2e-6", "--dump", &path.display().to_string()],
         );
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{name}: {}", answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{name}: {}", answer.err);
         assert_eq!(answer.err.lines().count(), 1);
     };
     let whole = fs::read(slope().join("sphere_0.vtk")).unwrap();
@@ -356,14 +356,14 @@ fn an_id_that_occurs_twice_is_an_error() {
     let (code, _, err) = ball(&["same-ids/zero_0.vtk", "same-ids/zero_200.vtk"], &["--time-step", "1e-5"]);
     assert!(code == Some(2) && err.contains("expected an id that no row above has, found 0 once more"), "{err}");
     let directory = tempfile::tempdir().unwrap();
-    for (ids, said) in
+    for (ids, message) in
         [("1,1", "found 1 once more"), ("-1,2", "expected a whole number from 0 in the column `id`, found -1")]
     {
         let [a, b] = [&ids[..ids.len() - 2], &ids[ids.len() - 1..]];
         let text = format!("step,id,x,y,z\n0,{a},0,0,0\n0,{b},0.5,0,0\n");
         fs::write(directory.path().join("grains.csv"), text).unwrap();
         let answer = grainbench(directory.path(), &["compare", "grains.csv", "grains.csv"]);
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     }
 }
 
@@ -433,12 +433,13 @@ fn a_check_says_which_changes_the_output_would_reveal() {
     };
     for how in ["limited", "full"] {
         let (code, rows) = checked(how);
-        let of = |effect: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(effect)).unwrap();
+        let row_of =
+            |effect: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(effect)).unwrap();
         assert_eq!(code, Some(0), "{rows:#?}");
-        assert_eq!(of("friction: ")["detail"], "friction: ±25\u{202f}% cannot be told from this output");
-        let damping = of("contact damping: ");
+        assert_eq!(row_of("friction: ")["detail"], "friction: ±25\u{202f}% cannot be told from this output");
+        let damping = row_of("contact damping: ");
         assert_eq!((&damping["verdict"], &damping["value"]), (&"pass".into(), &0.1.into()), "{damping}");
-        assert_eq!(of("stiffness: ")["verdict"], "pass");
+        assert_eq!(row_of("stiffness: ")["verdict"], "pass");
     }
     assert_eq!(checked("off").1.len(), 10);
 }
@@ -516,10 +517,10 @@ fn every_grain_starts_as_in_the_scene() {
         (&|_, rows| rows.iter_mut().for_each(|row| *row = [0.0; 9]), "x of grain 1 = 0.25 m; found 0.0 m"),
         (&|_, rows| rows.swap(0, 1), "x of grain 1 = 0.25 m; found 1.5 m"),
     ];
-    for (change, said) in wrong {
+    for (change, message) in wrong {
         for (from, more) in [(0, &[][..]), (0, &["--partial"]), (700, &[])] {
             let answer = checked_flight(&flight(from, change), more);
-            assert!(answer.code == Some(2) && answer.err.contains(said), "{said}: {}{}", answer.out, answer.err);
+            assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
         }
     }
     // Six digits are enough for numbers that have no more.
@@ -540,9 +541,9 @@ fn motion_out_of_the_plane_is_refused() {
         (&|sample, rows| rows[0][6] = f64::from(sample), "`omegax` 0.0, found 1.0"),
         (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` 0.0, found 1.0"),
     ];
-    for (change, said) in wrong {
+    for (change, message) in wrong {
         let answer = checked_flight(&flight(0, change), &[]);
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{said}: {}{}", answer.out, answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
     }
     // The plane may lie anywhere, and a rounding does not leave it.
     let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));

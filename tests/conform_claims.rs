@@ -97,8 +97,9 @@ fn a_failed_result_names_the_mistake() {
     for (case, words, wrong) in expected {
         let rows = grainbench::judge(Misled(wrong), &[case]).unwrap().verdicts;
         let red: Vec<&Verdict> = rows.iter().filter(|row| row.red() == Some(Red::Value)).collect();
-        let hint =
-            |row: &Verdict| row.detail.as_deref().unwrap_or_default().split_once("as if: ").map(|of| of.1.to_owned());
+        let hint = |row: &Verdict| {
+            row.detail.as_deref().unwrap_or_default().split_once("as if: ").map(|hint| hint.1.to_owned())
+        };
         let named = red.iter().filter(|row| hint(row).is_some_and(|hint| hint.contains(words))).count();
         let other = red.iter().filter(|row| hint(row).is_some_and(|hint| !hint.contains(words))).count();
         println!("{case}, {words}: {} red, {named} named, {other} otherwise", red.len());

@@ -160,7 +160,7 @@ fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Sce
 fn refusals_give_the_reason() {
     let lammps =
         |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| refusal(case, variant, Program::LAMMPS, change);
-    let said = [
+    let messages = [
         lammps("chung-ooi", "1-glass", &|scene| {
             scene.change_laws(|law| (law.damping_ratio, law.friction) = (0.1, 0.3));
         }),
@@ -190,7 +190,7 @@ fn refusals_give_the_reason() {
             scene.walls[0].motion.phases[0].stop = Moment::Seconds(0.1234);
         }),
     ];
-    insta::assert_snapshot!(said.join("\n"));
+    insta::assert_snapshot!(messages.join("\n"));
 }
 
 /// A title cannot become a command.
@@ -251,7 +251,7 @@ fn a_directory_holds_one_deck() {
 #[test]
 fn the_command_refuses_and_leaves_nothing() {
     let directory = tempfile::tempdir().unwrap();
-    let mut said = String::new();
+    let mut messages = String::new();
     for arguments in [
         &["deck", "nine-discs/static-0", "--for", "lammps"][..],
         &["deck", "nine-discs", "--for", "lamps"],
@@ -264,7 +264,7 @@ fn the_command_refuses_and_leaves_nothing() {
         assert!(files(directory.path()).is_empty());
         // The list of cases is not part of this test.
         let lines = answer.err.lines().filter(|line| !line.starts_with("  "));
-        lines.for_each(|line| said.push_str(&(line.to_owned() + "\n")));
+        lines.for_each(|line| messages.push_str(&(line.to_owned() + "\n")));
     }
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(messages);
 }

@@ -143,8 +143,8 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     std::fs::write(path.join("grains.dump"), dump(&packing)).unwrap();
     std::fs::write(path.join("contacts.dump"), contacts(&packing)).unwrap();
     let cells = ["--cell", "1.25,2.5,1.25", "--fewest", "1"];
-    let told = ["fields", "grains.dump", "--contacts", "contacts.dump", "--map", MAP, "--out", "told"];
-    let answer = grainbench(path, &[&told[..], &cells].concat());
+    let command = ["fields", "grains.dump", "--contacts", "contacts.dump", "--map", MAP, "--out", "told"];
+    let answer = grainbench(path, &[&command[..], &cells].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
     assert!(untold.out.contains("No contacts were told: there is no stress."), "{}", untold.out);
@@ -154,11 +154,11 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     alone.contacts.as_mut().unwrap().retain(|contact| matches!(contact.partner, Partner::Grain(_)));
     let grid = Grid::filling(alone.bounds, Vector3::new(1.25, 2.5, 1.25));
     let exact = elements(&alone, Dimension::Three, &grid);
-    let same = |file: &str, name: &str, of: &dyn Fn(usize) -> Option<f64>| {
+    let same = |file: &str, name: &str, value: &dyn Fn(usize) -> Option<f64>| {
         let found = column(&path.join(file), "elements.csv", name);
         assert_eq!(found.len(), grid.cells());
         for (cell, found) in found.into_iter().enumerate() {
-            match (found, of(cell)) {
+            match (found, value(cell)) {
                 (None, None) => {}
                 (Some(found), Some(exact)) => {
                     assert!(

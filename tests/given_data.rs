@@ -78,8 +78,8 @@ fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     let answer = grainbench(directory.path(), &BEDS);
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(directory.path());
-    let told = |(outcome, row): &(String, String)| outcome == "not-available" && row.contains("KParticles.txt");
-    assert!(rows.len() == 3 && rows.iter().all(told), "{rows:?}");
+    let is_announced = |(outcome, row): &(String, String)| outcome == "not-available" && row.contains("KParticles.txt");
+    assert!(rows.len() == 3 && rows.iter().all(is_announced), "{rows:?}");
 }
 
 /// An invalid bed of the impact is reported with its place.

@@ -83,9 +83,9 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
                 let (same, none) = taken(solver, &text, 20, threads);
                 assert_eq!(format!("{same:?}"), format!("{series:?}"), "{solver} {probes}");
                 assert!(none.whole.is_empty());
-                let told: Vec<&Brief> = none.in_short.iter().map(|(brief, _)| brief).collect();
+                let summaries: Vec<&Brief> = none.in_short.iter().map(|(brief, _)| brief).collect();
                 let expected: Vec<Brief> = all.whole.iter().map(Brief::of).collect();
-                assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{solver} {probes}");
+                assert_eq!(summaries, expected.iter().collect::<Vec<_>>(), "{solver} {probes}");
                 assert!(expected.iter().any(|brief| brief.contacts > Some(0)), "some touch");
                 for ((_, rows), snapshot) in none.in_short.iter().zip(&all.whole) {
                     let contacts = if solver == "dem" { snapshot.told_contacts().len() } else { 0 };

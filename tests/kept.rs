@@ -67,8 +67,8 @@ fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
     // A package, or a copy with another history, knows none of the commits; a shallow copy may lack some.
     let is_whole = !root.join(".git/shallow").exists();
     let has_history = is_whole && commits.keys().any(|commit| is_hash(commit) && is_there(commit));
-    for (commit, of) in &commits {
-        assert!(is_hash(commit), "{commit}: {of:?}");
-        assert!(!has_history || is_there(commit), "{commit} is no commit of this history: {of:?}");
+    for (commit, results) in &commits {
+        assert!(is_hash(commit), "{commit}: {results:?}");
+        assert!(!has_history || is_there(commit), "{commit} is no commit of this history: {results:?}");
     }
 }

@@ -44,8 +44,9 @@ fn simulated(directory: &Path, name: &str) -> String {
 /// Returns the cases that a file of a report mentions.
 fn reported(directory: &Path, name: &str) -> String {
     let text = fs::read_to_string(directory.join(name)).unwrap();
-    let of = |case: &str| text.contains(case).then(|| case.to_owned());
-    let named = ["rolling-resistance", "oblique-impact"].into_iter().filter_map(of).collect::<Vec<_>>().join(" ");
+    let case_name = |case: &str| text.contains(case).then(|| case.to_owned());
+    let named =
+        ["rolling-resistance", "oblique-impact"].into_iter().filter_map(case_name).collect::<Vec<_>>().join(" ");
     // Figures mention their case only in their file name.
     if name.starts_with("figures") || named.is_empty() { name.to_owned() } else { named }
 }

@@ -301,14 +301,14 @@ fn what_is_wrong_with_a_mesh_is_told() {
     let directory = tempfile::tempdir().unwrap();
     let scene_of =
         |more: &str| format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
-    let mut told = String::new();
-    let _ = writeln!(told, "no file: {}", scene_in(directory.path(), &scene_of(plain)).unwrap_err());
+    let mut messages = String::new();
+    let _ = writeln!(messages, "no file: {}", scene_in(directory.path(), &scene_of(plain)).unwrap_err());
     for (name, bytes, more) in files {
         std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
         let error = scene_in(directory.path(), &scene_of(more)).expect_err(name);
-        let _ = writeln!(told, "{name}: {error}");
+        let _ = writeln!(messages, "{name}: {error}");
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(messages);
     // Valid files: in millimetres, with slightly different corners, and binary.
     for (bytes, more) in [
         (stl(&large).into_bytes(), "unit = 'mm'"),

@@ -77,7 +77,7 @@ fn a_program_that_lies_is_found_out() {
         ("links elsewhere", "ln -s /dev/zero \"$2/grains.csv\"".to_owned(), "broken", "expected a plain file"),
         ("cannot", "echo 'no friction here'; exit 64".to_owned(), "unsupported", "no friction here"),
     ];
-    for (what, script, verdict, said) in lies {
+    for (what, script, verdict, message) in lies {
         let directory = tempfile::tempdir().unwrap();
         write(directory.path(), MANIFEST, &script);
         let (answer, results) = judged(directory.path(), &["--no-controls"]);
@@ -86,7 +86,7 @@ fn a_program_that_lies_is_found_out() {
         assert!(!rows.is_empty(), "{what}");
         for row in rows {
             assert_eq!(row["verdict"], verdict, "{what}: {row}");
-            assert!(row["detail"].as_str().unwrap_or_default().contains(said), "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
         }
     }
     assert!(!running().contains("sleep 1234"), "what it started goes with it");
@@ -130,14 +130,14 @@ fn a_worker_that_lies_is_found_out() {
         ),
         ("cannot", "echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
     ];
-    for (what, script, verdict, said) in lies {
+    for (what, script, verdict, message) in lies {
         let directory = tempfile::tempdir().unwrap();
         write(directory.path(), &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
         let (answer, results) = judged(directory.path(), &["--no-controls"]);
         assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
         for row in results["verdicts"].as_array().unwrap() {
             assert_eq!(row["verdict"], verdict, "{what}: {row}");
-            assert!(row["detail"].as_str().unwrap_or_default().contains(said), "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
         }
     }
     assert!(!running().contains("sleep 4321"), "what it started goes with it");
@@ -162,9 +162,9 @@ fn what_is_not_declared_is_not_asked_for() {
         ("walls = [\"plane\"]", "", "walls that are a `plane`"),
         ("\"friction\", ", "", "the effect `friction`"),
     ];
-    for (declared, instead, said) in less {
+    for (declared, instead, message) in less {
         let (verdict, detail) = reason(&MANIFEST.replace(declared, instead));
-        assert!(verdict == "unsupported" && detail.contains(said), "{verdict}: {detail}");
+        assert!(verdict == "unsupported" && detail.contains(message), "{verdict}: {detail}");
     }
     let (verdict, detail) = reason(&MANIFEST.replace("\"sh\"", "\"no-such-program\""));
     assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
@@ -217,9 +217,9 @@ fn a_wrong_manifest_is_refused() {
             "SOLVER.toml: knobs.critical-fraction: expected parts",
         ),
     ];
-    for (right, instead, said) in wrong {
+    for (right, instead, message) in wrong {
         let err = refused(&MANIFEST.replace(right, instead));
-        assert!(err.contains(said), "{err}");
+        assert!(err.contains(message), "{err}");
     }
     assert!(refused("").contains("missing field `name`"));
     assert!(refused(&MANIFEST[..40]).contains("SOLVER.toml: line 2"));

@@ -59,9 +59,9 @@ fn what_is_wrong_is_red() {
         let folder = case(file, replaced);
         let (answer, verdicts, controls) = run(folder.path());
         assert_eq!(answer.code, Some(1), "{replaced:?}");
-        let of = |rows: &[Value], key: &str, is: Value| rows.iter().filter(|row| row[key] == is).count();
-        assert_eq!(of(&verdicts, "verdict", "fail".into()), verdicts_red, "{replaced:?}: {verdicts:#?}");
-        assert_eq!(of(&controls, "turned_red", false.into()), controls_green, "{replaced:?}: {controls:#?}");
+        let count_of = |rows: &[Value], key: &str, is: Value| rows.iter().filter(|row| row[key] == is).count();
+        assert_eq!(count_of(&verdicts, "verdict", "fail".into()), verdicts_red, "{replaced:?}: {verdicts:#?}");
+        assert_eq!(count_of(&controls, "turned_red", false.into()), controls_green, "{replaced:?}: {controls:#?}");
     };
     red("claims.toml", &[("5/7 *", "0.71 *")], 1, 0);
     red("claims.toml", &[("5/2 *", "2.51 *")], 1, 0);
@@ -189,24 +189,28 @@ fn a_wrong_file_is_refused() {
         ("gravity.slope_deg = 29.9", "gravity.slope_deg = 30.0", "control.set: expected what makes another scene"),
         ("gravity.slope_deg = 29.9", "gravity.slop_deg = 29.9", "control.set: expected another scene, found"),
     ];
-    for (right, instead, said) in slips {
+    for (right, instead, message) in slips {
         let folder = case("claims.toml", &[(right, instead)]);
         fs::write(folder.path().join("slope/late.csv"), "t,v\n0,0\n10,35\n").unwrap();
         let answer = grainbench(folder.path(), &["run", "slope"]);
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{instead}: {}", answer.err);
-        assert!(answer.err.contains("slope/claims.toml: ") && answer.err.contains(said), "{instead}: {}", answer.err);
+        assert!(
+            answer.err.contains("slope/claims.toml: ") && answer.err.contains(message),
+            "{instead}: {}",
+            answer.err
+        );
         assert!(!answer.err.contains('\u{1b}'), "{}", answer.err);
     }
-    let said = |text: &str, said: &str| {
+    let check = |text: &str, message: &str| {
         let folder = case("", &[]);
         fs::write(folder.path().join("slope/claims.toml"), text).unwrap();
         let answer = grainbench(folder.path(), &["run", "slope"]);
-        assert!(answer.code == Some(2) && answer.err.contains(said), "{}", answer.err);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     };
     let whole = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case/claims.toml")).unwrap();
-    said("", "missing field `title`");
-    said("title = \"A\"\nclaims = []\n", "expected at least one `[[claims]]`, found none");
-    said(&whole[..whole.len() / 2], "claims.toml: ");
+    check("", "missing field `title`");
+    check("title = \"A\"\nclaims = []\n", "expected at least one `[[claims]]`, found none");
+    check(&whole[..whole.len() / 2], "claims.toml: ");
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
     let answer = grainbench(folder.path(), &["run", "empty"]);

@@ -57,7 +57,8 @@ fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
     let mut compared = 0;
     for (ours, theirs) in ours.snapshots.iter().zip(&theirs.snapshots).filter(|(ours, _)| ours.time <= until) {
         assert_eq!(ours.step, theirs.step);
-        let ids = |of: &[grainbench::scene::record::GrainState]| of.iter().map(|grain| grain.id).collect::<Vec<_>>();
+        let ids =
+            |ids_of: &[grainbench::scene::record::GrainState]| ids_of.iter().map(|grain| grain.id).collect::<Vec<_>>();
         assert_eq!(ids(&ours.grains), ids(&theirs.grains), "at {}", ours.time);
         for (a, b) in ours.grains.iter().zip(&theirs.grains) {
             worst = worst.max((a.position - b.position).norm());
@@ -161,7 +162,7 @@ fn a_piston_presses_in_lammps_as_in_ours() {
 /// A deck error names the feature that an external solver lacks.
 #[test]
 fn what_a_program_lacks_is_said() {
-    let said = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {
+    let message = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {
         Ok(deck) => panic!("{}", deck.files[0].1),
         Err(error) => error.to_string(),
     };
@@ -178,15 +179,15 @@ fn what_a_program_lacks_is_said() {
     let round =
         "walls.side = { material = 'm', cylinder = { axis = [[0.0, 2.0, -9.0], [0.0, 2.0, 9.0]], radius = 4.0 } }\n";
     let text: Vec<String> = vec![
-        said(&format!("{HEAD}{poured}"), Program::LAMMPS),
-        said(&format!("{HEAD}{poured}"), Program::LIGGGHTS),
-        said(&removal, Program::LIGGGHTS),
-        said(&format!("{HEAD}{pressed}"), Program::LIGGGHTS),
-        said(&gone(&ledge), Program::LIGGGHTS),
-        said(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
-        said(&gone(round), Program::LIGGGHTS),
-        said(&gone("[driven.d]\ngrains = 'ball'\nstart = 0.5\n"), Program::LAMMPS),
-        said(&gone("[driven.d]\ngrains = 'ball'\nstop = 0.5\n"), Program::LIGGGHTS),
+        message(&format!("{HEAD}{poured}"), Program::LAMMPS),
+        message(&format!("{HEAD}{poured}"), Program::LIGGGHTS),
+        message(&removal, Program::LIGGGHTS),
+        message(&format!("{HEAD}{pressed}"), Program::LIGGGHTS),
+        message(&gone(&ledge), Program::LIGGGHTS),
+        message(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
+        message(&gone(round), Program::LIGGGHTS),
+        message(&gone("[driven.d]\ngrains = 'ball'\nstart = 0.5\n"), Program::LAMMPS),
+        message(&gone("[driven.d]\ngrains = 'ball'\nstop = 0.5\n"), Program::LIGGGHTS),
     ];
     insta::assert_snapshot!(text.join("\n"));
 }

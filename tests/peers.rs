@@ -69,10 +69,10 @@ fn kept_rows_are_earned_and_are_those_of_today() {
 fn programs_table(judged: &[Judged]) -> String {
     let mut table =
         "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
-    for of in judged {
-        let Count { pass, red, amber, controls, controls_red, .. } = of.count(None);
-        let rows = of.rows.len();
-        let (version, day, commit) = (&of.version, of.day(), &of.provenance.commit);
+    for results in judged {
+        let Count { pass, red, amber, controls, controls_red, .. } = results.count(None);
+        let rows = results.rows.len();
+        let (version, day, commit) = (&results.version, results.day(), &results.provenance.commit);
         writeln!(
             table,
             "| {version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit} |"
@@ -95,10 +95,10 @@ fn cell(count: Count) -> String {
 }
 
 fn cases_table(judged: &[Judged]) -> String {
-    let names: Vec<&str> = judged.iter().map(|of| of.program.as_str()).collect();
+    let names: Vec<&str> = judged.iter().map(|results| results.program.as_str()).collect();
     let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
     for case in cases(judged) {
-        let cells: Vec<String> = judged.iter().map(|of| cell(of.count(Some(case)))).collect();
+        let cells: Vec<String> = judged.iter().map(|results| cell(results.count(Some(case)))).collect();
         writeln!(table, "| `{case}` | {} |", cells.join(" | ")).unwrap();
     }
     table.trim_end().to_owned()

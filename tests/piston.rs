@@ -79,11 +79,11 @@ fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let stiff = Matrix2::new(2.0, -1.0, -1.0, 1.0) * STIFFNESS;
     let eigen = SymmetricEigen::new(Matrix2::from_fn(|i, j| stiff[(i, j)] / (root[i] * root[j])));
     let rest = Vector2::new(1.0, 2.0) * (FORCE / STIFFNESS);
-    let exact = |time: f64, of: usize| {
+    let exact = |time: f64, component: usize| {
         let swing = eigen.eigenvalues.map(|square| (square.sqrt() * time).cos());
         let modes = eigen.eigenvectors * Matrix2::from_diagonal(&swing) * eigen.eigenvectors.transpose();
         let start = rest.component_mul(&root);
-        rest[of] - (modes * start)[of] / root[of]
+        rest[component] - (modes * start)[component] / root[component]
     };
     let record = run(&scene(0.0, 0.0, 0.0, 0.1, ""));
     let size = 2.0 * FORCE / STIFFNESS;

@@ -62,9 +62,9 @@ fn a_time_limit_that_is_no_time_is_refused() {
         .output()
         .unwrap();
     assert_eq!(command.status.code(), Some(2));
-    let said = String::from_utf8(command.stderr).unwrap();
+    let message = String::from_utf8(command.stderr).unwrap();
     let reason = "GRAINBENCH_TIME_LIMIT: expected a whole number of seconds, found `2s`";
-    assert_eq!(said, format!("error: lammps is not available: {reason}\n"));
+    assert_eq!(message, format!("error: lammps is not available: {reason}\n"));
 }
 
 /// If our process is killed, the external solver ends and its working folder is removed.

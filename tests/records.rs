@@ -108,10 +108,10 @@ fn matrix([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
 }
 
 /// Returns the largest difference over the largest expected value.
-fn apart(found: &[GrainState], of: impl Fn(&GrainState) -> Option<[f64; 6]>, exact: &[Matrix3<f64>]) -> f64 {
+fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>, exact: &[Matrix3<f64>]) -> f64 {
     let scale = exact.iter().map(Matrix3::norm).fold(0.0, f64::max);
     assert!(scale > 0.0);
-    let each = found.iter().zip(exact).map(|(grain, exact)| (matrix(of(grain).unwrap()) - exact).norm());
+    let each = found.iter().zip(exact).map(|(grain, exact)| (matrix(stress(grain).unwrap()) - exact).norm());
     each.fold(0.0, f64::max) / scale
 }
 
@@ -131,14 +131,16 @@ fn the_mean_over_an_interval_is_that_of_its_steps() {
         );
         for pair in found.snapshots.windows(2) {
             let [before, now] = pair else { panic!() };
-            let of: Vec<&Snapshot> = each.snapshots[before.step as usize + 1..=now.step as usize]
+            let snapshots: Vec<&Snapshot> = each.snapshots[before.step as usize + 1..=now.step as usize]
                 .iter()
                 .filter(|snapshot| snapshot.step.is_multiple_of(every))
                 .collect();
             let mean = |part: f64| -> Vec<Matrix3<f64>> {
                 let mut sums = vec![Matrix3::zeros(); now.grains.len()];
-                of.iter().for_each(|one| sums.iter_mut().zip(virials(one, part)).for_each(|(sum, more)| *sum += more));
-                sums.iter().map(|sum| sum / of.len() as f64).collect()
+                snapshots
+                    .iter()
+                    .for_each(|one| sums.iter_mut().zip(virials(one, part)).for_each(|(sum, more)| *sum += more));
+                sums.iter().map(|sum| sum / snapshots.len() as f64).collect()
             };
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.5)) < 1e-13);
             // A lever arm to the other surface, or the instantaneous stress, gives a visible difference.
@@ -221,7 +223,7 @@ fn files_hold_what_was_chosen() {
             assert!(chosen.spin.iter().all(|spin| spin.is_nan()) && chosen.force.is_none() && chosen.virial.is_none());
             assert_eq!(
                 chosen.mean_virial.is_some(),
-                chosen.mean_virial.as_deref().is_some_and(|of| *of != [f64::NAN; 6])
+                chosen.mean_virial.as_deref().is_some_and(|virial| *virial != [f64::NAN; 6])
             );
         }
     }
@@ -249,8 +251,9 @@ fn fields_says_which_stress_it_read() {
         );
         assert_eq!(answer.code, Some(0), "{}", answer.err);
         let summary: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
-        let of = |mean: &&serde_json::Value| mean["quantity"] == "pressure";
-        let found = summary["means"].as_array().unwrap().iter().find(of).and_then(|mean| mean["value"].as_f64());
+        let is_pressure = |mean: &&serde_json::Value| mean["quantity"] == "pressure";
+        let found =
+            summary["means"].as_array().unwrap().iter().find(is_pressure).and_then(|mean| mean["value"].as_f64());
         (summary["which_stress"].as_str().unwrap().to_owned(), found)
     };
     let (mean, of_mean) = pressure(&["--from", "0.0001"], "run");

@@ -21,8 +21,11 @@ use std::collections::BTreeSet;
 #[test]
 fn every_run_that_gates_read_is_stored_and_no_other() {
     for program in Program::ALL {
-        let wanted: BTreeSet<String> =
-            stored::all().into_iter().filter(|of| of.program == program).map(|of| of.id).collect();
+        let wanted: BTreeSet<String> = stored::all()
+            .into_iter()
+            .filter(|stored_run| stored_run.program == program)
+            .map(|stored_run| stored_run.id)
+            .collect();
         let there: BTreeSet<String> = std::fs::read_dir(folder(program, ""))
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -63,25 +66,30 @@ fn every_known_error_has_a_second_bound() {
 /// Each stored run belongs to its present scene, and a changed scene is rejected.
 #[test]
 fn none_is_stale_and_another_scene_is() {
-    for of in stored::all() {
-        let stored = StoredRun::load(&folder(of.program, &of.id)).unwrap();
-        let mut scene = of.scene().unwrap();
-        stored.record(&scene, &of.run.resolution, of.program).unwrap_or_else(|error| panic!("{}: {error}", of.id));
+    for stored_run in stored::all() {
+        let stored = StoredRun::load(&folder(stored_run.program, &stored_run.id)).unwrap();
+        let mut scene = stored_run.scene().unwrap();
+        stored
+            .record(&scene, &stored_run.run.resolution, stored_run.program)
+            .unwrap_or_else(|error| panic!("{}: {error}", stored_run.id));
         scene.change_laws(|law| law.friction += 0.01);
-        let refused = stored.record(&scene, &of.run.resolution, of.program);
-        assert!(matches!(refused, Err(RunError::Stale { .. })), "{}", of.id);
+        let refused = stored.record(&scene, &stored_run.run.resolution, stored_run.program);
+        assert!(matches!(refused, Err(RunError::Stale { .. })), "{}", stored_run.id);
     }
 }
 
 /// The largest difference at half the time step: the numerical uncertainty of the stored runs.
 #[test]
 fn the_time_step_is_worth_little_where_it_is_small() {
-    for of in stored::all().iter().filter(|of| of.id.starts_with("incline") && of.id.ends_with("0.5")) {
-        let (stored, scene) = (StoredRun::load(&folder(of.program, &of.id)).unwrap(), of.scene().unwrap());
+    for stored_run in
+        stored::all().iter().filter(|stored_run| stored_run.id.starts_with("incline") && stored_run.id.ends_with("0.5"))
+    {
+        let (stored, scene) =
+            (StoredRun::load(&folder(stored_run.program, &stored_run.id)).unwrap(), stored_run.scene().unwrap());
         let (run, half_step) = (stored.series(&scene), stored.half_step(&scene));
         let (x, half) = (run.column("grain.x").unwrap(), half_step.column("grain.x").unwrap());
         let worst = x.iter().zip(half).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(worst < 1e-3 * x.last().unwrap() && worst > 0.0, "{}: {worst}", of.id);
+        assert!(worst < 1e-3 * x.last().unwrap() && worst > 0.0, "{}: {worst}", stored_run.id);
     }
 }
 

@@ -377,9 +377,9 @@ fn an_interrupted_run_leaves_what_is_finished() {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     let ended = child.wait_with_output().unwrap();
-    let said = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!(ended.status.code(), Some(1), "{said}");
-    assert!(said.contains("interrupted: ") && said.contains("the report holds what was finished"), "{said}");
+    let message = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{message}");
+    assert!(message.contains("interrupted: ") && message.contains("the report holds what was finished"), "{message}");
     let results = std::fs::read_to_string(directory.path().join("out/results.json")).unwrap();
     let results: serde_json::Value = serde_json::from_str(&results).unwrap();
     let options = results["provenance"]["options"].to_string();

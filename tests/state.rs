@@ -167,10 +167,10 @@ fn what_is_no_state_is_refused() {
         assert_eq!(files(path), before);
         // The length of a file depends on its contents.
         let lengths = |line: &str| line.replace(|digit: char| digit.is_ascii_digit(), "#");
-        let said = if what == "cut off" { lengths(&answer.err) } else { answer.err };
-        refusals += &format!("{what}\n    {said}");
+        let message = if what == "cut off" { lengths(&answer.err) } else { answer.err };
+        refusals += &format!("{what}\n    {message}");
     };
-    let of = |file: &str, further: &str| {
+    let scene_with_state = |file: &str, further: &str| {
         scene(1.0, &format!("[grains.g]\nmaterial = 'm'\nstate = {{ path = '{file}' }}\n{further}"))
     };
     for (what, file) in [
@@ -180,13 +180,21 @@ fn what_is_no_state_is_refused() {
         ("another kind", "text.state"),
         ("changed", "changed.state"),
     ] {
-        refuse(what, &of(file, ""), "dem");
+        refuse(what, &scene_with_state(file, ""), "dem");
     }
-    refuse("a velocity too", &of("heap.state", "velocity = [1.0, 0.0, 0.0]"), "dem");
-    refuse("two of them", &of("heap.state", "[grains.h]\nmaterial = 'm'\nstate = { path = 'heap.state' }"), "dem");
-    refuse("springs of another law", &of("heap.state", "").replace("friction = 0.4", "friction = 0.0"), "dem");
-    refuse("a solver without", &of("heap.state", ""), "rigid");
-    let flat = of("heap.state", "").replace("dimension = 3", "dimension = 2").replace(", -10.0]", "]");
+    refuse("a velocity too", &scene_with_state("heap.state", "velocity = [1.0, 0.0, 0.0]"), "dem");
+    refuse(
+        "two of them",
+        &scene_with_state("heap.state", "[grains.h]\nmaterial = 'm'\nstate = { path = 'heap.state' }"),
+        "dem",
+    );
+    refuse(
+        "springs of another law",
+        &scene_with_state("heap.state", "").replace("friction = 0.4", "friction = 0.0"),
+        "dem",
+    );
+    refuse("a solver without", &scene_with_state("heap.state", ""), "rigid");
+    let flat = scene_with_state("heap.state", "").replace("dimension = 3", "dimension = 2").replace(", -10.0]", "]");
     let flat = flat.replace(", 0.0]", "]").replace(", 10.0]", "]").replace("false, false]", "false]");
     refuse("another number of dimensions", flat.split("[walls").next().unwrap(), "dem");
     std::fs::write(path.join("plain.toml"), scene(0.1, DROPPED)).unwrap();

@@ -174,9 +174,9 @@ fn threads_and_checkpoints_leave_no_trace() {
     with(&["--out", "two", "--threads", "2", "--checkpoint", "half", "--checkpoint-every", "2400"]);
     with(&["--out", "three", "--threads", "1", "--restart", "half"]);
     let same = |file: &str| {
-        let of = |folder: &str| std::fs::read(path.join(folder).join(file)).unwrap();
-        assert!(of("one") == of("two"), "{file}, threads");
-        assert!(of("one") == of("three"), "{file}, restarted");
+        let file_bytes = |folder: &str| std::fs::read(path.join(folder).join(file)).unwrap();
+        assert!(file_bytes("one") == file_bytes("two"), "{file}, threads");
+        assert!(file_bytes("one") == file_bytes("three"), "{file}, restarted");
     };
     ["series.csv", "snapshots.dump"].into_iter().for_each(same);
     let record = run(&silo(), 1);
@@ -231,18 +231,21 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
         let answer = grainbench(path, &[&all[..], further].concat());
         assert_eq!(answer.code, Some(0), "{}", answer.err);
     };
-    let of = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
+    let file_text = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
     with(&["--out", "whole", "--threads", "2"]);
     // Checkpoints before the prescribed motion, at its start, during it, at its end, and after it.
     for every in ["200", "300", "400", "600", "700", "900"] {
         with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
         with(&["--out", "two", "--restart", "half"]);
         for file in ["series.csv", "snapshots.dump"] {
-            assert!(of("whole", file) == of("one", file) && of("one", file) == of("two", file), "{file}, {every}");
+            assert!(
+                file_text("whole", file) == file_text("one", file) && file_text("one", file) == file_text("two", file),
+                "{file}, {every}"
+            );
         }
     }
     with(&["--out", "always", "--set", "driven.lifted.start=0.0", "--set", "driven.lifted.stop=1.0"]);
-    assert!(of("whole", "series.csv") != of("always", "series.csv"));
+    assert!(file_text("whole", "series.csv") != file_text("always", "series.csv"));
     for solver in ["mpm", "rigid"] {
         let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "none"]);
         let says = "grains that are driven for a while";

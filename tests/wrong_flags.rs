@@ -118,14 +118,14 @@ fn answers(command: &[&str]) -> String {
     let before = files(directory);
     let help =
         grainbench_alone(directory, &[&command[..if command[0] == "reference" { 2 } else { 1 }], &["--help"]].concat());
-    let mut told = String::new();
+    let mut messages = String::new();
     let mut ask = |words: &[&str]| {
         let option = words[0].split('=').next().unwrap_or_default();
         let given = [without(command, option), words.to_vec()].concat();
         let answer = grainbench_alone(directory, &given);
-        writeln!(told, "$ grainbench {}\n{}", given.join(" "), without_cases(answer.err.trim_end())).unwrap();
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{told}");
-        assert_eq!(files(directory), before, "{told}");
+        writeln!(messages, "$ grainbench {}\n{}", given.join(" "), without_cases(answer.err.trim_end())).unwrap();
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{messages}");
+        assert_eq!(files(directory), before, "{messages}");
     };
     for option in options(&help.out) {
         for value in wrong(&option) {
@@ -136,7 +136,7 @@ fn answers(command: &[&str]) -> String {
         }
     }
     ask(&["--no-such-option"]);
-    told
+    messages
 }
 
 #[test]

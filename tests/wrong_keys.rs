@@ -28,17 +28,17 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
     for one in ["anyOf", "oneOf", "allOf"].into_iter().filter_map(|key| at.get(key)?.as_array()).flatten() {
         walk(schema, one, path, depth + 1, found);
     }
-    for (key, of) in at.get("properties").and_then(Value::as_object).into_iter().flatten() {
+    for (key, subschema) in at.get("properties").and_then(Value::as_object).into_iter().flatten() {
         // A variant may contain any other key.
         if key == "variants" {
             continue;
         }
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        walk(schema, of, &path, depth + 1, found);
+        walk(schema, subschema, &path, depth + 1, found);
         found.insert(path);
     }
-    if let Some(of) = at.get("additionalProperties").filter(|of| of.is_object()) {
-        walk(schema, of, &format!("{path}.x"), depth + 1, found);
+    if let Some(subschema) = at.get("additionalProperties").filter(|subschema| subschema.is_object()) {
+        walk(schema, subschema, &format!("{path}.x"), depth + 1, found);
         found.insert(format!("{path}.x"));
     }
 }
@@ -59,7 +59,7 @@ fn each_key_given_another_kind_of_value_is_refused_by_a_message_that_helps() {
     let schema: Value = serde_json::from_str(&text).unwrap();
     let keys = keys(&schema);
     assert!(keys.len() > 150, "{}", keys.len());
-    let mut told = String::new();
+    let mut messages = String::new();
     for key in &keys {
         for value in WRONG {
             let line = format!("{key} = {value}");
@@ -67,11 +67,11 @@ fn each_key_given_another_kind_of_value_is_refused_by_a_message_that_helps() {
                 Some(message) => {
                     assert!(message.contains("scene.toml"), "{line}: {message}");
                     assert!(message.contains("expected"), "{line}: {message}");
-                    writeln!(told, "{line}\n  {}", message.replace('\n', "\n  ")).unwrap();
+                    writeln!(messages, "{line}\n  {}", message.replace('\n', "\n  ")).unwrap();
                 }
                 None => assert_eq!(value, "true", "{line} is taken"),
             }
         }
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(messages);
 }

@@ -69,13 +69,14 @@ impl Lease {
     pub fn take(
         plan: &Path,
         range: Range<usize>,
-        said: &Said,
+        contents: &Said,
         seconds: f64,
     ) -> Result<(Option<Self>, Vec<Said>), Fault> {
         let folder = plan.join(RUNNING);
         fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
         let _lock = Lock::of(&folder)?;
-        let others: Vec<Said> = held(plan, seconds)?.into_iter().filter(|other| other.worker != said.worker).collect();
+        let others: Vec<Said> =
+            held(plan, seconds)?.into_iter().filter(|other| other.worker != contents.worker).collect();
         let mut tasks: Vec<[usize; 2]> = Vec::new();
         for place in range {
             if others.iter().any(|other| other.has(place)) {
@@ -89,8 +90,8 @@ impl Lease {
         if tasks.is_empty() {
             return Ok((None, others));
         }
-        let path = folder.join(format!("{}.{ENDING}", said.worker));
-        let lease = Self { path, said: Said { tasks, ..said.clone() } };
+        let path = folder.join(format!("{}.{ENDING}", contents.worker));
+        let lease = Self { path, said: Said { tasks, ..contents.clone() } };
         lease.renew(0)?;
         Ok((Some(lease), others))
     }
@@ -106,8 +107,8 @@ impl Lease {
     /// # Errors
     /// When the disk rejects the write.
     pub fn renew(&self, done: usize) -> Result<(), WriteError> {
-        let said = Said { done, ..self.said.clone() };
-        write_file(&self.path, serde_json::to_string(&said).unwrap_or_default())
+        let contents = Said { done, ..self.said.clone() };
+        write_file(&self.path, serde_json::to_string(&contents).unwrap_or_default())
     }
 }
 
@@ -135,12 +136,12 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<Said>, Fault> {
             continue;
         }
         let (Ok(text), Some(age)) = (fs::read_to_string(&path), age(&path, now)) else { continue };
-        let Ok(said) = serde_json::from_str::<Said>(&text) else { continue };
-        let is_gone = said.host == machine::name() && machine::runs(said.process) == Some(false);
+        let Ok(contents) = serde_json::from_str::<Said>(&text) else { continue };
+        let is_gone = contents.host == machine::name() && machine::runs(contents.process) == Some(false);
         if is_gone || age > seconds {
             let _ = fs::remove_file(&path);
         } else {
-            found.push(said);
+            found.push(contents);
         }
     }
     found.sort_by(|a, b| a.worker.cmp(&b.worker));
@@ -282,8 +283,8 @@ mod tests {
         let plan = tempfile::tempdir().unwrap();
         let leases: Vec<Option<Lease>> = std::thread::scope(|scope| {
             let ask = |at: usize| {
-                let (path, said) = (plan.path(), said(&format!("w{at}"), std::process::id()));
-                scope.spawn(move || Lease::take(path, at..at + 5, &said, 60.0).unwrap().0)
+                let (path, contents) = (plan.path(), lease_contents(&format!("w{at}"), std::process::id()));
+                scope.spawn(move || Lease::take(path, at..at + 5, &contents, 60.0).unwrap().0)
             };
             (0..8).map(ask).collect::<Vec<_>>().into_iter().map(|thread| thread.join().unwrap()).collect()
         });

@@ -96,8 +96,8 @@ impl<'a> Line<'a> {
         let mut ends = text.match_indices(' ').map(|(at, _)| at);
         let head = &text[..ends.nth(3)?];
         let end = ends.next()?;
-        let (told, json) = (&text[head.len() + 1..end], &text[end + 1..]);
-        if told != sum(head, json) {
+        let (entry_text, json) = (&text[head.len() + 1..end], &text[end + 1..]);
+        if entry_text != sum(head, json) {
             return None;
         }
         let mut words = head.split(' ');

@@ -143,11 +143,11 @@ fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<
         parts.is_some_and(|(job, index): (u64, u32)| queued.get(&job).is_some_and(|of_job| of_job.contains(&index)))
     };
     let mut held = lease::held(&plan.path, plan.head.lease_seconds)?;
-    held.retain(|said| said.job.as_deref().is_none_or(is_there));
+    held.retain(|holder| holder.job.as_deref().is_none_or(is_there));
     let mut open = Vec::new();
     for (index, range) in (1..).zip(chunk::all(&plan.tasks, chunks)) {
         let is_open = |place: usize| {
-            !finished.entries.contains_key(&plan.tasks[place].id) && !held.iter().any(|said| said.has(place))
+            !finished.entries.contains_key(&plan.tasks[place].id) && !held.iter().any(|holder| holder.has(place))
         };
         if !is_queued(index) && range.into_iter().any(is_open) {
             open.push(index);
@@ -180,12 +180,12 @@ fn quoted(path: &Path) -> String {
 
 /// Formats increasing numbers as ranges.
 fn ranges(numbers: &[u32]) -> String {
-    let of = |run: &[u32]| match run {
+    let range_text = |run: &[u32]| match run {
         [one] => one.to_string(),
         [first, .., last] => format!("{first}-{last}"),
         [] => String::new(),
     };
-    numbers.chunk_by(|a, b| a + 1 == *b).map(of).collect::<Vec<_>>().join(",")
+    numbers.chunk_by(|a, b| a + 1 == *b).map(range_text).collect::<Vec<_>>().join(",")
 }
 
 /// Returns the largest size of a job array at this site: indices must be below `MaxArraySize`.
@@ -225,8 +225,8 @@ fn ask(command: &mut Command) -> Result<String, Fault> {
         .output()
         .map_err(|error| Fault::Batch(format!("{name}: expected a program of Slurm, found {error}")))?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        return Err(Fault::Batch(format!("{name} failed ({}): {said}", output.status)));
+        let message = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        return Err(Fault::Batch(format!("{name} failed ({}): {message}", output.status)));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -168,8 +168,8 @@ mod tests {
         let text = lines(&[task.clone(), task.clone()]).unwrap();
         assert_eq!(read(Path::new("t"), &text).unwrap(), [task.clone(), task]);
         for wrong in [&text[..text.len() - 9], &(text.clone() + "\n"), &text.replace("0.5", "-1"), "{}", "\0"] {
-            let said = read(Path::new("t"), wrong).unwrap_err().to_string();
-            assert!(said.starts_with("t:") && said.contains("expected"), "{said}");
+            let message = read(Path::new("t"), wrong).unwrap_err().to_string();
+            assert!(message.starts_with("t:") && message.contains("expected"), "{message}");
         }
     }
 }

@@ -152,7 +152,7 @@ pub fn work(
 ) -> Result<Summary, Fault> {
     let range = chunk::of(&plan.tasks, asked.chunk);
     let seconds = plan.head.lease_seconds;
-    let said = Said {
+    let contents = Said {
         worker: worker.name.clone(),
         host: worker.host.clone(),
         process: worker.process,
@@ -166,7 +166,7 @@ pub fn work(
     let mut tried: BTreeSet<usize> = BTreeSet::new();
     let mut is_first = true;
     loop {
-        let (lease, others) = Lease::take(&plan.path, range.clone(), &said, seconds)?;
+        let (lease, others) = Lease::take(&plan.path, range.clone(), &contents, seconds)?;
         // Results are read after the lease is taken, so that no other worker can finish a leased task meanwhile.
         let look = Instant::now();
         let finished = Finished::read(&plan.path, false)?;

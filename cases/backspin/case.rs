@@ -74,17 +74,18 @@ fn fallen_behind(variant: &str) -> Tolerance {
 }
 
 fn rigid(variant: &'static str) -> Vec<Claim> {
-    let of = |quantity: &str, unit| claim(quantity, unit).of(at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP));
+    let quantity_claim =
+        |quantity: &str, unit| claim(quantity, unit).of(at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP));
     vec![
-        of("displacement at 1 s", "m")
+        quantity_claim("displacement at 1 s", "m")
             .equals(SOURCE, |done| end(&done[0], |state| state.x))
             .within(fallen_behind(variant))
             .refuses(stronger_friction()),
-        of("spin at 1 s", "rad/s")
+        quantity_claim("spin at 1 s", "rad/s")
             .equals(SOURCE, |done| end(&done[0], |state| state.omega))
             .within(incline::come_to_roll(&CASE, variant, sliding))
             .refuses(other_inertia()),
-        of("velocity halfway through the slide", "m/s")
+        quantity_claim("velocity halfway through the slide", "m/s")
             .equals(Source::Derived("v = μ g t up to t_s"), |done| velocity_halfway(&done[0]))
             .within(first_step(variant))
             .refuses(stronger_friction()),
@@ -95,7 +96,7 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
 /// solver-independent.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
-    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
             .of(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
@@ -115,14 +116,25 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         )
     };
     vec![
-        of("displacement at 1 s", "m", slides(5e-5), false, stronger_friction(), |done| end(done, |state| state.x))
-            .at_other_numbers("displacement at the end", ELSEWHERE, displaced),
-        of("velocity halfway through the slide", "m/s", slides(2e-4), false, stronger_friction(), velocity_halfway)
-            .at_other_numbers("velocity halfway through the slide", ELSEWHERE, halfway),
-        of("velocity at 1 s", "m/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.v))
+        near_rigid_claim("displacement at 1 s", "m", slides(5e-5), false, stronger_friction(), |done| {
+            end(done, |state| state.x)
+        })
+        .at_other_numbers("displacement at the end", ELSEWHERE, displaced),
+        near_rigid_claim(
+            "velocity halfway through the slide",
+            "m/s",
+            slides(2e-4),
+            false,
+            stronger_friction(),
+            velocity_halfway,
+        )
+        .at_other_numbers("velocity halfway through the slide", ELSEWHERE, halfway),
+        near_rigid_claim("velocity at 1 s", "m/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.v))
             .at_other_numbers("velocity at the end", ELSEWHERE, rolling),
-        of("spin at 1 s", "rad/s", arm(1.5), true, other_inertia(), |done| end(done, |state| state.omega))
-            .at_other_numbers("spin at the end", ELSEWHERE, rolling),
+        near_rigid_claim("spin at 1 s", "rad/s", arm(1.5), true, other_inertia(), |done| {
+            end(done, |state| state.omega)
+        })
+        .at_other_numbers("spin at the end", ELSEWHERE, rolling),
     ]
 }
 
@@ -163,7 +175,7 @@ fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
 }
 
 fn final_motion(variant: &'static str) -> Vec<Claim> {
-    let of = |solver: &'static str, quantity: &str, other| {
+    let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
             .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
@@ -178,8 +190,8 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
             .refuses(other)
     };
     vec![
-        of("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        of("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+        speed_claim("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        speed_claim("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
     ]
 }
 
@@ -190,11 +202,12 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let grain = OneGrain::of(&done.scene);
         let states = course(&done).unwrap_or_default();
         let surface = |state: &State| state.omega * grain.radius;
-        let thin = |of: &dyn Fn(&State) -> f64| states.iter().step_by(4).map(|(t, state)| (*t, of(state))).collect();
+        let thin =
+            |pick: &dyn Fn(&State) -> f64| states.iter().step_by(4).map(|(t, state)| (*t, pick(state))).collect();
         curves.push(Curve::new(format!("{variant}: v"), Stroke::Markers, thin(&|state| state.v)));
         curves.push(Curve::new(format!("{variant}: ΩR"), Stroke::Markers, thin(&surface)));
-        let exact = |of: &dyn Fn(State) -> f64| {
-            (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, of(grain.rigid_backspin(t)))).collect()
+        let exact = |pick: &dyn Fn(State) -> f64| {
+            (0..=200).map(|k| f64::from(k) / 200.0).map(|t| (t, pick(grain.rigid_backspin(t)))).collect()
         };
         curves.push(Curve::new(format!("{variant}: v, rigid"), Stroke::Dashed, exact(&|state| state.v)));
         curves.push(Curve::new(format!("{variant}: ΩR, rigid"), Stroke::Dashed, exact(&|state| surface(&state))));

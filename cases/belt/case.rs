@@ -176,7 +176,7 @@ const NO_GRAIN: OneGrain = OneGrain {
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
     let (belt, step) = stiff(variant);
-    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
             .of(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
@@ -199,10 +199,21 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         "2 (s/V + Δt)/t_s: the spring must be stretched by s = μ m g/k_t, and the first step may lack friction",
     );
     vec![
-        of("displacement at 1 s", "m", displaced, false, stronger_friction(), |done| end(done, |state| state.x)),
-        of("velocity halfway through the slide", "m/s", halfway, false, stronger_friction(), velocity_halfway),
-        of("velocity at 1 s", "m/s", arm(2.0), true, other_inertia(), |done| end(done, |state| state.v)),
-        of("spin at 1 s", "rad/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.omega)),
+        near_rigid_claim("displacement at 1 s", "m", displaced, false, stronger_friction(), |done| {
+            end(done, |state| state.x)
+        }),
+        near_rigid_claim(
+            "velocity halfway through the slide",
+            "m/s",
+            halfway,
+            false,
+            stronger_friction(),
+            velocity_halfway,
+        ),
+        near_rigid_claim("velocity at 1 s", "m/s", arm(2.0), true, other_inertia(), |done| end(done, |state| state.v)),
+        near_rigid_claim("spin at 1 s", "rad/s", arm(1.0), true, other_inertia(), |done| {
+            end(done, |state| state.omega)
+        }),
     ]
 }
 
@@ -217,7 +228,7 @@ fn rounding() -> Tolerance {
 
 /// Claims rolling at the end, to rounding, with the torque arm of each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
-    let of = |solver: &'static str, quantity: &str, other| {
+    let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
             .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
@@ -233,8 +244,8 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
             .refuses(other)
     };
     vec![
-        of("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        of("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+        speed_claim("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        speed_claim("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
     ]
 }
 
@@ -244,7 +255,7 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
     let (belt, _) = stiff(variant);
     let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
     let sunk = belt.grain.onto / (TAU * Settings::default().frequency).powi(2) / belt.grain.radius;
-    let of = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
+    let impulse_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         let run = Run::new(variant, "rigid", Resolution::substeps(SUBSTEPS)).adjusted("touching", |scene| {
             let axis = scene.dimension.count() - 1;
             let grain = &mut scene.grains[0];
@@ -260,15 +271,15 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
                spin a half of that";
     let late = "f V Δt/x: friction that begins or ends a step Δt too late";
     vec![
-        of(
+        impulse_claim(
             "displacement",
             "m",
             computed(belt.rolling() * step / belt.rigid(1.0).x, late),
             stronger_friction(),
             |state| state.x,
         ),
-        of("velocity", "m/s", computed(2.0 * sunk, arm), other_inertia(), |state| state.v),
-        of("spin", "rad/s", computed(sunk, arm), other_inertia(), |state| state.omega),
+        impulse_claim("velocity", "m/s", computed(2.0 * sunk, arm), other_inertia(), |state| state.v),
+        impulse_claim("spin", "rad/s", computed(sunk, arm), other_inertia(), |state| state.omega),
     ]
 }
 
@@ -281,18 +292,19 @@ fn stopped() -> Vec<Claim> {
             scene.grains[0].spin.z = -0.01;
         })
     };
-    let of = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: fn(State, &Belt) -> [f64; 3]| {
-        claim(format!("{quantity} after the belt has stopped, nearly rigid contact"), unit)
-            .of(nearly_rigid(STOPS, tangential_dashpot))
-            .equals(STOPPED, move |done| {
-                let (_, state) = last(&done[0])?;
-                let [value, exact, scale] = pick(state, &Belt::of(&done[0].scene));
-                Ok(Measured::new(value, exact, scale))
-            })
-            .within(tolerance)
-            .refuses(control)
-            .fair_to_any()
-    };
+    let stopped_claim =
+        |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: fn(State, &Belt) -> [f64; 3]| {
+            claim(format!("{quantity} after the belt has stopped, nearly rigid contact"), unit)
+                .of(nearly_rigid(STOPS, tangential_dashpot))
+                .equals(STOPPED, move |done| {
+                    let (_, state) = last(&done[0])?;
+                    let [value, exact, scale] = pick(state, &Belt::of(&done[0].scene));
+                    Ok(Measured::new(value, exact, scale))
+                })
+                .within(tolerance)
+                .refuses(control)
+                .fair_to_any()
+        };
     let way = belt.rolling() * belt.stop;
     let displaced = computed(
         (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way,
@@ -306,12 +318,14 @@ fn stopped() -> Vec<Claim> {
         )
     };
     vec![
-        of("displacement", "m", displaced, false, other_inertia(), |state, belt| {
+        stopped_claim("displacement", "m", displaced, false, other_inertia(), |state, belt| {
             let way = belt.rolling() * belt.stop;
             [state.x, way, way]
         }),
-        of("velocity", "m/s", rest(), true, turning(), |state, belt| [state.v, 0.0, belt.speed]),
-        of("spin", "rad/s", rest(), true, turning(), |state, belt| [state.omega, 0.0, belt.speed / belt.grain.radius]),
+        stopped_claim("velocity", "m/s", rest(), true, turning(), |state, belt| [state.v, 0.0, belt.speed]),
+        stopped_claim("spin", "rad/s", rest(), true, turning(), |state, belt| {
+            [state.omega, 0.0, belt.speed / belt.grain.radius]
+        }),
     ]
 }
 

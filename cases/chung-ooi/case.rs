@@ -106,11 +106,11 @@ fn duration(done: &Done) -> Result<f64, Missing> {
 }
 
 fn elastic() -> Vec<Claim> {
-    let of = |variant: &'static str,
-              quantity: &str,
-              unit,
-              exact: fn(&Scene) -> f64,
-              read: fn(&Done) -> Result<f64, Missing>| {
+    let elastic_claims = |variant: &'static str,
+                          quantity: &str,
+                          unit,
+                          exact: fn(&Scene) -> f64,
+                          read: fn(&Done) -> Result<f64, Missing>| {
         claim(quantity, unit)
             .of(Run::new(variant, "dem", STEP.resolution))
             .equals(HERTZ, move |done| {
@@ -122,21 +122,21 @@ fn elastic() -> Vec<Claim> {
     };
     let mut claims = Vec::new();
     for variant in ELASTIC {
-        claims.push(of(
+        claims.push(elastic_claims(
             variant,
             "deepest overlap",
             "m",
             |scene| hertz(scene).0,
             |done| Ok(peak(done.column("contact.overlap")?)),
         ));
-        claims.push(of(
+        claims.push(elastic_claims(
             variant,
             "largest force",
             "N",
             |scene| hertz(scene).1,
             |done| Ok(peak(done.column("contact.normal_force")?)),
         ));
-        claims.push(of(variant, "duration of contact", "s", |scene| hertz(scene).2, duration));
+        claims.push(elastic_claims(variant, "duration of contact", "s", |scene| hertz(scene).2, duration));
     }
     claims
 }
@@ -175,7 +175,7 @@ fn late(variant: &str, restitution: f64) -> Tolerance {
 }
 
 fn restitution() -> Vec<Claim> {
-    let of = |variant: &'static str, restitution: f64| {
+    let restitution_claims = |variant: &'static str, restitution: f64| {
         let (tolerance, control) = if restitution == 1.0 {
             let more = Control::scene("a little damping, e = .99", |scene| {
                 scene.change_laws(|law| law.damping_ratio = damping_ratio(0.99));
@@ -193,7 +193,10 @@ fn restitution() -> Vec<Claim> {
             .within(tolerance)
             .refuses(control)
     };
-    DAMPED.into_iter().flat_map(|variant| RESTITUTIONS.map(|restitution| of(variant, restitution))).collect()
+    DAMPED
+        .into_iter()
+        .flat_map(|variant| RESTITUTIONS.map(|restitution| restitution_claims(variant, restitution)))
+        .collect()
 }
 
 /// Returns the force (N) on the sphere of aluminium oxide that hits the plane with e = 0.5, with typed values: k

@@ -71,11 +71,11 @@ fn scene(run: &Run) -> Option<Scene> {
 /// Returns the largest overlap of the elastic impact over the smallest radius. Lever arms of friction differ by this
 /// fraction between R and R − overlap.
 fn depth(run: &Run) -> f64 {
-    let of = |scene: &Scene| {
+    let relative_depth = |scene: &Scene| {
         let radius = scene.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
         hertz(scene).0 / radius
     };
-    scene(run).as_ref().map_or(0.0, of)
+    scene(run).as_ref().map_or(0.0, relative_depth)
 }
 
 /// Returns the overlap (m) from the displacement of the first sphere since first contact; twice the displacement if two
@@ -152,26 +152,27 @@ fn normal_impulse(done: &Done) -> Result<f64, Missing> {
 /// Claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from the measured
 /// normal impulse. The claim on the rebound tests the normal impulse itself.
 fn sliding(run: &Run) -> [Claim; 2] {
-    let of = |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
-        let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
-        claim(format!("{quantity} after sliding, {words}"), unit)
-            .of(run.clone())
-            .equals(SLIDING, move |done| {
-                let scene = &done[0].scene;
-                let meeting = Meeting::of(scene);
-                let after = meeting.after(scene, normal_impulse(&done[0])? / meeting.stopping)[at];
-                let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
-                Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
-            })
-            .within(allowed)
-            .refuses(control)
-    };
+    let sliding_claim =
+        |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
+            let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
+            claim(format!("{quantity} after sliding, {words}"), unit)
+                .of(run.clone())
+                .equals(SLIDING, move |done| {
+                    let scene = &done[0].scene;
+                    let meeting = Meeting::of(scene);
+                    let after = meeting.after(scene, normal_impulse(&done[0])? / meeting.stopping)[at];
+                    let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
+                    Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
+                })
+                .within(allowed)
+                .refuses(control)
+        };
     let arm = computed(
         depth(run) + FIRST_ORDER,
         "friction acts at a distance between R and R − overlap; beside it first order in Δt; of the spin that it gives",
     );
     [
-        of(
+        sliding_claim(
             "velocity along the contact",
             "m/s",
             "a.vx",
@@ -182,7 +183,7 @@ fn sliding(run: &Run) -> [Claim; 2] {
             ),
             Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)),
         ),
-        of("spin", "rad/s", "a.omega_y", 1, arm, wrong_inertia()),
+        sliding_claim("spin", "rad/s", "a.omega_y", 1, arm, wrong_inertia()),
     ]
 }
 
@@ -242,7 +243,7 @@ fn lever(run: Run, times: f64) -> Claim {
 
 /// Claims of test 8: equal and opposite momentum changes, although one sphere is 125,000 times as heavy.
 fn momentum(run: &Run) -> [Claim; 2] {
-    let of = |quantity: &str, columns: [&'static str; 2], axis: usize| {
+    let momentum_claim = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")
             .of(run.clone())
             .holds("Newton's third law", move |done| {
@@ -258,14 +259,14 @@ fn momentum(run: &Run) -> [Claim; 2] {
             .refuses(Control::scene("the second sphere a hundredth heavier", |scene| scene.grains[1].mass *= 1.01))
     };
     [
-        of("momentum that the second sphere gains, along the normal", ["a.vz", "b.vz"], 2),
-        of("momentum that the second sphere gains, along the contact", ["a.vx", "b.vx"], 0),
+        momentum_claim("momentum that the second sphere gains, along the normal", ["a.vz", "b.vz"], 2),
+        momentum_claim("momentum that the second sphere gains, along the contact", ["a.vx", "b.vx"], 0),
     ]
 }
 
 /// Claims of test 7: no friction between surfaces of equal velocity.
 fn gears(variant: &'static str) -> [Claim; 3] {
-    let of = |quantity: &str, unit, column: &'static str, is_spin: bool| {
+    let gear_claim = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)
             .of(Run::new(variant, "dem", STEP.resolution))
             .holds("surfaces that do not slip against each other exert no friction", move |done| {
@@ -278,8 +279,8 @@ fn gears(variant: &'static str) -> [Claim; 3] {
             .refuses(Control::scene("one sphere turns slower by a hundredth", |scene| scene.grains[1].spin *= 0.99))
     };
     [
-        of("spin after an impact of gears", "rad/s", "a.omega_y", true),
-        of("velocity along the contact after an impact of gears", "m/s", "a.vx", false),
+        gear_claim("spin after an impact of gears", "rad/s", "a.omega_y", true),
+        gear_claim("velocity along the contact after an impact of gears", "m/s", "a.vx", false),
         given_back(Run::new(variant, "dem", STEP.resolution)),
     ]
 }

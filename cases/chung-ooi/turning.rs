@@ -45,7 +45,7 @@ pub(super) fn claims() -> Vec<Claim> {
 /// friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the part before the tangential spring is
 /// displaced is missing.
 fn sharp(run: &Run) -> Vec<Claim> {
-    let of = |solver: &'static str, other: &'static str, words: &str, factor: fn(&Meeting) -> f64| {
+    let sharp_claims = |solver: &'static str, other: &'static str, words: &str, factor: fn(&Meeting) -> f64| {
         let row = |quantity: &str, unit, column: &'static str, at: usize| {
             let control = if run.variant.starts_with('5') {
                 Control::scene("friction × 1.01", |scene| scene.change_laws(|law| law.friction *= 1.01))
@@ -70,8 +70,8 @@ fn sharp(run: &Run) -> Vec<Claim> {
         };
         [row("velocity along the contact", "m/s", "a.vx", 0), row("spin", "rad/s", "a.omega_y", 1)]
     };
-    let spring = of("dem:1979", "dem", "μ(1+e) m* v_n", |meeting| 1.0 + meeting.restitution);
-    let pushing = of("dem", "dem:1979", "μ(1+e−2ζ²/(2ρ/3−1)) m* v_n", |meeting| {
+    let spring = sharp_claims("dem:1979", "dem", "μ(1+e) m* v_n", |meeting| 1.0 + meeting.restitution);
+    let pushing = sharp_claims("dem", "dem:1979", "μ(1+e−2ζ²/(2ρ/3−1)) m* v_n", |meeting| {
         1.0 + meeting.restitution - meeting.latest_start()
     });
     if run.variant.starts_with('5') { spring.to_vec() } else { spring.into_iter().chain(pushing).collect() }
@@ -105,7 +105,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         }
         balls.push(Curve::new(variant, Stroke::Markers, points));
     }
-    let line = |from: f64, to: f64, of: fn(f64) -> f64| [from, to].map(|x| (x, of(x))).to_vec();
+    let line = |from: f64, to: f64, value: fn(f64) -> f64| [from, to].map(|x| (x, value(x))).to_vec();
     plane.push(Curve::new("slides throughout", Stroke::Dashed, line(7.0, 13.4, |before| before - 7.0)));
     balls.push(Curve::new("slides throughout", Stroke::Dashed, line(2.1, 6.0, |before| (before - 2.1) / 0.5)));
     let caption =

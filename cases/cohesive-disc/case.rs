@@ -59,7 +59,7 @@ fn slip(done: &Done) -> Result<Measured, Missing> {
 fn claims() -> Vec<Claim> {
     let steps = CASE.variant(PLAIN).ok().and_then(|scene| STEP.resolution.steps(&scene).ok());
     let rounding = 4.0 * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64);
-    let of = |quantity: &str, factor: f64, wrong, by: f64| {
+    let strength_claim = |quantity: &str, factor: f64, wrong, by: f64| {
         claim(quantity, "m/s²")
             .of(with_cohesion(factor))
             .equals(STRENGTH, |done| slip(&done[0]))
@@ -79,9 +79,9 @@ fn claims() -> Vec<Claim> {
     });
     let ours = [
         refusal("rigid", rigid::DEFAULT).refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
-        of("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
-        of("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),
-        of("growth of slip, half the cohesion", 0.5, "cohesion × 1.002", 1.002),
+        strength_claim("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
+        strength_claim("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),
+        strength_claim("growth of slip, half the cohesion", 0.5, "cohesion × 1.002", 1.002),
     ];
     ours.into_iter().chain(programs).collect()
 }

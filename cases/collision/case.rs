@@ -114,9 +114,9 @@ fn force_that_moves() -> Claim {
             let (a, b, time) = (done[0].column("a.x")?, done[0].column("b.x")?, &done[0].series().time);
             let overlap = |at: usize| 2.0 - (b[at] - a[at]);
             let rate = |at: usize| (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]);
-            let of = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
+            let force_at = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
             // The discs start apart.
-            let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(of)).collect();
+            let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(force_at)).collect();
             Ok(Measured::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
         })
         .within(computed(
@@ -135,8 +135,9 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let runs = pair.map(|solver| Run::new(FELT, solver, LEVELS[1].resolution));
     let quantity = "force of a damped contact with the velocity of the sample, worst";
     programs::row(quantity, "N", rounding(1.0, because), runs, control, |done| {
-        let of = |column| together(&done[0], &done[1], column).map(|(ours, _)| ours);
-        let (x, v) = ([of("a.x")?, of("b.x")?], [of("a.vx")?, of("b.vx")?]);
+        let compared_column = |column| together(&done[0], &done[1], column).map(|(ours, _)| ours);
+        let (x, v) =
+            ([compared_column("a.x")?, compared_column("b.x")?], [compared_column("a.vx")?, compared_column("b.vx")?]);
         let force = |at: usize| damped_force(2.0 - (x[1][at] - x[0][at]), v[0][at] - v[1][at]);
         let ours: Vec<f64> = (0..x[0].len()).map(force).collect();
         let theirs = done[1].column("contact.normal_force")?;
@@ -207,7 +208,7 @@ fn rounding(count: f64, because: &str) -> Tolerance {
 }
 
 fn momentum() -> Vec<Claim> {
-    let of = |axis: (&'static str, usize)| {
+    let momentum_claim = |axis: (&'static str, usize)| {
         claim(along(axis), "kg m/s")
             .of(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
@@ -218,25 +219,26 @@ fn momentum() -> Vec<Claim> {
             }))
             .fair_to_any()
     };
-    AXES.map(of).to_vec()
+    AXES.map(momentum_claim).to_vec()
 }
 
 fn initial_angular_momentum(scene: &Scene) -> f64 {
-    let of = |grain: &grainbench_scene::scene::Grain| {
+    let grain_momentum = |grain: &grainbench_scene::scene::Grain| {
         grain.mass * grain.position.xy().perp(&grain.velocity.xy()) + grain.inertia * grain.spin.z
     };
-    scene.grains.iter().map(of).sum()
+    scene.grains.iter().map(grain_momentum).sum()
 }
 
 fn angular_momentum() -> Vec<Claim> {
     const ROUNDING: &str = "two positions, two velocities and two spins round by ε in every step; in units of m v R";
-    let of = |quantity: &str, solver| claim(quantity, "kg m²/s").of(Run::new("oblique", solver, LEVELS[1].resolution));
+    let momentum_claim =
+        |quantity: &str, solver| claim(quantity, "kg m²/s").of(Run::new("oblique", solver, LEVELS[1].resolution));
     vec![
-        of("angular momentum, arm R − overlap/2, worst", "dem:liggghts")
+        momentum_claim("angular momentum, arm R − overlap/2, worst", "dem:liggghts")
             .holds("tangential forces act at one point (derivation)", |done| worst_angular_momentum(&done[0]))
             .within(rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R", "dem")),
-        of("change of angular momentum, arm R, against Σ overlap × F_t Δt", "dem")
+        momentum_claim("change of angular momentum, arm R, against Σ overlap × F_t Δt", "dem")
             .equals(Source::Derived("arms R on centres R₁ + R₂ − δ apart (derivation)"), |done| {
                 let scene = &done[0].scene;
                 let (overlap, shear) = (done[0].column("contact.overlap")?, done[0].column("contact.shear_force")?);
@@ -277,9 +279,10 @@ fn at_the_limit() -> Claim {
 /// Claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction while F_n
 /// pulls.
 fn coulomb() -> Vec<Claim> {
-    let of = |quantity: &str, unit, solver| claim(quantity, unit).of(Run::new("oblique", solver, LEVELS[1].resolution));
+    let oblique_claim =
+        |quantity: &str, unit, solver| claim(quantity, unit).of(Run::new("oblique", solver, LEVELS[1].resolution));
     let within = |solver: &'static str| {
-        of("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", solver)
+        oblique_claim("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", solver)
             .at_most(0.0, Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0) (derivation)"), |done| {
                 let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
                 let (normal, shear) = (done[0].column("contact.normal_force")?, done[0].column("contact.shear_force")?);
@@ -291,20 +294,24 @@ fn coulomb() -> Vec<Claim> {
             .within(computed(4.0 * f64::EPSILON, "a root, a quotient and two products round by ε"))
             .refuses(Control::solver("the limit of the spring alone", "dem:1979"))
     };
-    let spin = of("spin that friction gives the first disc, against R μ Σ F_n Δt/I where it pushes", "rad/s", "dem")
-        .holds(
-            "sliding throughout, the friction recorded is μ times the normal force recorded, and turns the disc",
-            |done| {
-                let grain = &done[0].scene.grains[0];
-                let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
-                let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
-                let impulse = law.friction * pushes * done[0].record.provenance.time_step;
-                let expected = -impulse * grain.radius / grain.inertia;
-                Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
-            },
-        )
-        .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
-        .refuses(Control::solver("the limit of the spring alone", "dem:1979"));
+    let spin = oblique_claim(
+        "spin that friction gives the first disc, against R μ Σ F_n Δt/I where it pushes",
+        "rad/s",
+        "dem",
+    )
+    .holds(
+        "sliding throughout, the friction recorded is μ times the normal force recorded, and turns the disc",
+        |done| {
+            let grain = &done[0].scene.grains[0];
+            let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+            let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
+            let impulse = law.friction * pushes * done[0].record.provenance.time_step;
+            let expected = -impulse * grain.radius / grain.inertia;
+            Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+        },
+    )
+    .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
+    .refuses(Control::solver("the limit of the spring alone", "dem:1979"));
     vec![within("dem"), spin]
 }
 

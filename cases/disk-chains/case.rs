@@ -146,8 +146,8 @@ fn glued() -> Claim {
 }
 
 /// Claims the paper's order: force arrives at the fourth disc of a variant sooner than in the slipping zig-zag.
-fn sooner(variant: &'static str, of: &str) -> Claim {
-    claim(format!("arrival at disc 4 of the {of}"), "1")
+fn sooner(variant: &'static str, chain: &str) -> Claim {
+    claim(format!("arrival at disc 4 of the {chain}"), "1")
         .of(Run::new(variant, "dem", STEP.resolution))
         .of(Run::new("zig-zag", "dem", STEP.resolution))
         .at_most(SOONER, FASTER, |done| Ok(arrival(&done[0], 3)? / arrival(&done[1], 3)?))

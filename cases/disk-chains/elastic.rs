@@ -135,9 +135,9 @@ pub(super) fn claims() -> Vec<Claim> {
                 .refuses(Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3))),
         );
     }
-    for (variant, of, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
+    for (variant, words, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
         claims.push(
-            claim(format!("arrival of stress in disc {disc} of the {of} over that of the slipping zig-zag"), "1")
+            claim(format!("arrival of stress in disc {disc} of the {words} over that of the slipping zig-zag"), "1")
                 .of(run(variant, "mpm", grid(8.0, 2), 15.0))
                 .of(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
                 .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))

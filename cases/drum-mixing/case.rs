@@ -193,8 +193,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 fn of_zone(done: &Done) -> Figure {
-    let of = |name: &str| done.table(zones::NAME).ok().and_then(|table| table.column(name)).unwrap_or_default();
-    let ours = of("time").iter().copied().zip(of(COUNTED).iter().map(|count| count / 1e3)).collect();
+    let zone_values =
+        |name: &str| done.table(zones::NAME).ok().and_then(|table| table.column(name)).unwrap_or_default();
+    let ours = zone_values("time").iter().copied().zip(zone_values(COUNTED).iter().map(|count| count / 1e3)).collect();
     let codes = course(DRUM).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
     Figure::graph(
         "zone-2",

@@ -108,10 +108,10 @@ impl Mode {
     }
 
     /// Integrates ∫ f dr through the ring, by the midpoint rule.
-    fn through(&self, of: impl Fn(f64) -> f64) -> f64 {
+    fn through(&self, profile: impl Fn(f64) -> f64) -> f64 {
         const PARTS: u32 = 200;
         let part = (self.radii[1] - self.radii[0]) / f64::from(PARTS);
-        (0..PARTS).map(|at| of(self.radii[0] + (f64::from(at) + 0.5) * part) * part).sum()
+        (0..PARTS).map(|at| profile(self.radii[0] + (f64::from(at) + 0.5) * part) * part).sum()
     }
 
     /// Returns the mode's initial velocity in the middle of the ring (m/s), and the fraction of the energy in other

@@ -45,7 +45,8 @@ struct Hertz {
 
 impl Hertz {
     fn of(scene: &Scene) -> Self {
-        let compliance = |material: &Option<Deformable>| material.map_or(f64::NAN, |of| 1.0 / of.plane_modulus());
+        let compliance =
+            |material: &Option<Deformable>| material.map_or(f64::NAN, |deformable| 1.0 / deformable.plane_modulus());
         let modulus = 1.0 / scene.deformable.iter().map(compliance).sum::<f64>();
         let load = weight(scene);
         let half_width = (4.0 * load * scene.grains[0].radius / (PI * modulus)).sqrt();

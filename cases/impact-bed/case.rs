@@ -105,8 +105,8 @@ fn rebound(done: &Done) -> Result<f64, Missing> {
     Ok((height(done, REBOUND[1])? - height(done, REBOUND[0])?) * 1e-3 / (REBOUND[1] - REBOUND[0]))
 }
 
-fn all(done: &[Done], of: impl Fn(&Done) -> Result<f64, Missing>) -> Result<Vec<f64>, Missing> {
-    done.iter().map(of).collect()
+fn all(done: &[Done], read: impl Fn(&Done) -> Result<f64, Missing>) -> Result<Vec<f64>, Missing> {
+    done.iter().map(read).collect()
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -166,7 +166,7 @@ fn claims() -> Vec<Claim> {
             .at_most(2.0, dosta::HEIGHT_30.source(), |done| {
                 let within = |(time, _): &(f64, f64)| (SURE.0..SURE.1).contains(time);
                 let scores = published::scores(done, &BEDS)?;
-                Ok(scores.iter().filter(|of| within(of)).map(|(_, score)| score.abs()).fold(0.0, f64::max))
+                Ok(scores.iter().filter(|score| within(score)).map(|(_, score)| score.abs()).fold(0.0, f64::max))
             })
             .within(exactly(
                 "deviations √(s_code² + s_bed² (1/5 + 1/10)) at every millisecond; two hold nineteen draws of twenty",
@@ -201,11 +201,11 @@ fn of_beds(
     (together, tolerance): Together,
     cited: Cited,
     spread: Spread,
-    of: fn(&Done) -> Result<f64, Missing>,
+    read: fn(&Done) -> Result<f64, Missing>,
 ) -> Tolerated {
     claim(quantity, unit)
         .of_all(runs)
-        .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, of)?, cited.value)))
+        .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, read)?, cited.value)))
         .within(tolerance(spread))
 }
 

@@ -24,8 +24,8 @@ pub(super) struct Spread {
 
 impl Spread {
     pub(super) fn of(mean: Cited, code: Cited, bed: Cited) -> Self {
-        let of = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
-        Self { mean: mean.value, of }
+        let spread = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
+        Self { mean: mean.value, of: spread }
     }
 
     /// Returns the largest error of the mean over a number of our beds.
@@ -38,14 +38,14 @@ impl Spread {
 /// published time at which codes and beds differ.
 pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, Missing> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
-    let told = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
+    let is_counted = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
     let score = |&[time, mean, code, bed]: &[f64; 4]| {
         let own: Vec<f64> = done.iter().map(|done| super::height(done, time)).collect::<Result<_, _>>()?;
-        let of = grainbench_reference::round_robin::Spread { mean, code, bed };
+        let spread = grainbench_reference::round_robin::Spread { mean, code, bed };
         let off = own.iter().sum::<f64>() / own.len() as f64 - mean;
-        Ok((time * 1e3, off / of.deviation(own.len(), PUBLISHED)))
+        Ok((time * 1e3, off / spread.deviation(own.len(), PUBLISHED)))
     };
-    published.iter().filter(told).map(score).collect()
+    published.iter().filter(is_counted).map(score).collect()
 }
 
 /// Joins a text, a line end and another text.
@@ -83,8 +83,8 @@ pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
         Stroke::Dashed,
         within.iter().map(|[time, mean, ..]| (time * 1e3, *mean)).collect(),
     ));
-    for (number, of) in done.iter().enumerate() {
-        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(of)));
+    for (number, run) in done.iter().enumerate() {
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(run)));
     }
     let scores = scores(done, published).unwrap_or_default();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];

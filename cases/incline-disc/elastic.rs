@@ -98,7 +98,7 @@ fn rolling(done: &Done) -> Result<f64, Missing> {
     let (end, _) = last(done)?;
     let states: Vec<State> =
         course(done)?.into_iter().filter(|(t, _)| *t > end - ROCKS).map(|(_, state)| state).collect();
-    let sum = |of: fn(&State) -> f64| states.iter().map(of).sum::<f64>();
+    let sum = |pick: fn(&State) -> f64| states.iter().map(pick).sum::<f64>();
     Ok(sum(|state| state.omega) * done.scene.grains[0].radius / sum(|state| state.v))
 }
 

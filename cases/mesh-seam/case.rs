@@ -75,9 +75,9 @@ fn rolls(floor: &'static str) -> Claim {
 
 /// Claims agreement with a plane. Everything is rotated, so that no coordinate of the mesh is exactly flat.
 fn as_plane(floor: &'static str) -> Claim {
-    let of = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
+    let turned_run = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
-        .of_all([of(floor), of("plane").aside()])
+        .of_all([turned_run(floor), turned_run("plane").aside()])
         .agrees(Source::Ourselves("the same on a plane"), |done| worst(done, &AXES, done[0].scene.grains[0].radius))
         .within(required(1e-9, "a mesh of a plane is the plane"))
         .refuses(Control::scene("a step of 1e-3 R in the mesh", floors::with_a_step))

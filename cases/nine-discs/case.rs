@@ -160,8 +160,10 @@ fn inward(done: &Done) -> Result<Vec<Inward>, Missing> {
 
 /// Returns value and expected value of the disc and sample with the largest error.
 fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Result<Measured, Missing> {
-    let pick = |list: &[Inward], of: fn(&Inward) -> f64| list.iter().map(of).collect::<Vec<f64>>();
-    let judge = |of: fn(&Inward) -> f64| Measured::worst_of(time, &pick(values, of), &pick(exact, of), 1.0);
+    let pick = |list: &[Inward], component: fn(&Inward) -> f64| list.iter().map(component).collect::<Vec<f64>>();
+    let judge = |component: fn(&Inward) -> f64| {
+        Measured::worst_of(time, &pick(values, component), &pick(exact, component), 1.0)
+    };
     let both = [judge(|inward| inward.edge), judge(|inward| inward.corner)];
     Measured::worst_among(both).ok_or_else(|| Missing("discs".to_owned()))
 }
@@ -187,8 +189,8 @@ const SPEEDS: [f64; 3] = [1.0, 0.5, 0.25];
 fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
     let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
     let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
-    let sum = |of: fn(&Inward) -> f64, at: usize| -> f64 {
-        runs.iter().zip(weights).map(|(run, weight)| weight * of(&run[at])).sum()
+    let sum = |component: fn(&Inward) -> f64, at: usize| -> f64 {
+        runs.iter().zip(weights).map(|(run, weight)| weight * component(&run[at])).sum()
     };
     let samples = runs.iter().map(Vec::len).min().unwrap_or(0);
     let limit = |at| Inward { edge: sum(|inward| inward.edge, at), corner: sum(|inward| inward.corner, at) };
@@ -197,7 +199,7 @@ fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
 
 /// Claims the discrete solution of the calculation cycle, over 400 cycles.
 fn discrete() -> Vec<Claim> {
-    let of = |variant: &'static str| {
+    let discrete_claim = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
             let control = Control::scene("stiffness off by 1e-8", |scene| {
                 scene.change_laws(|law| law.scale_normal(1.0 + 1e-8));
@@ -218,7 +220,7 @@ fn discrete() -> Vec<Claim> {
             .within(tolerance)
             .refuses(control)
     };
-    MODAL.map(of).to_vec()
+    MODAL.map(discrete_claim).to_vec()
 }
 
 /// Claims that the deviation from the linear solution is geometric: it is of first order in the overlap.
@@ -470,7 +472,7 @@ const TURN: usize = 1500;
 
 /// Claims the number of slipping contacts in slow compression: the eight at walls and corners at 15°, none at 30°.
 fn slip_in_compression() -> Vec<Claim> {
-    let of = |variant: &'static str| {
+    let slip_claim = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {
             (8.0, Control::scene("friction × 3", |scene| scene.change_laws(|law| law.friction *= 3.0)))
         } else {
@@ -488,7 +490,7 @@ fn slip_in_compression() -> Vec<Claim> {
             .within(exactly("a count"))
             .refuses(control)
     };
-    DISTORTION.map(of).to_vec()
+    DISTORTION.map(slip_claim).to_vec()
 }
 
 /// Returns F_n between centre and edge from the cycle at which the walls begin to rotate.

@@ -88,7 +88,7 @@ fn friction(scene: &Scene) -> f64 {
 /// the dashpot's force each time. The dashpot is half a step late, as in the collision of two discs. The remainder is
 /// of second order.
 fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
-    let of = |scene: Scene| {
+    let step_error = |scene: Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
         let omega = (law.normal_stiffness() / grain.mass).sqrt();
         let phase = omega * LEVELS[2].resolution.steps(&scene).map_or(f64::NAN, |(step, _)| step);
@@ -99,7 +99,7 @@ fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
         allowed(&Off { impulse, along, overlap }, &exact(&scene), &scene).abs()
     };
     computed(
-        CASE.variant(variant).map_or(f64::NAN, of),
+        CASE.variant(variant).map_or(f64::NAN, step_error),
         "normal velocity: touch and release within a step, ζ ωΔt (v + v′); the dashpot half a step late, \
          π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt v′; second order, (ωΔt)² v. Along the wall μ times that, and a spring that \
          is stretched a step late until it reaches the limit of the dashpot's first force, 2ζ ωΔt v; of the spin as of the \
@@ -147,13 +147,13 @@ fn claims() -> Vec<Claim> {
     ];
     let mut claims = Vec::new();
     for variant in VARIANTS {
-        for (quantity, unit, allowed, control, read, of) in &quantities {
-            let (allowed, read, of) = (*allowed, *read, *of);
+        for (quantity, unit, allowed, control, read, exact_value) in &quantities {
+            let (allowed, read, exact_value) = (*allowed, *read, *exact_value);
             for solver in ["dem:lammps", "dem:liggghts"] {
                 let row = claim(*quantity, unit)
                     .of(Run::new(variant, solver, LEVELS[2].resolution))
                     .equals(Source::Derived("momentum and Coulomb's limit, by quadrature (derivation)"), move |done| {
-                        let expected = of(&exact(&done[0].scene));
+                        let expected = exact_value(&exact(&done[0].scene));
                         Ok(Measured::new(read(&done[0])?, expected, expected))
                     })
                     .within(within_a_step(variant, allowed))

@@ -242,15 +242,15 @@ fn programs() -> Vec<Claim> {
     });
     let smooth = || Control::ours("friction .1 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
     let [lammps, liggghts] = PAIRS;
-    let of = |pair: [&'static str; 2]| {
+    let program_runs = |pair: [&'static str; 2]| {
         let perturbed = [Run::new("first", lammps[0], STEP).slow().aside(), perturbed("first", 0).aside()];
         pair.map(|solver| common("first", solver, pair[1])).into_iter().chain(perturbed).collect::<Vec<Run>>()
     };
-    let mut known = of(liggghts);
+    let mut known = program_runs(liggghts);
     known[0].standing = Standing::Known(STALE_STRETCH);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], STEP);
     let mut claims = vec![
-        perturbed::pointwise(PARTING, of(lammps), softer),
+        perturbed::pointwise(PARTING, program_runs(lammps), softer),
         perturbed::pointwise(PARTING, known, without),
         perturbed::horizon(PARTING, HORIZON, [Run::new("first", lammps[0], STEP).slow(), perturbed("first", 0)]),
     ];

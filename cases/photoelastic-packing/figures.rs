@@ -77,9 +77,9 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let course = path(&done);
     let far = course.last().map_or(0.0, |point| point.0);
     let at_a = vertical_strain(&done, time_of_a(&done));
-    let of = |strain: f64| course.iter().copied().find(|point| point.0 >= strain).into_iter().collect::<Vec<_>>();
+    let point_at = |strain: f64| course.iter().copied().find(|point| point.0 >= strain).into_iter().collect::<Vec<_>>();
     let level = |label: &str, ratio: f64| Curve::new(label, Stroke::Dashed, vec![(0.0, ratio), (far, ratio)]);
-    let stages = [of(100.0 * at_a), course.last().copied().into_iter().collect()].concat();
+    let stages = [point_at(100.0 * at_a), course.last().copied().into_iter().collect()].concat();
     let mut curves =
         vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
     for [_, program] in PAIRS {

@@ -39,18 +39,18 @@ impl Reader for Bulk {
         let within = |grain: &&GrainState| self.grid.find(grain.position).is_some();
         let grains: Vec<&GrainState> = snapshot.grains.iter().filter(within).collect();
         let count = grains.len() as f64;
-        let mean = |of: &dyn Fn(&GrainState) -> f64| grains.iter().map(|grain| of(grain)).sum::<f64>() / count;
+        let mean = |value: &dyn Fn(&GrainState) -> f64| grains.iter().map(|grain| value(grain)).sum::<f64>() / count;
         let (height, along, across) =
             (mean(&|grain| grain.position.y), mean(&|grain| grain.velocity.x), mean(&|grain| grain.velocity.y));
         let off = |grain: &GrainState| grain.position.y - height;
         let rate = mean(&|grain| off(grain) * (grain.velocity.x - along)) / mean(&|grain| off(grain).powi(2));
-        let flux = |of: &dyn Fn(&GrainState) -> f64| {
-            let each = grains.iter().map(|grain| grain.mass * (grain.velocity.y - across) * of(grain));
+        let flux = |value: &dyn Fn(&GrainState) -> f64| {
+            let each = grains.iter().map(|grain| grain.mass * (grain.velocity.y - across) * value(grain));
             each.sum::<f64>() / self.grid.volume()
         };
         let which = if tells_interval(&snapshot) { Stress::Interval } else { Stress::Instant };
-        let stress = |of: &Snapshot, which| Some(contact_stress(of, 2, &self.grid, which)?[0]);
-        let shear = |of: &Snapshot, which| stress(of, which).map(|stress| 0.5 * (stress.m12 + stress.m21));
+        let stress = |snapshot: &Snapshot, which| Some(contact_stress(snapshot, 2, &self.grid, which)?[0]);
+        let shear = |snapshot: &Snapshot, which| stress(snapshot, which).map(|stress| 0.5 * (stress.m12 + stress.m21));
         let normal = stress(&snapshot, which).map(|stress| flux(&|grain| grain.velocity.y - across) - stress.m22);
         let drift = flux(&|grain| grain.velocity.x - along - rate * off(grain));
         let with_flux = |shear: Option<f64>| shear.map(|shear| shear - drift);

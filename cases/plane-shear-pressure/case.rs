@@ -123,9 +123,9 @@ fn series(done: &Done, name: &str) -> Result<f64, Missing> {
 fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
     let steady: Vec<f64> =
         times.iter().zip(values).filter(|(time, _)| **time >= from).map(|(_, value)| *value).collect();
-    let told: Vec<f64> = steady.iter().copied().filter(|value| value.is_finite()).collect();
-    let enough = !told.is_empty() && 50 * told.len() >= 49 * steady.len();
-    enough.then(|| told.iter().sum::<f64>() / told.len() as f64)
+    let finite: Vec<f64> = steady.iter().copied().filter(|value| value.is_finite()).collect();
+    let enough = !finite.is_empty() && 50 * finite.len() >= 49 * steady.len();
+    enough.then(|| finite.iter().sum::<f64>() / finite.len() as f64)
 }
 
 /// Returns the ratio of shear to normal stress in the bulk.
@@ -209,14 +209,14 @@ fn shear(variant: &'static str, about: &str) -> Claim {
 }
 
 /// Claims that four times the pressure and twice the speed change nothing.
-fn scales(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
+fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     const LAW: &str =
         "the run at four times the pressure and twice the speed: of rigid grains I alone counts (derivation)";
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")
         .of_all([ours(variant).aside(), pressed(variant)])
-        .agrees(Source::Ourselves(LAW), move |done| Ok(Measured::new(of(&done[0])?, of(&done[1])?, scale)))
+        .agrees(Source::Ourselves(LAW), move |done| Ok(Measured::new(read(&done[0])?, read(&done[1])?, scale)))
         .within(allowed)
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
@@ -248,14 +248,14 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
 }
 
 /// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same start.
-fn beside(variant: &'static str, about: &str, (name, of): Quantity) -> Claim {
+fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
     let control = Control::ours("friction 0 between grains in ours", |scene| {
         scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
     });
     row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
-        Ok(Measured::new(of(&done[0])?, of(&done[1])?, scale))
+        Ok(Measured::new(read(&done[0])?, read(&done[1])?, scale))
     })
 }
 
@@ -269,16 +269,16 @@ fn of_draws(quantity: &str) -> (Tolerance, f64) {
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (solver, stroke) in [("dem", Stroke::MarkedLine), ("lammps", Stroke::Markers)] {
-        let of = |variant| if solver == "dem" { ours(variant) } else { run(variant, solver) };
+        let solver_run = |variant| if solver == "dem" { ours(variant) } else { run(variant, solver) };
         let mut points: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];
         for (variant, _) in RATES {
-            let done = match runner.run(&of(variant)) {
+            let done = match runner.run(&solver_run(variant)) {
                 Ok(done) => done,
                 Err(RunError::NotAvailable { .. }) => continue,
                 Err(error) => return Err(error),
             };
-            for (points, of) in points.iter_mut().zip([friction, packing]) {
-                if let (Ok(rate), Ok(value)) = (inertia(&done), of(&done)) {
+            for (points, solver_run) in points.iter_mut().zip([friction, packing]) {
+                if let (Ok(rate), Ok(value)) = (inertia(&done), solver_run(&done)) {
                     points.push((rate, value));
                 }
             }

@@ -94,10 +94,11 @@ fn gained(done: &Done, name: &str) -> Result<f64, Missing> {
 
 /// Compares the change of momentum with the impulse, in units of the largest impulse.
 fn momentum(done: &Done) -> Result<Measured, Missing> {
-    let of = |name: &str| done.column(&format!("budget.{name}"));
+    let budget_column = |name: &str| done.column(&format!("budget.{name}"));
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for axis in ["x", "y"] {
-        let (momentum, impulse) = (of(&format!("momentum_{axis}"))?, of(&format!("impulse_{axis}"))?);
+        let (momentum, impulse) =
+            (budget_column(&format!("momentum_{axis}"))?, budget_column(&format!("impulse_{axis}"))?);
         for (momentum_now, impulse_now) in momentum.iter().zip(impulse) {
             worst = worst.max((momentum_now - momentum[0] - impulse_now).abs());
             largest = largest.max(impulse_now.abs());

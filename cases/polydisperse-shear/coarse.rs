@@ -103,8 +103,9 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
         .of(run)
         .holds("conservation of energy: no more than comes in", |done| {
-            let of = |name| entry(&done[0], name);
-            let kept = (gained(&done[0], "kinetic")? + of("elastic")? + of("plastic")?) / of("work")?;
+            let budget_entry = |name| entry(&done[0], name);
+            let kept = (gained(&done[0], "kinetic")? + budget_entry("elastic")? + budget_entry("plastic")?)
+                / budget_entry("work")?;
             Ok(Measured::new(kept, Expected::Bound(Bound::AtMost(1.0)), 1.0))
         })
         .within(required(
@@ -193,8 +194,8 @@ pub(super) fn claims() -> Vec<Claim> {
         )
         .of(slab("mpm"))
         .holds("the method's own energy budget", |done| {
-            let of = |name| entry(&done[0], name);
-            Ok(Measured::new((of("transfer")? + of("contact")?) / of("work")?, 0.0, 1.0))
+            let budget_entry = |name| entry(&done[0], name);
+            Ok(Measured::new((budget_entry("transfer")? + budget_entry("contact")?) / budget_entry("work")?, 0.0, 1.0))
         })
         .within(judged(0.02, "springs between surfaces and a transfer that keeps spin lose next to nothing"))
         .refuses(makes_energy()),
@@ -251,11 +252,11 @@ pub(super) fn claims() -> Vec<Claim> {
                 grains.shear_modulus *= 0.001;
             }),
         );
-        let of = move |done: &[Done]| Ok(Measured::new(overlaps(&done[0])?[which], 0.0, 1.0));
+        let overlap_measurement = move |done: &[Done]| Ok(Measured::new(overlaps(&done[0])?[which], 0.0, 1.0));
         claims.push(
             claim(format!("{words} overlap of surfaces, {percent}"), "cell")
                 .of(slab("mpm"))
-                .holds("surfaces do not go through each other", of)
+                .holds("surfaces do not go through each other", overlap_measurement)
                 .within(required(
                     allowed,
                     "asked for before the solver was written, of springs as stiff as a cell of the material",

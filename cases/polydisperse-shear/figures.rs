@@ -41,10 +41,10 @@ fn displacement(slabs: &[Slab]) -> Figure {
 
 /// Returns the figures of quantities over the mean shear, for each slab.
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
-    let graph = |name: &str, title: &str, caption: &str, label: &str, of: &dyn Fn(&Done, &Snapshot) -> f64| {
+    let graph = |name: &str, title: &str, caption: &str, label: &str, value: &dyn Fn(&Done, &Snapshot) -> f64| {
         let curve = |(words, done): &Slab| {
             let points =
-                done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), of(done, at))).collect();
+                done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), value(done, at))).collect();
             Curve::new(*words, Stroke::Line, points)
         };
         let axes = [Axis::linear("mean shear (1)"), Axis::linear(label)];
@@ -126,8 +126,8 @@ fn of_chains(done: &Done) -> [Figure; 3] {
         .skip(1)
         .map(|snapshot| (measures::shear(done, snapshot.time), chains(snapshot)))
         .collect();
-    let points = |of: &dyn Fn(&Chains) -> f64| -> Vec<(f64, f64)> {
-        looked.iter().map(|(shear, chains)| (*shear, of(chains))).filter(|(_, value)| value.is_finite()).collect()
+    let points = |value: &dyn Fn(&Chains) -> f64| -> Vec<(f64, f64)> {
+        looked.iter().map(|(shear, chains)| (*shear, value(chains))).filter(|(_, value)| value.is_finite()).collect()
     };
     let surviving = looked.windows(2).map(|pair| (pair[1].0, pair[0].1.surviving(&pair[1].1)));
     let mean = |lengths: &[usize]| lengths.iter().sum::<usize>() as f64 / lengths.len() as f64;

@@ -109,28 +109,28 @@ fn over_packings(
     (held, because): Held,
     bound: f64,
     control: Control,
-    of: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
+    read: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
 ) -> Claim {
     let each = runs.len() / PACKINGS.len();
     claim(format!("{quantity}, 5 packings"), "1")
         .of_all(runs)
         .at_least(bound, source, move |done| {
-            held(&done.chunks_exact(each).map(&of).collect::<Result<Vec<f64>, Missing>>()?)
+            held(&done.chunks_exact(each).map(&read).collect::<Result<Vec<f64>, Missing>>()?)
         })
         .within(exactly(because))
         .refuses(control)
 }
 
 /// Claims that force chains form and disappear.
-fn chains_go_on(runs: Vec<Run>, of: &str, control: Control) -> Claim {
+fn chains_go_on(runs: Vec<Run>, words: &str, control: Control) -> Claim {
     let quantity =
-        format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{of}");
+        format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{words}");
     over_packings((&quantity, FIGURE_7), runs, VALUES, 0.4, control, |done| gone_in_the_mean(&done[0]))
 }
 
 /// Claims that the force chains differ between the paper's moments.
-fn chains_of_the_paper(runs: Vec<Run>, of: &str, control: Control) -> Claim {
-    let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{of}, least");
+fn chains_of_the_paper(runs: Vec<Run>, words: &str, control: Control) -> Claim {
+    let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{words}, least");
     over_packings((&quantity, FIGURE_7), runs, EACH, 0.2, control, |done| gone_in_the_paper(&done[0]))
 }
 
@@ -171,7 +171,7 @@ fn on_springs() -> Vec<Claim> {
 /// Returns the claims on plastic grains.
 fn yielding() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| whole(packing, "mpm")).to_vec();
-    let beside = |of: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(of).collect::<Vec<Run>>();
+    let beside = |pair: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(pair).collect::<Vec<Run>>();
     let glued_first = |packing| [whole(packing, "mpm:no-slip"), whole(packing, "mpm")];
     let friction_first = |packing| [whole(packing, "mpm"), whole(packing, "mpm:no-slip")];
     let on_approach = |packing| {

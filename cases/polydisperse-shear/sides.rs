@@ -15,10 +15,10 @@ pub(super) fn close(scene: &mut Scene) {
     let count = scene.materials.len() as u16;
     // One copy of each material for grains with prescribed motion, and the walls' material.
     let side = 2 * count;
-    let of = |material: u16| material % count;
+    let wrapped = |material: u16| material % count;
     let law = |a: u16, b: u16| -> Option<ContactLaw> {
         match (a == side, b == side) {
-            (false, false) => scene.law(of(a), of(b)).copied(),
+            (false, false) => scene.law(wrapped(a), wrapped(b)).copied(),
             (true, true) => None,
             _ => {
                 let grain = a.min(b);

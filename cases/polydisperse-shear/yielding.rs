@@ -34,9 +34,9 @@ fn on_the_papers_grid() -> Run {
 type Of = fn(&Done, &Snapshot) -> f64;
 
 /// Returns a quantity of the first run at a mean shear, over the quantity of the second run.
-pub(super) fn over(done: &[Done], shear: f64, of: Of) -> Result<f64, Missing> {
-    let of = |done: &Done| Ok(of(done, at(done, shear)?));
-    Ok(of(&done[0])? / of(&done[1])?)
+pub(super) fn over(done: &[Done], shear: f64, value: Of) -> Result<f64, Missing> {
+    let ratio_at = |done: &Done| Ok(value(done, at(done, shear)?));
+    Ok(ratio_at(&done[0])? / ratio_at(&done[1])?)
 }
 
 fn voids(done: &Done, snapshot: &Snapshot) -> f64 {
@@ -154,7 +154,7 @@ fn refined() -> Vec<Claim> {
     type Quantity = (&'static str, Of, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =
         [("plastic strain", plastic_strain, 0.1, Some(PATCHES)), ("rotation of grains", rotation_deg, 0.15, None)];
-    let finer = |(words, of, allowed, known): Quantity, coarse: f64, [run, finer]: [Run; 2], shear: f64| {
+    let finer = |(words, read, allowed, known): Quantity, coarse: f64, [run, finer]: [Run; 2], shear: f64| {
         let fine = 2.0 * coarse;
         let (run, control) = match known {
             Some(reason) => {
@@ -165,7 +165,7 @@ fn refined() -> Vec<Claim> {
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
             .of_all([run, finer.aside()])
             .agrees(Source::Ourselves("the same packing on a grid twice as fine"), move |done| {
-                Ok(Measured::new(over(done, shear, of)?, 1.0, 1.0))
+                Ok(Measured::new(over(done, shear, read)?, 1.0, 1.0))
             })
             .within(required(
                 allowed,

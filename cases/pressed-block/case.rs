@@ -80,7 +80,7 @@ fn material(change: impl Fn(&mut Deformable) + Send + Sync + 'static) -> impl Fn
 
 /// Returns a change of yield stress and hardening modulus (Pa).
 fn metal(yield_stress: f64, hardening_modulus: f64) -> impl Fn(&mut Scene) + Send + Sync + 'static {
-    material(move |of| of.constitutive = Constitutive::VonMises { yield_stress, hardening_modulus })
+    material(move |deformable| deformable.constitutive = Constitutive::VonMises { yield_stress, hardening_modulus })
 }
 
 fn claims() -> Vec<Claim> {
@@ -127,7 +127,10 @@ fn claims() -> Vec<Claim> {
                 "volumes are multiplied and strains added: e/2N in N steps, 2e-6 of .0202 in 4600; five times that for \
                  what the mean over points does to a logarithm",
             ))
-            .refuses(Control::scene("a thousandth stiffer in volume", material(|of| of.bulk_modulus *= 1.001))),
+            .refuses(Control::scene(
+                "a thousandth stiffer in volume",
+                material(|deformable| deformable.bulk_modulus *= 1.001),
+            )),
         claim("force on the ram", "N")
             .of(run())
             .equals(
@@ -142,7 +145,10 @@ fn claims() -> Vec<Claim> {
                 },
             )
             .within(computed(DENSITY * sound * SPEED / 1.934, "a front of ρcV; of 1.934 Pa on 1 m"))
-            .refuses(Control::scene("two per cent stiffer in volume", material(|of| of.bulk_modulus *= 1.02))),
+            .refuses(Control::scene(
+                "two per cent stiffer in volume",
+                material(|deformable| deformable.bulk_modulus *= 1.02),
+            )),
     ]);
     claims
 }

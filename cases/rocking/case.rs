@@ -56,8 +56,8 @@ fn turning_points(done: &Done) -> Result<[f64; 2], Missing> {
     Ok([places[farthest], places[farthest..].iter().copied().fold(f64::INFINITY, f64::min)])
 }
 
-fn number(variant: &str, of: impl Fn(&Scene) -> f64) -> f64 {
-    CASE.variant(variant).map_or(f64::NAN, |scene| of(&scene))
+fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
+    CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
 }
 
 fn claims() -> Vec<Claim> {

@@ -71,7 +71,7 @@ fn seconds(scene: &Scene) -> f64 {
 }
 
 fn flat(variant: &'static str) -> Vec<Claim> {
-    let of = |quantity: &str, control, of_spin: bool| {
+    let rolling_claim = |quantity: &str, control, of_spin: bool| {
         claim(quantity, "m/s²")
             .of(Run::new(variant, "dem", STEP.resolution))
             .equals(Source::Derived("dv/dt = g (sin θ − μ_r cos θ)/(1 + i) (derivation)"), move |done| {
@@ -89,8 +89,12 @@ fn flat(variant: &'static str) -> Vec<Claim> {
         scene.change_laws(|law| law.rolling_friction *= 1.01);
     });
     vec![
-        of("deceleration on a flat plane", more, false),
-        of("deceleration of the surface, RΩ", Control::scene("the inertia of the other shape", wrong_inertia), true),
+        rolling_claim("deceleration on a flat plane", more, false),
+        rolling_claim(
+            "deceleration of the surface, RΩ",
+            Control::scene("the inertia of the other shape", wrong_inertia),
+            true,
+        ),
     ]
 }
 
@@ -115,7 +119,7 @@ fn tilted(variant: &'static str, factor: f64) -> Run {
 }
 
 fn threshold(variant: &'static str) -> Vec<Claim> {
-    let of = |quantity: &str, factor: f64, allowed: Tolerance, wrong, by: f64| {
+    let threshold_claim = |quantity: &str, factor: f64, allowed: Tolerance, wrong, by: f64| {
         claim(quantity, "m/s²")
             .of(tilted(variant, factor))
             .equals(
@@ -137,8 +141,20 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
     );
     let yields = rounding(1.0, "once the spring has yielded the moment is constant; in units of μ_r g/(1 + i)");
     vec![
-        of("acceleration on a slope of tan θ = .999 μ_r", 0.999, comes_to_rest, "rolling resistance × .998", 0.998),
-        of("acceleration on a slope of tan θ = 1.001 μ_r", 1.001, yields, "rolling resistance × 1.002", 1.002),
+        threshold_claim(
+            "acceleration on a slope of tan θ = .999 μ_r",
+            0.999,
+            comes_to_rest,
+            "rolling resistance × .998",
+            0.998,
+        ),
+        threshold_claim(
+            "acceleration on a slope of tan θ = 1.001 μ_r",
+            1.001,
+            yields,
+            "rolling resistance × 1.002",
+            1.002,
+        ),
     ]
 }
 

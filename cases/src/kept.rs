@@ -250,27 +250,33 @@ fn series(scene: &Scene, table: &Table) -> Series {
 ///
 /// # Errors
 /// When the provenance cannot be serialised. The error is a message.
-pub fn files(of: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result<Vec<(String, Vec<u8>)>, String> {
+pub fn files(wanted: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let record = &done.record;
     let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&text_of_series(&record.series)))];
     for table in done.tables.iter() {
         files.push((format!("{}{ENDING}", table.name), compressed(&text(&table.columns, &table.values))));
     }
-    let program = match record.provenance.options.first().filter(|_| is_program(of.run.solver)) {
+    let program = match record.provenance.options.first().filter(|_| is_program(wanted.run.solver)) {
         Some(version) => version.clone(),
         None => format!("grainbench {}", env!("CARGO_PKG_VERSION")),
     };
-    let paper_size = if of.set() == Set::Paper { " --paper-size" } else { "" };
-    let control = if of.wrong { format!(", {}", of.claim.control.name) } else { String::new() };
+    let paper_size = if wanted.set() == Set::Paper { " --paper-size" } else { "" };
+    let control = if wanted.wrong { format!(", {}", wanted.claim.control.name) } else { String::new() };
     let provenance = Provenance {
         program,
         commit: made[0].to_owned(),
         date: made[1].to_owned(),
-        title: format!("{}/{}{control}, {}, {}", of.case.name, of.run.scene_words(), of.run.solver, of.run.resolution),
-        reading: of.run.reading.map_or("", |reading| reading.name).to_owned(),
-        scene: scene_hash_by_bits(given, &Stepping::of(given, &of.run.resolution)?),
-        sources: sources(of.run.solver).filter(|_| !is_program(of.run.solver)),
-        command: format!("grainbench reference keep {}{paper_size}", of.case.name),
+        title: format!(
+            "{}/{}{control}, {}, {}",
+            wanted.case.name,
+            wanted.run.scene_words(),
+            wanted.run.solver,
+            wanted.run.resolution
+        ),
+        reading: wanted.run.reading.map_or("", |reading| reading.name).to_owned(),
+        scene: scene_hash_by_bits(given, &Stepping::of(given, &wanted.run.resolution)?),
+        sources: sources(wanted.run.solver).filter(|_| !is_program(wanted.run.solver)),
+        command: format!("grainbench reference keep {}{paper_size}", wanted.case.name),
         blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
         run: record.provenance.clone(),
         cost: record.cost,

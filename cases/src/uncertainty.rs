@@ -45,8 +45,11 @@ pub fn find(case: &Case, claim: &Claim) -> Option<Estimate> {
     let all = CASES.get_or_init(|| crate::registry::CASES.iter().map(|case| (case.name, load(case.name))).collect());
     let [run] = &claim.runs[..] else { return None };
     let (scene, resolution) = (run.scene_words(), run.resolution.to_string());
-    let is_it = |of: &&Estimate| {
-        of.variant == scene && of.solver == run.solver && of.resolution == resolution && of.quantity == claim.quantity
+    let is_it = |estimate: &&Estimate| {
+        estimate.variant == scene
+            && estimate.solver == run.solver
+            && estimate.resolution == resolution
+            && estimate.quantity == claim.quantity
     };
     all.get(case.name)?.estimate.iter().find(is_it).cloned()
 }

@@ -34,8 +34,8 @@ fn turned(scene: &Scene) -> f64 {
 }
 
 /// Returns a number of a variant without a control.
-fn number(variant: &str, of: impl Fn(&Scene) -> f64) -> f64 {
-    CASE.variant(variant).map_or(f64::NAN, |scene| of(&scene))
+fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
+    CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
 }
 
 /// Returns the relative error of the integration scheme, (ΩΔt)² (1 + ΩT)².

@@ -152,7 +152,7 @@ fn momentum(done: &Done) -> Result<Measured, Missing> {
 /// Claims on three discs that collide at one point: contacts act in pairs, independent of the number of bodies at a
 /// node.
 fn three() -> Vec<Claim> {
-    let of = |run: Run, control| {
+    let momentum_claim = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")
             .of(run)
             .holds("equal and opposite impulses", |done| {
@@ -165,19 +165,19 @@ fn three() -> Vec<Claim> {
             .refuses(control)
     };
     let alone = || Control::solver("each body against the common velocity, along its own normal (2001)", "mpm:2001");
-    let mut claims: Vec<Claim> = ["mpm", "mpm:gap"].map(|solver| of(run("three", solver), alone())).into();
+    let mut claims: Vec<Claim> = ["mpm", "mpm:gap"].map(|solver| momentum_claim(run("three", solver), alone())).into();
     for solver in ["mpm:2000", "mpm:2001"] {
         let known = run("three", solver)
             .known("each body matches the common velocity along its own normal: the sum of the impulses is not zero")
             .up_to(0.02);
-        claims.push(of(known, Control::without_the_error("springs at the surface", "mpm", grid(8.0))));
+        claims.push(momentum_claim(known, Control::without_the_error("springs at the surface", "mpm", grid(8.0))));
     }
     claims
 }
 
 /// Claims on the spin by friction.
 fn oblique() -> Vec<Claim> {
-    let of = |run: Run, quantity: &str, because, control| {
+    let spin_claim = |run: Run, quantity: &str, because, control| {
         claim(quantity, "1")
             .of(run)
             .equals_cited(OBLIQUE_SPIN, 1.0, |done| Ok(spin(&done[0])?.abs()))
@@ -185,13 +185,13 @@ fn oblique() -> Vec<Claim> {
             .refuses(control)
     };
     vec![
-        of(
+        spin_claim(
             run("oblique", "mpm"),
             "ΩR/v₀ after an oblique impact, μ = .9",
             "discretisation at this resolution, and what the prototype is certain of",
             Control::scene("a third of the friction", |scene| scene.change_laws(|law| law.friction /= 3.0)),
         ),
-        of(
+        spin_claim(
             Run::new("oblique", "mpm", grid(16.0)).slow().known(
                 "the points' own spin, without resistance from neighbours, lets the surface layer yield along the contact: the \
                  spin does not converge to the reference",

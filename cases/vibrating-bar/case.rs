@@ -141,7 +141,8 @@ fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
 fn stretched(scene: &Scene) -> (f64, f64, f64) {
     let bar = &scene.bodies[0];
     let (low, high) = bar.shape.corners();
-    let (length, modulus) = (high.x - low.x, scene.deformable[0].map_or(f64::NAN, |of| of.longitudinal_modulus()));
+    let (length, modulus) =
+        (high.x - low.x, scene.deformable[0].map_or(f64::NAN, |deformable| deformable.longitudinal_modulus()));
     let stress = bar.stress.map_or(f64::NAN, |stress| stress.centre.m11);
     (stress, bar.density * length, length / (modulus / bar.density).sqrt())
 }

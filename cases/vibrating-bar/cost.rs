@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 pub(crate) fn subjects() -> Vec<Subject> {
     let Some(case) = registry::by_name("vibrating-bar") else { return Vec::new() };
-    let of = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| Subject {
+    let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| Subject {
         case,
         variant,
         quantity: quantity.to_owned(),
@@ -24,7 +24,7 @@ pub(crate) fn subjects() -> Vec<Subject> {
         lanes: vec![Lane { method: Method::Grid, knobs: String::new(), prepare: None, about: LEVELS[1].resolution }],
     };
     vec![
-        of(PLAIN, "period", "2π/(β√(E/ρ)) (derivation)", |scene| 2.0 * PI / mode(scene).0),
-        of(HELD, "period between smooth sides", "10 √(E/M) s (derivation)", |_| HELD_PERIOD),
+        target(PLAIN, "period", "2π/(β√(E/ρ)) (derivation)", |scene| 2.0 * PI / mode(scene).0),
+        target(HELD, "period between smooth sides", "10 √(E/M) s (derivation)", |_| HELD_PERIOD),
     ]
 }

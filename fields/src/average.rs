@@ -20,14 +20,14 @@ pub struct Mean {
 /// Values that do not fill a block, at the start, count only for the mean. Returns `None` for an empty series.
 #[must_use]
 pub fn mean(values: &[f64], blocks: usize) -> Option<Mean> {
-    let of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let average = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     if values.is_empty() {
         return None;
     }
     let blocks = blocks.clamp(1, values.len());
     let length = values.len() / blocks;
-    let means: Vec<f64> = values[values.len() - length * blocks..].chunks(length).map(of).collect();
-    Some(Mean { value: of(values), half_width: interval(&means).map(|(_, half_width)| half_width), blocks })
+    let means: Vec<f64> = values[values.len() - length * blocks..].chunks(length).map(average).collect();
+    Some(Mean { value: average(values), half_width: interval(&means).map(|(_, half_width)| half_width), blocks })
 }
 
 #[cfg(test)]

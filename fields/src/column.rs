@@ -48,9 +48,9 @@ const fn column(
     name: &'static str,
     words: &'static str,
     unit: &'static str,
-    of: fn(&Element, &Grains) -> Option<f64>,
+    value: fn(&Element, &Grains) -> Option<f64>,
 ) -> Column {
-    Column { name, words, unit, of }
+    Column { name, words, unit, of: value }
 }
 
 /// All quantities of an element.
@@ -67,10 +67,10 @@ pub const COLUMNS: [Column; 30] = [
     column("speed", "speed |v⁰|", "m/s", |element, _| element.motion.velocity.map(|velocity| velocity.norm())),
     column("residual_velocity", "velocity |v′| beside the fit", "m/s", |element, _| element.motion.residual),
     column("angle_of_largest", "angle between the axes of largest T and D", "deg", |element, grains| {
-        element.coaxiality(grains.plane).map(|of| of.largest)
+        element.coaxiality(grains.plane).map(|angles| angles.largest)
     }),
     column("angle_of_smallest", "angle between the axes of smallest T and D", "deg", |element, grains| {
-        element.coaxiality(grains.plane).map(|of| of.smallest)
+        element.coaxiality(grains.plane).map(|angles| angles.smallest)
     }),
     column("turn_in_plane", "turn from T to D in the plane", "deg", |element, grains| {
         element.coaxiality(grains.plane)?.in_plane

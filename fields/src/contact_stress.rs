@@ -45,11 +45,11 @@ pub fn tells_interval(snapshot: &Snapshot) -> bool {
 fn of_grains(
     snapshot: &Snapshot,
     grid: &Grid,
-    of: impl Fn(&GrainState) -> Option<[f64; 6]>,
+    virial_of: impl Fn(&GrainState) -> Option<[f64; 6]>,
 ) -> Option<Vec<Matrix3<f64>>> {
     let mut stress = vec![Matrix3::zeros(); grid.cells()];
     for grain in &snapshot.grains {
-        let virial = of(grain)?;
+        let virial = virial_of(grain)?;
         if let Some(cell) = grid.find(grain.position) {
             stress[cell] += symmetric(virial);
         }

@@ -76,7 +76,8 @@ impl Course {
 
     /// Adds a snapshot. With velocities between snapshots, the first snapshot adds no frame.
     pub fn add(&mut self, snapshot: Snapshot) {
-        self.grains.mean = self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|of| of.1.is_finite());
+        self.grains.mean =
+            self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|grain| grain.1.is_finite());
         if self.stress.is_none() && tells_interval(&snapshot) {
             self.stress = Some(Stress::Interval);
             // All frames must have the same kind of stress: the time average of earlier frames is unknown.
@@ -131,8 +132,8 @@ impl Course {
     pub fn mean_over(&self, column: &Column, blocks: usize) -> Option<(Mean, usize)> {
         let (mut means, mut sum, mut count) = (Vec::new(), 0.0, 0);
         for frame in &self.frames {
-            let of = |cell: usize| self.value(column, frame, cell).filter(|_| !frame.masked[cell].any());
-            let values: Vec<f64> = (0..frame.elements.len()).filter_map(of).collect();
+            let cell_value = |cell: usize| self.value(column, frame, cell).filter(|_| !frame.masked[cell].any());
+            let values: Vec<f64> = (0..frame.elements.len()).filter_map(cell_value).collect();
             if !values.is_empty() {
                 let total: f64 = values.iter().sum();
                 means.push(total / values.len() as f64);
@@ -149,8 +150,8 @@ impl Course {
     pub fn element_of_means(&self, cell: usize) -> Option<Element> {
         let all = || self.frames.iter().map(|frame| frame.elements[cell]);
         let first = all().next()?;
-        let matrices = |of: fn(&Element) -> Option<Matrix3<f64>>| {
-            let found: Vec<Matrix3<f64>> = all().filter_map(|element| of(&element)).collect();
+        let matrices = |matrix: fn(&Element) -> Option<Matrix3<f64>>| {
+            let found: Vec<Matrix3<f64>> = all().filter_map(|element| matrix(&element)).collect();
             (!found.is_empty()).then(|| found.iter().sum::<Matrix3<f64>>() / found.len() as f64)
         };
         let velocities: Vec<Vector3<f64>> = all().filter_map(|element| element.motion.velocity).collect();

@@ -108,7 +108,7 @@ pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
         Dimension::Two => GrainShape::Disc,
         Dimension::Three => GrainShape::Sphere,
     };
-    let sum = |(diameter, density): (f64, f64), (more, of): (f64, f64)| (diameter + more, density + of);
+    let sum = |(diameter, density): (f64, f64), (more, other): (f64, f64)| (diameter + more, density + other);
     let each = grains.iter().map(|grain| (2.0 * grain.radius, grain.mass / shape.mass(grain.radius, 1.0)));
     let (diameter, density) = each.fold((0.0, 0.0), sum);
     let count = grains.len() as f64;
@@ -118,8 +118,8 @@ pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
 /// Returns the sum of x⊗F over all cells, ΣV T (J). It is equal for all grids that contain all centres.
 #[must_use]
 pub fn whole_stress(elements: &[Element], grid: &Grid) -> Option<Matrix3<f64>> {
-    let of = |element: &Element| element.stress.map(|stress| stress * grid.volume());
-    elements.iter().map(of).sum()
+    let weighted_stress = |element: &Element| element.stress.map(|stress| stress * grid.volume());
+    elements.iter().map(weighted_stress).sum()
 }
 
 /// Returns the mean velocity at a position (m/s), interpolated linearly between the centres of non-empty cells.
@@ -139,7 +139,7 @@ pub fn interpolated<T>(
     grid: &Grid,
     periodic: [bool; 3],
     place: Vector3<f64>,
-    of: impl Fn(usize) -> Option<T>,
+    value_at: impl Fn(usize) -> Option<T>,
 ) -> Option<T>
 where
     T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -161,7 +161,7 @@ where
             // Beyond the outermost centres the outermost cell is used.
             at[axis] = if periodic[axis] { number.rem_euclid(count) } else { number.clamp(0, count - 1) } as usize;
         }
-        let Some(value) = of(grid.place(at)).filter(|_| weight > 0.0) else { continue };
+        let Some(value) = value_at(grid.place(at)).filter(|_| weight > 0.0) else { continue };
         weights += weight;
         let more = value * weight;
         sum = Some(match sum {

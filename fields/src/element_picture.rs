@@ -88,7 +88,7 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     let count = course.frames.len().min(FRAMES);
     let last = course.frames.len().checked_sub(1)?;
     let frames: Vec<&Frame> = (0..count).map(|frame| &course.frames[frame * last / (count - 1).max(1)]).collect();
-    let of = |name: &&str| {
+    let panel_values = |name: &&str| {
         let column = named(name);
         let value = |frame: &Frame, cell: usize| course.value(column, frame, cell).filter(|_| !frame.masked[cell].few);
         let of_frame =
@@ -97,8 +97,14 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     };
     let words = if frames.iter().all(|frame| frame.time.is_finite()) { "time t (s)" } else { "step" };
     let times = frames.iter().map(|frame| frame.clock()).collect();
-    Sheet { grid: course.grid, units: Units::SI, clock: words.to_owned(), times, shown: names.iter().map(of).collect() }
-        .film()
+    Sheet {
+        grid: course.grid,
+        units: Units::SI,
+        clock: words.to_owned(),
+        times,
+        shown: names.iter().map(panel_values).collect(),
+    }
+    .film()
 }
 
 impl Sheet {
@@ -115,13 +121,13 @@ impl Sheet {
             values.sort_by(f64::total_cmp);
             let at = |fiftieths: usize| values.get(values.len().checked_sub(1)? * fiftieths / 50).copied();
             let range = (lowest(name, at(1)?), two_digits(at(49)?));
-            let of = |frame: &Vec<f64>| {
+            let raster_of = |frame: &Vec<f64>| {
                 raster(&self.grid, [across, up], pixels, |cell| {
                     level(frame.get(cell).copied().unwrap_or(f64::NAN), range)
                 })
             };
             let own = Some((range, self.units.of(column.unit)));
-            Some(Panel { title: column.words.to_owned(), frames: frames.iter().map(of).collect(), own })
+            Some(Panel { title: column.words.to_owned(), frames: frames.iter().map(raster_of).collect(), own })
         };
         let panels: Vec<Panel> = self.shown.iter().filter_map(panel).collect();
         let pixel = self.grid.cell[across] / f64::from(pixels);

@@ -88,7 +88,7 @@ impl Masks {
             over[up] = if high { at[up] + 1 } else { at[up].wrapping_sub(1) };
             (over[up] < grid.count[up]).then(|| grid.place(over))
         };
-        let of = |cell: usize| {
+        let reasons = |cell: usize| {
             let at = grid.at(cell);
             let at_side = |axis: usize| at[axis] == 0 || at[axis] + 1 == grid.count[axis];
             let top = if high { at[up] + 1 == grid.count[up] } else { at[up] == 0 };
@@ -101,7 +101,7 @@ impl Masks {
                 orifice: self.orifice.is_some_and(|orifice| orifice.distance(grid.middle(cell)) < orifice.reach),
             }
         };
-        (0..grid.cells()).map(of).collect()
+        (0..grid.cells()).map(reasons).collect()
     }
 
     /// Returns a description of the masks.

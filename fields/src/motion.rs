@@ -119,8 +119,8 @@ pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
         }
     }
     // Unknown velocities are NaN, and so are gradients computed from them.
-    let told = |gradient: &Matrix3<f64>| gradient.iter().all(|number| number.is_finite());
-    let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell).filter(told)).collect();
+    let is_finite = |gradient: &Matrix3<f64>| gradient.iter().all(|number| number.is_finite());
+    let gradients: Vec<_> = sums.iter().map(|sums| sums.gradient(dimension, grid.cell).filter(is_finite)).collect();
     let mut left = vec![0.0; grid.cells()];
     for (mover, home) in movers.iter().zip(&homes) {
         if let Some(cell) = *home
@@ -132,11 +132,11 @@ pub fn motion(movers: &[Mover], dimension: usize, grid: &Grid) -> Vec<Motion> {
         }
     }
     let mean = |sums: &Sums| Some(sums.velocity / sums.weight).filter(|mean| mean.iter().all(|part| part.is_finite()));
-    let of = |cell: usize| Motion {
+    let cell_motion = |cell: usize| Motion {
         members: sums[cell].members,
         velocity: mean(&sums[cell]),
         gradient: gradients[cell],
         residual: gradients[cell].map(|_| (left[cell] / sums[cell].weight).sqrt()),
     };
-    (0..grid.cells()).map(of).collect()
+    (0..grid.cells()).map(cell_motion).collect()
 }

@@ -299,11 +299,11 @@ mod tests {
     fn points_fill_their_bodies_and_blur_over_no_contact() {
         let view = View::new([0.0, -0.2], [2.0, 1.2], 200);
         let painting = Painting::new(&snapshot(points(0.05)), Quantity::StressDifference, view);
-        let of =
+        let area =
             |owner: u32| painting.owners.iter().filter(|&&found| found == owner).count() as f64 * view.pixel.powi(2);
         // Each body covers half a square, with a margin of (.85 − .5) widths around it.
         for owner in [1, 2] {
-            assert!((0.5..0.56).contains(&of(owner)), "{}", of(owner));
+            assert!((0.5..0.56).contains(&area(owner)), "{}", area(owner));
         }
         // |σ_xx − σ_yy| = 2|x| is linear, so averaging changes nothing inside.
         let at = |column: usize, row: usize| painting.values[row * 200 + column];

@@ -103,7 +103,7 @@ fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
     for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
         let view = View::of(snapshot, longest);
         let (low, high) = corners.unwrap_or((view.low, view.high()));
-        let both = |of: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [of(a[0], b[0]), of(a[1], b[1])];
+        let both = |extreme: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [extreme(a[0], b[0]), extreme(a[1], b[1])];
         corners = Some((both(f64::min, low, view.low), both(f64::max, high, view.high())));
     }
     let (low, high) = corners.unwrap_or(([0.0; 2], [1.0; 2]));

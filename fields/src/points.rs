@@ -35,7 +35,7 @@ pub(crate) struct Material {
 pub(crate) fn at_pixels(
     snapshot: &Snapshot,
     view: View,
-    of: impl Fn(&PointState) -> [f64; 3],
+    value: impl Fn(&PointState) -> [f64; 3],
 ) -> Vec<Option<Material>> {
     let pixels = view.width as usize * view.height as usize;
     let mut nearest = vec![Nearest { distance: REACH * REACH, point: u32::MAX }; pixels];
@@ -47,7 +47,7 @@ pub(crate) fn at_pixels(
     let owner = |at: usize| snapshot.points.get(nearest[at].point as usize).map(|point| point.owner);
     let owners: Vec<Option<Owner>> = (0..pixels).map(owner).collect();
     let mut sums = vec![([0.0; 3], 0.0); pixels];
-    let numbers: Vec<[f64; 3]> = snapshot.points.iter().map(of).collect();
+    let numbers: Vec<[f64; 3]> = snapshot.points.iter().map(value).collect();
     lay(snapshot, view, |at, distance, point| {
         if owners[at] == Some(snapshot.points[point as usize].owner) {
             let weight = (1.0 - distance.sqrt() / BLUR).powi(2);

@@ -21,8 +21,8 @@ pub fn principal(tensor: &Matrix3<f64>, dimension: usize) -> Principal {
     let mut order: Vec<usize> = (0..dimension).collect();
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     let axis = |number: usize| {
-        let of = eigen.eigenvectors.column(number);
-        Vector3::from_fn(|row, _| of.get(row).copied().unwrap_or(0.0))
+        let eigenvector = eigen.eigenvectors.column(number);
+        Vector3::from_fn(|row, _| eigenvector.get(row).copied().unwrap_or(0.0))
     };
     Principal {
         values: order.iter().map(|&number| eigen.eigenvalues[number]).collect(),

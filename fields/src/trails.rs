@@ -49,10 +49,10 @@ impl Trails {
                 }
             }
         }
-        for (tracer, of) in self.tracers.iter().enumerate().filter(|(_, of)| !of.is_lost()) {
-            let deformation = of.deformation(snapshot, dimension);
+        for (tracer, trail) in self.tracers.iter().enumerate().filter(|(_, trail)| !trail.is_lost()) {
+            let deformation = trail.deformation(snapshot, dimension);
             let strain = deformation.and_then(|deformation| hencky(&deformation)).map(|strain| strain.norm());
-            self.stops.push(Stop { tracer, frame: frames.len(), position: of.position, strain });
+            self.stops.push(Stop { tracer, frame: frames.len(), position: trail.position, strain });
         }
     }
 }

@@ -95,7 +95,7 @@ impl Case {
     /// When the scene file is wrong or there is no such variant.
     pub fn variant(&self, variant: &str) -> Result<Scene, SceneError> {
         let made = || self.home.made.map(|made| made.lock().unwrap_or_else(PoisonError::into_inner));
-        let is_it = |(case, of, _): &&(&str, String, Scene)| *case == self.name && of == variant;
+        let is_it = |(case, name, _): &&(&str, String, Scene)| *case == self.name && name == variant;
         if let Some((.., scene)) = made().and_then(|made| made.iter().find(is_it).cloned()) {
             return Ok(scene);
         }

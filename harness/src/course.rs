@@ -212,8 +212,8 @@ const fn expected_word(source: Source) -> &'static str {
 /// Returns true if two plotted curves coincide: they differ by less than the width of a line.
 fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     const LINE: f64 = 2e-3;
-    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        let all = a.iter().chain(b).map(of);
+    let ends = |coordinate: &dyn Fn(&(f64, f64)) -> f64| {
+        let all = a.iter().chain(b).map(coordinate);
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
     };
     let (low, high) = ends(&|point| point.1);

@@ -206,8 +206,8 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_is_the_worst() {
-        let of = |value| Measured::new(value, 0.0, 1.0);
-        let worst = Measured::worst_among([of(1.0), of(f64::NAN), of(3.0)]);
+        let measurement = |value| Measured::new(value, 0.0, 1.0);
+        let worst = Measured::worst_among([measurement(1.0), measurement(f64::NAN), measurement(3.0)]);
         assert!(worst.is_some_and(|worst| worst.value.is_nan()));
         assert!(Measured::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
         // The sign of NaN is arbitrary.
@@ -215,7 +215,7 @@ mod tests {
             let worst = Measured::worst_of(&[0.0, 1.0, 2.0], &[1.0, nothing, 9.0], &[0.0; 3], 1.0);
             assert!(worst.value.is_nan() && worst.first_outside(10.0).is_some_and(|words| words.contains("NaN")));
             for order in [[1.0, nothing, 3.0], [nothing, 1.0, 3.0], [1.0, 3.0, nothing]] {
-                assert!(Measured::worst_among(order.map(of)).is_some_and(|worst| worst.value.is_nan()));
+                assert!(Measured::worst_among(order.map(measurement)).is_some_and(|worst| worst.value.is_nan()));
                 assert!(order.into_iter().fold(0.0, larger).is_nan());
             }
         }

@@ -47,7 +47,9 @@ pub const LIGHTS: u8 = 31;
 /// Returns the level of a value from 0 to 1 under a light intensity from 0 to 1.
 #[must_use]
 pub fn lit(value: f64, light: f64) -> u8 {
-    let part = |of: f64, count: u8| (of.clamp(0.0, 1.0) * f64::from(count)).floor().min(f64::from(count - 1)) as u8;
+    let part = |fraction: f64, count: u8| {
+        (fraction.clamp(0.0, 1.0) * f64::from(count)).floor().min(f64::from(count - 1)) as u8
+    };
     // NaN is drawn as empty space.
     if value.is_nan() || light.is_nan() { VOID } else { LOW + LIGHTS * part(value, COLOURS) + part(light, LIGHTS) }
 }

@@ -137,8 +137,8 @@ mod tests {
             (1..=400_u64)
                 .filter(|&seed| {
                     let second: Vec<f64> = course(seed + 1000).iter().map(|value| value + off).collect();
-                    let of = difference(&course(seed), &second, BLOCKS).unwrap();
-                    (of.second - of.first).abs() > of.half_width
+                    let estimate = difference(&course(seed), &second, BLOCKS).unwrap();
+                    (estimate.second - estimate.first).abs() > estimate.half_width
                 })
                 .count()
         };
@@ -149,10 +149,10 @@ mod tests {
     #[test]
     fn a_known_interval() {
         // Differences 1, −1, 1, −1: s² = 4/3, t(.995, 3) = 5.8409.
-        let of = difference(&[0.0; 4], &[1.0, -1.0, 1.0, -1.0], 4).unwrap();
-        assert!((of.half_width - 5.840_909 * (1.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{of:?}");
+        let estimate = difference(&[0.0; 4], &[1.0, -1.0, 1.0, -1.0], 4).unwrap();
+        assert!((estimate.half_width - 5.840_909 * (1.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{estimate:?}");
         let (mean, half_width) = interval(&[1.0, -1.0, 1.0, -1.0]).unwrap();
-        assert!(mean == 0.0 && (half_width - of.half_width).abs() < 1e-12);
+        assert!(mean == 0.0 && (half_width - estimate.half_width).abs() < 1e-12);
         assert_eq!(interval(&[1.0]), None);
         // Values −1, 1, −1, 1: mean 0, s² = 4/3, times 1 + 1/4.
         let (mean, half_width) = next_value(&[-1.0, 1.0, -1.0, 1.0]).unwrap();

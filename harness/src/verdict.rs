@@ -297,12 +297,12 @@ mod tests {
             let open = Verdict { allowed, tolerance, ..Verdict::open("case", "quantity", "1") };
             open.judged(&Measured::new(1.5, expected, 1.0)).unless_as_wide_as_the_scale()
         };
-        let of = |allowed, tolerance| row(allowed, tolerance, Expected::Value(1.0)).outcome;
-        assert_eq!(of(0.99, Made::Judged), Outcome::Pass);
-        assert_eq!(of(1.0, Made::Judged), Outcome::NoReference);
-        assert_eq!(of(1.0, Made::Computed), Outcome::Pass);
-        assert_eq!(of(20.0, Made::Computed), Outcome::NoReference);
-        assert_eq!(of(1.0, Made::Interval), Outcome::Pass);
+        let outcome = |allowed, tolerance| row(allowed, tolerance, Expected::Value(1.0)).outcome;
+        assert_eq!(outcome(0.99, Made::Judged), Outcome::Pass);
+        assert_eq!(outcome(1.0, Made::Judged), Outcome::NoReference);
+        assert_eq!(outcome(1.0, Made::Computed), Outcome::Pass);
+        assert_eq!(outcome(20.0, Made::Computed), Outcome::NoReference);
+        assert_eq!(outcome(1.0, Made::Interval), Outcome::Pass);
         let bound = row(20.0, Made::Judged, Expected::Bound(Bound::AtMost(1.0)));
         assert_eq!(bound.outcome, Outcome::Pass);
         let detail = row(20.0, Made::Judged, Expected::Value(1.0)).detail;

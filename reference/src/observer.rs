@@ -191,10 +191,12 @@ impl<'s> Observer<'s> {
             let grains = order.iter().map(|&(place, row)| {
                 let (id, grain) = (place as u32 + 1, &self.scene.grains[place]);
                 let row = snapshot.row(row);
-                let told = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
+                let shifted_number = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
                 // A value that the file does not contain is NaN. Along an axis that the scene lacks it is zero.
                 let vector = |columns: &[Option<usize>; 3], axes: [bool; 3]| {
-                    Vector3::from_fn(|axis, _| told(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 }))
+                    Vector3::from_fn(|axis, _| {
+                        shifted_number(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 })
+                    })
                 };
                 let position = columns.position.map(|coordinate| {
                     let open = |at: &Coordinate| -> f64 {
@@ -206,7 +208,7 @@ impl<'s> Observer<'s> {
                     position: Vector3::from(position),
                     velocity: vector(&columns.velocity, [true, true, !flat]),
                     spin: vector(&columns.spin, [!flat, !flat, true]),
-                    angle: told(columns.angle),
+                    angle: shifted_number(columns.angle),
                     ..GrainState::start(id, grain)
                 }
             });
@@ -223,12 +225,12 @@ impl<'s> Observer<'s> {
             let of_pair = |a: usize, b: usize| self.pairs.on(snapshot.step, id(a), id(b));
             let forces = Forces { of_pair: &of_pair, of_wall: &of_wall };
             let times = if matches!(shift, Shift::None) { 0.0 } else { 1.0 };
-            let told = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
+            let contacts_seen = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
             for (number, wall) in seen.walls.iter_mut().enumerate() {
                 let on_grains = (0..order.len()).map(|grain| of_wall(number, grain));
                 // Along every axis, the uncertainties of all digits are added.
-                let open = |of: PairForce| of.force.add_scalar(times * of.open);
-                let sum: Option<Vector3<f64>> = on_grains.map(|of| of.map(open)).sum();
+                let open = |pair_force: PairForce| pair_force.force.add_scalar(times * pair_force.open);
+                let sum: Option<Vector3<f64>> = on_grains.map(|pair_force| pair_force.map(open)).sum();
                 wall.force = sum.map(|sum| -sum);
             }
             if matches!(shift, Shift::None) {
@@ -241,7 +243,7 @@ impl<'s> Observer<'s> {
                 self.shifted_start = Some(seen.clone());
             }
             // Only contacts requested by probes are known, so snapshots do not contain them.
-            seen.contacts = Some(told);
+            seen.contacts = Some(contacts_seen);
             recorder.take(&self.sampled, Look::of_rigid(seen, 0.0));
         }
         Ok(())

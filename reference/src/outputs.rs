@@ -194,14 +194,14 @@ impl Outputs {
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
-            let told = table_step(&table, &outputs.sources.names).map(Clock::constant);
+            let from_table = table_step(&table, &outputs.sources.names).map(Clock::constant);
             outputs.ends = steps_of(&table, &outputs.sources.names);
             let time = time_column(&table, &outputs.sources.names).and_then(|at| table.values(at).next());
             if outputs.sources.from_first {
                 outputs.origin = Origin { step: outputs.ends[0], time };
             }
             outputs.table = Some(table);
-            outputs.set_clock(of_log, told)?;
+            outputs.set_clock(of_log, from_table)?;
             return Ok(outputs);
         }
         if let Some(table) = first_table(&outputs.sources.files)? {
@@ -256,12 +256,12 @@ impl Outputs {
             if let Some(time) = snapshot.time.filter(|_| snapshot.numbering == Numbering::Steps) {
                 survey.timed.push((snapshot.step, time));
             }
-            if let Some(said) = &snapshot.units
-                && survey.units.as_ref() != Some(said)
+            if let Some(units) = &snapshot.units
+                && survey.units.as_ref() != Some(units)
             {
                 // No scene says that its numbers have no dimensions.
-                check_units(&file.path, said, &["si"])?;
-                survey.units = Some(said.clone());
+                check_units(&file.path, units, &["si"])?;
+                survey.units = Some(units.clone());
             }
         }
         self.significant = self.significant.max(snapshot.digits().significant());
@@ -273,15 +273,16 @@ impl Outputs {
     fn set_clock(&mut self, of_log: Option<Clock>, of_files: Option<Clock>) -> Result<(), OutputError> {
         let [first, last] = self.ends;
         let given = self.sources.time_step;
-        for (told, tolerance) in [(&of_log, 0.0), (&of_files, 1e-3)] {
-            if let (Some(told), Some(given)) = (told, given)
-                && !told.is_constant(given, first, last, tolerance)
+        for (clock, tolerance) in [(&of_log, 0.0), (&of_files, 1e-3)] {
+            if let (Some(clock), Some(given)) = (clock, given)
+                && !clock.is_constant(given, first, last, tolerance)
             {
-                return Err(OutputError::OtherTimeStep { told: told.range(first, last), given });
+                return Err(OutputError::OtherTimeStep { told: clock.range(first, last), given });
             }
         }
         let of_both = of_log.as_ref().zip(of_files.as_ref());
-        if let Some([of_log, of_files]) = of_both.map(|(log, files)| [log, files].map(|of| of.between(first, last)))
+        if let Some([of_log, of_files]) =
+            of_both.map(|(log, files)| [log, files].map(|clock| clock.between(first, last)))
             && (of_log - of_files).abs() > 1e-3 * of_files
         {
             let log = self.sources.log.as_deref().map(shown).unwrap_or_default();

@@ -239,12 +239,12 @@ pub(crate) fn say_alive(input: &mut ChildStdin) {
 /// Returns the size of all files in a folder and its subfolders (B). Links are not followed.
 pub(crate) fn size(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let of = |entry: fs::DirEntry| match entry.metadata() {
+    let entry_size = |entry: fs::DirEntry| match entry.metadata() {
         Ok(found) if found.is_dir() => size(&entry.path()),
         Ok(found) => found.len(),
         Err(_) => 0,
     };
-    entries.map(of).sum()
+    entries.map(entry_size).sum()
 }
 
 /// Returns the last lines of standard error, or of standard output if there are none.

@@ -47,18 +47,18 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
         return Ok(Kind::Table);
     }
     // Without compression, both are the same bytes. Archives and containers are identified before decompression.
-    let told = |unpacked: &[u8]| {
+    let kind_of_bytes = |unpacked: &[u8]| {
         let beginning = Beginning { path, bytes: &bytes, unpacked };
         let is_it = |format: &&&Format| matches!(format.told_by, ToldBy::Beginning(is_it) if is_it(&beginning));
         FORMATS.iter().find(is_it).map(|format| Kind::Grains(format))
     };
-    if let Some(kind) = told(&[]) {
+    if let Some(kind) = kind_of_bytes(&[]) {
         return Ok(kind);
     }
     if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
     }
-    if let Some(kind) = told(&unpacked) {
+    if let Some(kind) = kind_of_bytes(&unpacked) {
         return Ok(kind);
     }
     let mut lines = LineReader::new(BufReader::new(opened()?), &name)?;

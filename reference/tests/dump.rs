@@ -77,10 +77,10 @@ fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-0.01 0.13 0.03\n0 0.08 -0.01\n\
                 0 0.06 0.0\nITEM: ATOMS id xs ys zs xu\n1 0.125 0.25 0.5 0.02\n";
     let snapshot = &all(text.as_bytes()).unwrap()[0];
-    let of = |name: &str, axis| snapshot.coordinate_named(name, axis).unwrap().of(snapshot.row(0));
-    assert!((of("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", of("xs", 0));
-    assert!((of("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (of("zs", 2) - 0.03).abs() < 1e-15);
-    assert_eq!(of("xu", 0), 0.02);
+    let coordinate = |name: &str, axis| snapshot.coordinate_named(name, axis).unwrap().of(snapshot.row(0));
+    assert!((coordinate("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", coordinate("xs", 0));
+    assert!((coordinate("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (coordinate("zs", 2) - 0.03).abs() < 1e-15);
+    assert_eq!(coordinate("xu", 0), 0.02);
     // Without the other scaled coordinate, the coordinate is unknown.
     let text = text.replace("xs ys zs xu", "xs a zs xu");
     assert!(all(text.as_bytes()).unwrap()[0].coordinate_named("xs", 0).is_none());
@@ -196,13 +196,13 @@ fn names_the_place_of_every_fault() {
         ("broken gzip", b"\x1f\x8b\x08\0\0\0\0\0\0\0zzzz".to_vec()),
         ("broken zstd", b"\x28\xb5\x2f\xfd\xff\xff\xff\xff".to_vec()),
     ];
-    let mut said = String::new();
+    let mut messages = String::new();
     for (name, bytes) in faults {
         let error = all(&bytes).map(|_| ()).unwrap_err().to_string();
         assert!(!error.contains('\n'));
-        writeln!(said, "{name:<27} {error}").unwrap();
+        writeln!(messages, "{name:<27} {error}").unwrap();
     }
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(messages);
 }
 
 #[test]

@@ -72,9 +72,9 @@ fn a_program_that_is_missing() {
 #[test]
 fn a_program_that_fails_says_its_last_lines() {
     let error = run("echo one; echo two; echo 'ERROR: Lost atoms'; printf '\\377 bytes\\n' >&2; exit 3").unwrap_err();
-    let said = error.to_string();
-    assert!(matches!(error, RunError::Program { failure: Failure::Crash(_), .. }), "{said}");
-    assert_eq!(said, "lammps failed: exit status: 3; it said last: one | two | ERROR: Lost atoms | \u{fffd} bytes");
+    let message = error.to_string();
+    assert!(matches!(error, RunError::Program { failure: Failure::Crash(_), .. }), "{message}");
+    assert_eq!(message, "lammps failed: exit status: 3; it said last: one | two | ERROR: Lost atoms | \u{fffd} bytes");
 }
 
 #[test]
@@ -124,12 +124,12 @@ fn a_program_that_does_its_run() {
 /// An incomplete run and a run with NaN must fail and must not be evaluated.
 #[test]
 fn a_program_that_leaves_less_than_its_run() {
-    let said = |text: &str| run(text).unwrap_err().to_string();
-    let short = said(&whole("1", "0 1"));
+    let message = |text: &str| run(text).unwrap_err().to_string();
+    let short = message(&whole("1", "0 1"));
     assert!(short.ends_with("expected samples to step 2, found the last at step 1"), "{short}");
-    let gap = said(&whole("1", "0 2"));
+    let gap = message(&whole("1", "0 2"));
     assert!(gap.ends_with("expected a sample at step 1, found step 2"), "{gap}");
-    let nan = said(&whole("nan", "0 1 2"));
+    let nan = message(&whole("nan", "0 1 2"));
     assert!(nan.ends_with("expected finite numbers, found disc.x = NaN at step 1"), "{nan}");
 }
 
@@ -150,10 +150,10 @@ fn a_program_that_fills_the_disk_is_ended() {
 #[test]
 fn a_program_ends_with_all_that_it_started() {
     let folder = tempfile::tempdir().unwrap();
-    let told = folder.path().join("told");
-    let text = format!("sleep 60 & echo $! > {}; wait", told.display());
+    let pid_file = folder.path().join("told");
+    let text = format!("sleep 60 & echo $! > {}; wait", pid_file.display());
     assert!(run_within(1, &text).unwrap_err().to_string().contains("was not done after 1 s"));
-    let child = fs::read_to_string(told).unwrap();
+    let child = fs::read_to_string(pid_file).unwrap();
     let is_there =
         || fs::read_to_string(format!("/proc/{}/stat", child.trim())).is_ok_and(|stat| !stat.contains(") Z"));
     (0..500).for_each(|_| {

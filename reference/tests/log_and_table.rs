@@ -57,8 +57,8 @@ fn reads_tables_of_any_separator() {
 
 #[test]
 fn names_the_place_of_every_fault() {
-    let mut said = String::new();
-    let mut say = |name: &str, error: String| writeln!(said, "{name:<22} {error}").unwrap();
+    let mut messages = String::new();
+    let mut say = |name: &str, error: String| writeln!(messages, "{name:<22} {error}").unwrap();
     for (name, text) in [
         ("empty", ""),
         ("no run", "units si\n"),
@@ -83,5 +83,5 @@ fn names_the_place_of_every_fault() {
     ] {
         say(name, parse_table(text.as_bytes(), "csv").unwrap_err().to_string());
     }
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(messages);
 }

@@ -10,9 +10,9 @@ use proptest::prelude::*;
 /// Returns the configuration with the number of files of each kind. It is 500, or 50 000 with `GRAINBENCH_LONG`,
 /// unless `PROPTEST_CASES` is set.
 fn config() -> ProptestConfig {
-    let said = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
+    let case_count = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
     let usual = if std::env::var_os("GRAINBENCH_LONG").is_some() { 50_000 } else { 500 };
-    ProptestConfig { cases: said.unwrap_or(usual), failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig { cases: case_count.unwrap_or(usual), failure_persistence: None, ..ProptestConfig::default() }
 }
 
 proptest! {

@@ -54,15 +54,15 @@ fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
     let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
         panic!("no courses")
     };
-    let said: Vec<String> = of_impact(&impact).into_iter().map(|said| said.to_string()).collect();
-    let has = |words: [&str; 2]| said.iter().any(|line| words.iter().all(|word| line.contains(word)));
-    assert!(has(["C, bed 4: velocity at the start: 0.00 m/s", "expected -5 m/s"]), "{said:#?}");
-    assert!(has(["D:", "numbers one higher"]), "{said:#?}");
-    assert!(has(["D:", "its bed 1 (held up by 400 µm)"]), "{said:#?}");
+    let findings: Vec<String> = of_impact(&impact).into_iter().map(|finding| finding.to_string()).collect();
+    let has = |words: [&str; 2]| findings.iter().any(|line| words.iter().all(|word| line.contains(word)));
+    assert!(has(["C, bed 4: velocity at the start: 0.00 m/s", "expected -5 m/s"]), "{findings:#?}");
+    assert!(has(["D:", "numbers one higher"]), "{findings:#?}");
+    assert!(has(["D:", "its bed 1 (held up by 400 µm)"]), "{findings:#?}");
     // The bed is 1.5 mm deeper. Half of the difference of its fingerprint, (4.0 − 1.8)/2 · 10⁻¹ mm, reduces this to
     // 1.4 mm.
-    assert!(has(["D, bed 1:", "1.4 mm below"]), "{said:#?}");
-    assert!(!said.iter().any(|line| line.starts_with("A") || line.starts_with("B")), "{said:#?}");
+    assert!(has(["D, bed 1:", "1.4 mm below"]), "{findings:#?}");
+    assert!(!findings.iter().any(|line| line.starts_with("A") || line.starts_with("B")), "{findings:#?}");
 }
 
 #[test]
@@ -91,34 +91,34 @@ fn a_clock_that_is_ahead_is_no_other_release() {
     let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &text).unwrap() else {
         panic!("no courses")
     };
-    let said: Vec<String> = of_impact(&impact).into_iter().map(|said| said.to_string()).collect();
+    let findings: Vec<String> = of_impact(&impact).into_iter().map(|finding| finding.to_string()).collect();
     let begins = ["R, bed 1: velocity at the start: 0.00 m/s", "L: clock ahead at its first sample: 4.95e-5 s"];
-    let is_said = |begin: &&str| said.iter().any(|line| line.starts_with(*begin));
-    assert!(begins.iter().all(is_said) && said.len() == begins.len(), "{said:#?}");
+    let is_said = |begin: &&str| findings.iter().any(|line| line.starts_with(*begin));
+    assert!(begins.iter().all(is_said) && findings.len() == begins.len(), "{findings:#?}");
 }
 
 #[test]
 fn says_which_frame_is_counted_twice() {
     let text = "t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n1,1,3,33,41\n2,4,6,66,80\n";
     let Some(Published { kind: Kind::Drum(drum), .. }) = published("a.csv", text).unwrap() else { panic!("no zones") };
-    let said = of_drum(&drum);
-    assert_eq!(said.len(), 1);
-    assert_eq!(said[0].about, "t = 2 s");
+    let findings = of_drum(&drum);
+    assert_eq!(findings.len(), 1);
+    assert_eq!(findings[0].about, "t = 2 s");
     assert_eq!(drum.in_zone_2(1.0), Some(33.0));
 }
 
 #[test]
 fn says_which_drum_is_off() {
-    let of = |name: &str, at: [u32; 2]| {
+    let drum_table = |name: &str, at: [u32; 2]| {
         let text = format!("t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n0.5,1,3,{},41\n1,4,6,{},81\n", at[0], at[1]);
         match published(name, &text).unwrap() {
             Some(Published { kind: Kind::Drum(drum), .. }) => drum,
             _ => panic!("no zones"),
         }
     };
-    let said = of_drums(&of("b.csv", [1050, 800]), ("a", &of("a.csv", [1000, 1000])));
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert_eq!(said[0].to_string(), "t = 1 s: M1 in zone 2: 800, -20.0 % of a's 1000; expected within 10 %");
+    let findings = of_drums(&drum_table("b.csv", [1050, 800]), ("a", &drum_table("a.csv", [1000, 1000])));
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    assert_eq!(findings[0].to_string(), "t = 1 s: M1 in zone 2: 800, -20.0 % of a's 1000; expected within 10 %");
 }
 
 #[test]

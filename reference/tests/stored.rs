@@ -158,12 +158,12 @@ fn drift_is_measured_in_units_of_what_moves() {
         values: vec![values.to_vec()],
     };
     let stored = series([100.0, 101.0, 104.0]);
-    let of = |rerun: &Series, last| drift(&stored, rerun, last)[0].clone();
-    assert_eq!(of(&stored, u64::MAX).error(), 0.0);
-    let found = of(&series([100.0, 101.0, 104.4]), u64::MAX);
+    let drift_of = |rerun: &Series, last| drift(&stored, rerun, last)[0].clone();
+    assert_eq!(drift_of(&stored, u64::MAX).error(), 0.0);
+    let found = drift_of(&series([100.0, 101.0, 104.4]), u64::MAX);
     assert!((found.error() - 0.1).abs() < 1e-12 && found.time == 2.0, "{found:?}");
-    assert_eq!(of(&series([100.0, 101.0, 104.4]), 10).error(), 0.0);
+    assert_eq!(drift_of(&series([100.0, 101.0, 104.4]), 10).error(), 0.0);
     let short = Series { step: vec![0, 10, 30], ..series([100.0, 101.0, 104.0]) };
-    assert!(of(&short, u64::MAX).error().is_nan());
-    assert!(of(&series([100.0, f64::NAN, 104.0]), u64::MAX).error().is_nan());
+    assert!(drift_of(&short, u64::MAX).error().is_nan());
+    assert!(drift_of(&series([100.0, f64::NAN, 104.0]), u64::MAX).error().is_nan());
 }

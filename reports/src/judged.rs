@@ -179,7 +179,7 @@ impl Judged {
 #[must_use]
 pub fn cases(judged: &[Judged]) -> Vec<&str> {
     let mut cases = Vec::new();
-    for row in judged.iter().flat_map(|of| &of.rows) {
+    for row in judged.iter().flat_map(|results| &results.rows) {
         if !cases.contains(&row.case.as_str()) {
             cases.push(&row.case);
         }

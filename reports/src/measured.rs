@@ -237,8 +237,9 @@ impl Stability {
     #[must_use]
     pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut names: Vec<&str> = Vec::new();
-        let told = study.limits.iter().map(|row| &row.solver).chain(study.hard.iter().map(|row| &row.solver));
-        for name in told {
+        let solvers_with_results =
+            study.limits.iter().map(|row| &row.solver).chain(study.hard.iter().map(|row| &row.solver));
+        for name in solvers_with_results {
             if !names.contains(&name.as_str()) {
                 names.push(name);
             }

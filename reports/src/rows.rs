@@ -15,8 +15,8 @@ pub const ROWS_PARQUET: &str = "rows.parquet";
 /// and `bound` holds the expectation in words.
 fn columns(report: &Report) -> Vec<(String, Values)> {
     let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
-    let words = |of: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| of(row)).collect());
-    let told = |of: &dyn Fn(&Verdict) -> Option<f64>| Values::Told(rows.iter().map(|row| of(row)).collect());
+    let words = |value: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| value(row)).collect());
+    let optional = |value: &dyn Fn(&Verdict) -> Option<f64>| Values::Told(rows.iter().map(|row| value(row)).collect());
     let bound = |row: &Verdict| match row.expected {
         Some(bound @ Expected::Bound(_)) => bound.to_string(),
         Some(Expected::Value(_)) | None => String::new(),
@@ -28,12 +28,12 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
         ("resolution", words(&|row| row.resolution.clone())),
         ("quantity", words(&|row| row.quantity.clone())),
         ("unit", words(&|row| row.unit.clone())),
-        ("value", told(&|row| row.value)),
-        ("expected", told(&|row| row.expected.and_then(Expected::value))),
+        ("value", optional(&|row| row.value)),
+        ("expected", optional(&|row| row.expected.and_then(Expected::value))),
         ("bound", words(&bound)),
-        ("scale", told(&|row| row.scale)),
-        ("error", told(&|row| row.error)),
-        ("allowed", told(&|row| Some(row.allowed))),
+        ("scale", optional(&|row| row.scale)),
+        ("error", optional(&|row| row.error)),
+        ("allowed", optional(&|row| Some(row.allowed))),
         ("tolerance", words(&|row| row.tolerance.word().to_owned())),
         ("because", words(&|row| row.because.clone())),
         ("evidence", words(&|row| row.evidence.word().to_owned())),

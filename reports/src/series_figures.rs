@@ -30,8 +30,8 @@ fn figure(records: &[Named<'_>], (quantity, unit): (&str, &str), window: (f64, f
     for named in records {
         let series = &named.record.series;
         for (at, column) in series.columns.iter().enumerate() {
-            let (probe, of) = parts(&column.name);
-            if (of, column.unit.as_str()) == (quantity, unit) {
+            let (probe, part) = parts(&column.name);
+            if (part, column.unit.as_str()) == (quantity, unit) {
                 let label =
                     [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
                 let points = points(series, at, window);

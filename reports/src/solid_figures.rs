@@ -246,7 +246,7 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
 /// Returns the contact forces as bars through the contacts; none if no contacts are reported.
 pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     let view = View::of(shots)?;
-    let told: Vec<Shot<'_>> = shots
+    let shots_with_contacts: Vec<Shot<'_>> = shots
         .iter()
         .filter(|shot| shot.frames.iter().all(|snapshot| snapshot.contacts.is_some()))
         .map(|shot| Shot { title: shot.title.clone(), frames: shot.frames.clone() })
@@ -254,7 +254,11 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     let strength = |contact: &grainbench_scene::record::ContactState| {
         (contact.shear_force - contact.normal * contact.normal_force).norm()
     };
-    let all = told.iter().flat_map(|shot| &shot.frames).flat_map(|snapshot| snapshot.told_contacts()).map(strength);
+    let all = shots_with_contacts
+        .iter()
+        .flat_map(|shot| &shot.frames)
+        .flat_map(|snapshot| snapshot.told_contacts())
+        .map(strength);
     let range = (0.0, readable(all.filter(|force| force.is_finite()).fold(0.0, f64::max)));
     let frame = |snapshot: &&Snapshot| {
         let mut canvas = Canvas::new(&view);
@@ -273,7 +277,7 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         canvas.walls(snapshot);
         canvas.raster()
     };
-    if told.iter().flat_map(|shot| &shot.frames).all(|snapshot| snapshot.told_contacts().is_empty()) {
+    if shots_with_contacts.iter().flat_map(|shot| &shot.frames).all(|snapshot| snapshot.told_contacts().is_empty()) {
         return None;
     }
     let missing: Vec<&str> = shots
@@ -286,7 +290,7 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         "forces",
         "Contact forces",
         &format!("Bars from centre to centre, as wide as the force of the contact is strong.{missing}"),
-        field(&view, &told, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
+        field(&view, &shots_with_contacts, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
     ))
 }
 
@@ -363,13 +367,13 @@ mod tests {
         let mut snapshot = snapshot();
         snapshot.contacts = None;
         assert!(forces(&[Shot { title: "dump".to_owned(), frames: vec![&snapshot] }]).is_none());
-        let told = Snapshot { contacts: sample::record().snapshots[0].contacts.clone(), ..snapshot.clone() };
-        if told.told_contacts().is_empty() {
+        let with_contacts = Snapshot { contacts: sample::record().snapshots[0].contacts.clone(), ..snapshot.clone() };
+        if with_contacts.told_contacts().is_empty() {
             return;
         }
         let both = [
             Shot { title: "dump".to_owned(), frames: vec![&snapshot] },
-            Shot { title: "dem".to_owned(), frames: vec![&told] },
+            Shot { title: "dem".to_owned(), frames: vec![&with_contacts] },
         ];
         let figure = forces(&both).unwrap();
         assert!(figure.caption.contains("Not told by dump"));

@@ -592,7 +592,7 @@ mod tests {
             });
             return done.unwrap();
         }
-        let mut told = [0; 3];
+        let mut outcomes = [0; 3];
         for before in ["nothing", "old", "old without a manifest"] {
             for operations in 1.. {
                 let folder = tempfile::tempdir().unwrap();
@@ -621,7 +621,7 @@ mod tests {
                 };
                 let standing = [found == was, is_new(&found), is_mixed];
                 assert!(standing.contains(&true), "{before}, {operations}: {found:?}");
-                (0..3).filter(|&which| standing[which]).for_each(|which| told[which] += 1);
+                (0..3).filter(|&which| standing[which]).for_each(|which| outcomes[which] += 1);
                 if ended.status.success() {
                     assert!(operations > 1 && !is_mixed, "{before}: nothing was cut off");
                     break;
@@ -637,6 +637,6 @@ mod tests {
                 assert_eq!((hidden(folder.path()), hidden(&target)), (0, 0), "{before}, {operations}: swept");
             }
         }
-        assert!(told.iter().all(|&times| times > 2), "{told:?}");
+        assert!(outcomes.iter().all(|&times| times > 2), "{outcomes:?}");
     }
 }

@@ -89,8 +89,8 @@ impl Column {
         Ok(Self { name: name.to_owned(), commit: provenance.commit, date: provenance.date, rows, runs })
     }
 
-    fn count(&self, of: Severity) -> u64 {
-        self.rows.values().filter(|outcome| outcome.severity() == of).count() as u64
+    fn count(&self, severity: Severity) -> u64 {
+        self.rows.values().filter(|outcome| outcome.severity() == severity).count() as u64
     }
 
     /// Returns the sum of a count over the runs that all reports contain.
@@ -119,9 +119,9 @@ pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), Save
 
 /// Adds the existing files of a directory.
 fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
-    let told = |source| crate::write::WriteError::new(folder, source);
-    for entry in fs::read_dir(folder).map_err(told)? {
-        let path = entry.map_err(told)?.path();
+    let write_error = |source| crate::write::WriteError::new(folder, source);
+    for entry in fs::read_dir(folder).map_err(write_error)? {
+        let path = entry.map_err(write_error)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if name.starts_with('.') || name == "manifest.json" {
             continue;
@@ -163,9 +163,9 @@ fn render(columns: &[Column]) -> Result<String, DrawError> {
 }
 
 fn verdicts(columns: &[Column]) -> Figure {
-    let curve = |(label, of): &(&str, Severity)| {
+    let curve = |(label, severity): &(&str, Severity)| {
         let points =
-            columns.iter().zip(1_u32..).map(|(column, at)| (f64::from(at), column.count(*of) as f64)).collect();
+            columns.iter().zip(1_u32..).map(|(column, at)| (f64::from(at), column.count(*severity) as f64)).collect();
         Curve::new(*label, Stroke::MarkedLine, points)
     };
     Figure::graph(
@@ -211,7 +211,7 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
             } }
             tbody { @for (at, column) in columns.iter().enumerate() { tr {
                 td { (at + 1) } td { (column.name) } td { (column.commit) } td { (column.date) }
-                @for (_, of) in KINDS { td { (number::count(column.count(of))) } }
+                @for (_, severity) in KINDS { td { (number::count(column.count(severity))) } }
                 @for name in COUNTED { td { (number::count(column.sum(name, shared))) } }
             } } }
         }

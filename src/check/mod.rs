@@ -424,9 +424,9 @@ struct Beside {
 const FEW: f64 = 0.1;
 
 /// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.
-fn judged_in_time(row: Verdict, of: &Compared<'_>, beside: &Beside, outputs: &Outputs) -> Verdict {
+fn judged_in_time(row: Verdict, compared: &Compared<'_>, beside: &Beside, outputs: &Outputs) -> Verdict {
     let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
-    let Some(decisive) = of.decisive(|sample| allowed(sample) + of.open) else {
+    let Some(decisive) = compared.decisive(|sample| allowed(sample) + compared.open) else {
         return row.left(Outcome::NoReference, "there is no sample");
     };
     let Decisive { sample, wide, first_outside, .. } = decisive;
@@ -439,9 +439,9 @@ fn judged_in_time(row: Verdict, of: &Compared<'_>, beside: &Beside, outputs: &Ou
         number::fraction(sample.halved),
         number::fraction(beside.floor)
     );
-    let row = widened(Verdict { allowed: allowed(&sample), because, ..row }, of.open, outputs);
-    let row = row.judged(&of.measured(&sample));
-    let count = of.samples.len();
+    let row = widened(Verdict { allowed: allowed(&sample), because, ..row }, compared.open, outputs);
+    let row = row.judged(&compared.measured(&sample));
+    let count = compared.samples.len();
     match (row.outcome, first_outside) {
         (Outcome::Fail, Some(time)) => {
             let how = if row.error.is_none() { "not a number (NaN) from" } else { "first outside at" };

@@ -135,11 +135,11 @@ pub(super) fn compare(
     let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, ours, is_compared, scale) else {
         return Vec::new();
     };
-    columns.into_iter().map(|of| column(&of, nearest, outputs, covered, row)).collect()
+    columns.into_iter().map(|compared| column(&compared, nearest, outputs, covered, row)).collect()
 }
 
 fn column(
-    of: &Compared<'_>,
+    compared: &Compared<'_>,
     nearest: &str,
     outputs: &Outputs,
     covered: &Covered,
@@ -147,12 +147,12 @@ fn column(
 ) -> Verdict {
     // Programs print forces with the velocities of the full step, half a step after those that moved the grains. For a
     // dashpot, this shift changes the force by twice the change from halving the step.
-    let times = if of.unit == "N" { 3.0 } else { 1.0 };
+    let times = if compared.unit == "N" { 3.0 } else { 1.0 };
     let row = Verdict {
         source: format!("{nearest}, the nearest of our conventions, at the file's time step"),
         tolerance: Made::Computed,
-        ..row(format!("{}, {}", of.name, covered.words()), of.unit)
+        ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };
     let beside = Beside { floor: FLOOR, times, conventions: "conventions" };
-    covered.all(of.samples.len(), super::judged_in_time(row, of, &beside, outputs))
+    covered.all(compared.samples.len(), super::judged_in_time(row, compared, &beside, outputs))
 }

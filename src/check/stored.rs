@@ -36,27 +36,33 @@ pub(super) fn compare(
     let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, &runs, is_compared, scale) else {
         return Vec::new();
     };
-    let rows = columns.into_iter().map(|of| {
-        let until = number::significant(of.samples.last().map_or(0.0, |sample| sample.time), 6);
+    let rows = columns.into_iter().map(|compared| {
+        let until = number::significant(compared.samples.last().map_or(0.0, |sample| sample.time), 6);
         let row = Verdict {
             source: nearest.to_owned(),
             tolerance: Made::Estimated,
-            ..row(format!("{}, worst of {} stored samples to t = {until} s", of.name, of.samples.len()), of.unit)
+            ..row(
+                format!("{}, worst of {} stored samples to t = {until} s", compared.name, compared.samples.len()),
+                compared.unit,
+            )
         };
         let beside = Beside { floor: FLOOR, times: SAFETY, conventions: "stored runs" };
-        covered.dense_in(of.samples.iter().map(|sample| sample.time), judged_in_time(row, &of, &beside, outputs))
+        covered.dense_in(
+            compared.samples.iter().map(|sample| sample.time),
+            judged_in_time(row, &compared, &beside, outputs),
+        )
     });
     rows.collect()
 }
 
 /// Returns the valid stored runs of the scene; outdated and damaged runs are skipped.
 fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
-    let of_case = stored::all().into_iter().filter(|of| of.case.name == case.name);
+    let of_case = stored::all().into_iter().filter(|stored_run| stored_run.case.name == case.name);
     of_case
-        .filter_map(|of| {
-            let scene = of.scene().ok().filter(|scene| *scene == candidate.scene)?;
-            let stored = StoredRun::load(&folder(of.program, &of.id)).ok()?;
-            let provenance = stored.is_of(&scene, &of.run.resolution).then(|| stored.provenance())?;
+        .filter_map(|stored_run| {
+            let scene = stored_run.scene().ok().filter(|scene| *scene == candidate.scene)?;
+            let stored = StoredRun::load(&folder(stored_run.program, &stored_run.id)).ok()?;
+            let provenance = stored.is_of(&scene, &stored_run.run.resolution).then(|| stored.provenance())?;
             Some(Peer {
                 name: format!("{}, stored run of {}", provenance.version, provenance.date),
                 series: until(stored.series(&scene), provenance.predictable_steps),

@@ -101,14 +101,14 @@ fn edition(solver: &str) -> Option<String> {
 
 /// Returns the default cache folder of the operating system.
 fn usual() -> Option<PathBuf> {
-    let of = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || of("HOME");
+    let path_variable = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let home = || path_variable("HOME");
     let base = if cfg!(windows) {
-        of("LOCALAPPDATA")
+        path_variable("LOCALAPPDATA")
     } else if cfg!(target_os = "macos") {
         home().map(|home| home.join("Library/Caches"))
     } else {
-        of("XDG_CACHE_HOME").or_else(|| home().map(|home| home.join(".cache")))
+        path_variable("XDG_CACHE_HOME").or_else(|| home().map(|home| home.join(".cache")))
     };
     base.map(|base| base.join("grainbench"))
 }

@@ -266,11 +266,12 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
 
 /// Returns the largest number of rows of a snapshot: 16 contacts per grain, and one per grain and wall.
 fn most_rows(subject: &Subject<'_>) -> Result<u64, Fault> {
-    let of = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
+    let row_count = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
     let most = match subject {
-        Subject::Scene { scene, .. } => of(scene),
+        Subject::Scene { scene, .. } => row_count(scene),
         Subject::Case { case, .. } => {
-            let scenes = case.variants()?.into_iter().map(|variant| case.variant(&variant).map(|scene| of(&scene)));
+            let scenes =
+                case.variants()?.into_iter().map(|variant| case.variant(&variant).map(|scene| row_count(&scene)));
             scenes.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or(0)
         }
     };

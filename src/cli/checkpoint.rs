@@ -26,7 +26,7 @@ impl Store {
         match fs::symlink_metadata(&self.path) {
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
             Err(error) => refused(&error.to_string()),
-            Ok(of) if !of.is_file() => refused("something that is no file"),
+            Ok(metadata) if !metadata.is_file() => refused("something that is no file"),
             Ok(_) => match Checkpoint::is_one(&self.path) {
                 Ok(true) => Ok(()),
                 Ok(false) => refused("another file"),

@@ -138,7 +138,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
         verdicts: shared(comparison, arguments.partial, &a, &b)
             .into_iter()
-            .chain(comparison.differences.iter().map(|of| row(of, comparison.key, arguments.tolerance, &a, &b)))
+            .chain(comparison.differences.iter().map(|difference| row(difference, comparison.key, arguments.tolerance, &a, &b)))
             .chain(lonely(comparison, &a, &b))
             .collect(),
         controls: Vec::new(),
@@ -211,8 +211,8 @@ fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
     names.map(row).collect()
 }
 
-fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
-    let open = of.open / of.scale;
+fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
+    let open = difference.open / difference.scale;
     let row = Verdict {
         solver: b.to_owned(),
         allowed: tolerance + open,
@@ -224,10 +224,10 @@ fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
         ),
         evidence: Evidence::OtherCode,
         source: a.to_owned(),
-        ..Verdict::open("compare", quantity(&of.name), "1")
+        ..Verdict::open("compare", quantity(&difference.name), "1")
     };
-    let first = of.course.iter().find(|sample| sample.beyond_digits / of.scale > tolerance);
-    let row = row.judged(&Measured::new(of.second, of.first, of.scale));
+    let first = difference.course.iter().find(|sample| sample.beyond_digits / difference.scale > tolerance);
+    let row = row.judged(&Measured::new(difference.second, difference.first, difference.scale));
     match (row.outcome, first) {
         (verdict::Outcome::Fail, Some(sample)) => {
             Verdict { detail: Some(format!("first outside at {} {}", key.word(), sample.at)), ..row }
@@ -241,15 +241,15 @@ fn row(of: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
 fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     const MOST: usize = 6;
     let mut curves = Vec::new();
-    for of in differences {
-        let points: Vec<(f64, f64)> = of
+    for difference in differences {
+        let points: Vec<(f64, f64)> = difference
             .course
             .iter()
             .filter(|sample| sample.off > 0.0 && sample.off.is_finite())
-            .map(|sample| (sample.at, sample.off / of.scale))
+            .map(|sample| (sample.at, sample.off / difference.scale))
             .collect();
         if !points.is_empty() && curves.len() < MOST {
-            curves.push(Curve { label: of.name.clone(), stroke: Stroke::Line, points });
+            curves.push(Curve { label: difference.name.clone(), stroke: Stroke::Line, points });
         }
     }
     let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };

@@ -42,9 +42,9 @@ pub(crate) fn man(arguments: &ManArguments, mut command: clap::Command) -> Outco
     };
     check_folder(out)?;
     let mut staged = StagedDir::new(out).map_err(Fault::writing)?;
-    for of in command.get_subcommands() {
-        let name = of.get_display_name().unwrap_or_else(|| of.get_name());
-        staged.write(format!("{name}.1"), page(of.clone())?).map_err(Fault::writing)?;
+    for subcommand in command.get_subcommands() {
+        let name = subcommand.get_display_name().unwrap_or_else(|| subcommand.get_name());
+        staged.write(format!("{name}.1"), page(subcommand.clone())?).map_err(Fault::writing)?;
     }
     staged.write("grainbench.1", page(command)?).map_err(Fault::writing)?;
     staged.commit().map_err(Fault::writing)?;

@@ -122,8 +122,8 @@ impl Earlier {
         }
         red.extend(other);
         if moved > 0 {
-            let of = number::count(now.len() as u64);
-            red.push(format!("{moved} of {of} rows ended as they did and have another value"));
+            let total = number::count(now.len() as u64);
+            red.push(format!("{moved} of {total} rows ended as they did and have another value"));
         }
         red
     }

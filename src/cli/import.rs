@@ -47,7 +47,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
     let start = start(&arguments.directory)?;
     check_writable(&arguments.out)?;
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-    let mut said = String::new();
+    let mut findings = String::new();
     let mut derived =
         format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
     for Published { name, kind } in &tables {
@@ -63,7 +63,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
             }
             Kind::Drum(drum) => zones(name, drum),
             Kind::Silo(silo) => {
-                said += &leaving(name, silo);
+                findings += &leaving(name, silo);
                 left(name, silo)
             }
         };
@@ -71,7 +71,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
         out.write(format!("{name}.svg"), svg.as_bytes()).map_err(Fault::writing)?;
     }
     let rows = of_all(&tables);
-    rows.iter().for_each(|row| said += &format!("{row}\n"));
+    rows.iter().for_each(|row| findings += &format!("{row}\n"));
     out.write("said.md", table_of(&rows).as_bytes()).map_err(Fault::writing)?;
     let pairs = pairs(&tables);
     derived += &numbers(&pairs);
@@ -89,9 +89,9 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
         out.write("drum.toml", DRUM_SCENE.as_bytes()).map_err(Fault::writing)?;
     }
     out.write("derived.toml", derived.as_bytes()).map_err(Fault::writing)?;
-    out.write("said.txt", said.as_bytes()).map_err(Fault::writing)?;
+    out.write("said.txt", findings.as_bytes()).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
-    print(&format!("{said}\n{}\n", arguments.out.display()))?;
+    print(&format!("{findings}\n{}\n", arguments.out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -134,24 +134,24 @@ fn values(impact: &Impact) -> String {
     let mut lines = String::new();
     let mut add = |key: &str, what: &str, unit: &str, spread: Option<Spread>| {
         let Some(Spread { mean, code, bed }) = spread else { return };
-        for (suffix, of, value) in [
+        for (suffix, statistic, value) in [
             ("", "mean between codes", mean),
             ("_code", "standard deviation between codes", code),
             ("_bed", "standard deviation between beds, pooled over codes", bed),
         ] {
             let _ = write!(
                 lines,
-                "\n[[value]]\nkey = \"{key}{suffix}\"\nwhat = \"{what}: {of} ({unit})\"\nvalue = {value:.4}\n"
+                "\n[[value]]\nkey = \"{key}{suffix}\"\nwhat = \"{what}: {statistic} ({unit})\"\nvalue = {value:.4}\n"
             );
         }
     };
     for time in TIMES {
-        let of = |impact: &Impact, course: &Course| Some(impact.height(course, f64::from(time) * 1e-3)? * 1e3);
+        let height_at = |impact: &Impact, course: &Course| Some(impact.height(course, f64::from(time) * 1e-3)? * 1e3);
         add(
             &format!("height_{time}"),
             &format!("height of the ball at {time} ms, 25 thousand grains"),
             "mm",
-            impact.spread(is_kept, of),
+            impact.spread(is_kept, height_at),
         );
     }
     let deepest = impact.spread(is_kept, |_, course| Some(Impact::deepest(course) * 1e3));
@@ -165,8 +165,8 @@ fn values(impact: &Impact) -> String {
 fn numbers(pairs: &[Quantity]) -> String {
     let mut lines = String::new();
     for Quantity { key, what, pair, .. } in pairs.iter().filter(|quantity| quantity.time.is_none()) {
-        let of = if pair.half.is_some() { "mean of LIGGGHTS and MUSEN" } else { "MUSEN alone" };
-        let _ = write!(lines, "\n[[value]]\nkey = \"{key}\"\nwhat = \"{what}: {of}\"\nvalue = {:.4}\n", pair.mean);
+        let basis = if pair.half.is_some() { "mean of LIGGGHTS and MUSEN" } else { "MUSEN alone" };
+        let _ = write!(lines, "\n[[value]]\nkey = \"{key}\"\nwhat = \"{what}: {basis}\"\nvalue = {:.4}\n", pair.mean);
         if let Some(half) = pair.half {
             let _ = write!(
                 lines,
@@ -180,8 +180,9 @@ fn numbers(pairs: &[Quantity]) -> String {
 
 /// Returns a time series of silo or drum as CSV lines: mean and half the difference.
 fn over_time(pairs: &[Quantity], name: &str) -> String {
-    let of = pairs.iter().filter(|quantity| quantity.key == name);
-    of.filter_map(|quantity| Some(format!("{:.1},{},{}\n", quantity.time?, quantity.pair.mean, quantity.pair.half?)))
+    let series = pairs.iter().filter(|quantity| quantity.key == name);
+    series
+        .filter_map(|quantity| Some(format!("{:.1},{},{}\n", quantity.time?, quantity.pair.mean, quantity.pair.half?)))
         .collect()
 }
 
@@ -189,8 +190,8 @@ fn over_time(pairs: &[Quantity], name: &str) -> String {
 fn course(impact: &Impact) -> String {
     let mut lines = "t,mean,code,bed\n".to_owned();
     for &time in &impact.times {
-        let of = impact.spread(is_kept, |impact, course| Some(impact.height(course, time)? * 1e3));
-        if let Some(Spread { mean, code, bed }) = of {
+        let height_spread = impact.spread(is_kept, |impact, course| Some(impact.height(course, time)? * 1e3));
+        if let Some(Spread { mean, code, bed }) = height_spread {
             let _ = writeln!(lines, "{time},{mean:.4},{code:.4},{bed:.4}");
         }
     }
@@ -206,8 +207,9 @@ fn heights(name: &str, impact: &Impact) -> Figure {
         }
     }
     let curve = |code: &&str| {
-        let of: Vec<&Course> = impact.courses.iter().filter(|course| course.code == **code).collect();
-        let mean = |row: usize| of.iter().map(|course| course.heights[row] * 1e3).sum::<f64>() / of.len() as f64;
+        let courses: Vec<&Course> = impact.courses.iter().filter(|course| course.code == **code).collect();
+        let mean =
+            |row: usize| courses.iter().map(|course| course.heights[row] * 1e3).sum::<f64>() / courses.len() as f64;
         let points = impact.times.iter().enumerate().map(|(row, time)| (time * 1e3, mean(row)));
         Curve::new(*code, Stroke::Line, points.collect())
     };
@@ -217,8 +219,8 @@ fn heights(name: &str, impact: &Impact) -> Figure {
 
 fn zones(name: &str, drum: &Drum) -> Figure {
     let names = ["M1, zone 1", "M2, zone 1", "M1, zone 2", "M2, zone 2"];
-    let curve = |(label, of): (&str, &Vec<f64>)| {
-        Curve::new(label, Stroke::Line, drum.times.iter().copied().zip(of.iter().copied()).collect())
+    let curve = |(label, counts): (&str, &Vec<f64>)| {
+        Curve::new(label, Stroke::Line, drum.times.iter().copied().zip(counts.iter().copied()).collect())
     };
     let axes = [Axis::linear("time (s)"), Axis::linear("grains")];
     Figure::graph(name, "Zones of the drum", "", axes, names.into_iter().zip(&drum.zones).map(curve).collect())
@@ -240,12 +242,12 @@ fn leaving(name: &str, silo: &Silo) -> String {
 fn alone(name: &str, impact: &Impact) -> String {
     let [course] = &impact.courses[..] else { return String::new() };
     let key = name.replace('-', "_");
-    let of = |time: u32| {
+    let height_value = |time: u32| {
         let height = impact.height(course, f64::from(time) * 1e-3 - impact.ahead(course))? * 1e3;
         Some(format!(
             "\n[[value]]\nkey = \"{key}_height_{time}\"\nwhat = \"height of the ball at {time} ms, {name} (mm)\"\n\
              value = {height:.4}\n"
         ))
     };
-    TIMES_ALONE.into_iter().filter_map(of).collect()
+    TIMES_ALONE.into_iter().filter_map(height_value).collect()
 }

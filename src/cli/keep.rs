@@ -16,7 +16,7 @@ const UNKNOWN: &str = "not told";
 
 /// Returns the only selected external solver.
 pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
-    let mut programs = selected.iter().map(|of| of.stranger.as_deref());
+    let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
         return Err(Fault::input("--update-stored: expected one program by its manifest, found a solver of ours"));
     };

@@ -93,7 +93,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
                 words: format!("{} ({} of {} runs)", one.id, place + 1, wanted.len()),
                 interrupt: &interrupt,
             };
-            let said = if !arguments.no_cache && one.is_there(&keeping.given) {
+            let outcome = if !arguments.no_cache && one.is_there(&keeping.given) {
                 "there"
             } else {
                 match keeping.done() {
@@ -109,7 +109,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
                     }
                 }
             };
-            lines.push_str(&format!("{said:6} {}/{}\n", case.name, one.id));
+            lines.push_str(&format!("{outcome:6} {}/{}\n", case.name, one.id));
             if interrupt.is_asked() {
                 print(&lines)?;
                 return Err(Fault::Broken("interrupted: what is done is kept".to_owned()));

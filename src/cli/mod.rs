@@ -122,13 +122,16 @@ const GROUPS: [(&str, &[&str]); 5] = [
 fn grouped() -> clap::Command {
     let command = Cli::command();
     let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
-    let line = |of: &clap::Command| format!("  {:<11}{}\n", of.get_name(), of.get_about().unwrap_or_default());
+    let line = |subcommand: &clap::Command| {
+        format!("  {:<11}{}\n", subcommand.get_name(), subcommand.get_about().unwrap_or_default())
+    };
     let mut text = String::new();
     for (task, names) in GROUPS {
         let lines = names.iter().filter_map(|name| command.find_subcommand(name)).map(line);
         text += &format!("{task}:\n{}\n", lines.collect::<String>());
     }
-    let others = command.get_subcommands().filter(|of| !of.is_hide_set() && !is_grouped(of.get_name()));
+    let others =
+        command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set() && !is_grouped(subcommand.get_name()));
     let others: String = others.map(line).collect();
     if !others.is_empty() {
         text += &format!("Others:\n{others}\n");

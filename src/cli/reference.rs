@@ -88,14 +88,14 @@ pub(crate) fn reference(command: &Command) -> Outcome {
 /// Returns the stored runs with the given names.
 fn named(ids: &[String]) -> Result<Vec<Reference>, Fault> {
     let all = stored::all();
-    let full = |of: &Reference| format!("{}/{}", of.program.name(), of.id);
-    let is = |of: &Reference, id: &str| id == of.id || id == of.case.name || id == full(of);
-    if let Some(unknown) = ids.iter().find(|id| !all.iter().any(|of| is(of, id))) {
+    let full = |reference: &Reference| format!("{}/{}", reference.program.name(), reference.id);
+    let is = |reference: &Reference, id: &str| id == reference.id || id == reference.case.name || id == full(reference);
+    if let Some(unknown) = ids.iter().find(|id| !all.iter().any(|reference| is(reference, id))) {
         let mut known: Vec<String> = all.iter().map(full).collect();
         known.sort_unstable();
         return Err(Fault::unknown("a stored run", unknown, known.iter().map(String::as_str)));
     }
-    Ok(all.into_iter().filter(|of| ids.is_empty() || ids.iter().any(|id| is(of, id))).collect())
+    Ok(all.into_iter().filter(|reference| ids.is_empty() || ids.iter().any(|id| is(reference, id))).collect())
 }
 
 fn build(arguments: &Build) -> Outcome {
@@ -105,15 +105,15 @@ fn build(arguments: &Build) -> Outcome {
     let progress = Progress::new(wanted.len() as u64, "runs");
     let mut lines = String::new();
     let mut failed = false;
-    for of in &wanted {
-        progress.now(&of.id);
+    for reference in &wanted {
+        progress.now(&reference.id);
         let target = match &arguments.out {
-            Some(directory) => directory.join(of.program.name()).join(&of.id),
-            None => folder(of.program, &of.id),
+            Some(directory) => directory.join(reference.program.name()).join(&reference.id),
+            None => folder(reference.program, &reference.id),
         };
-        let scene = of.scene()?;
-        let made = make(of.program, &of.id, &of.title(), &date, &scene, &of.run.resolution);
-        let said = match made {
+        let scene = reference.scene()?;
+        let made = make(reference.program, &reference.id, &reference.title(), &date, &scene, &reference.run.resolution);
+        let outcome = match made {
             Ok(made) => {
                 let mut out = StagedDir::new(&target).map_err(Fault::writing)?.without_manifest();
                 let bytes: usize = made.files.iter().map(|(_, bytes)| bytes.len()).sum();
@@ -121,19 +121,19 @@ fn build(arguments: &Build) -> Outcome {
                     out.write(name, bytes).map_err(Fault::writing)?;
                 }
                 out.commit().map_err(Fault::writing)?;
-                format!("made           {}/{} ({bytes} bytes)\n", of.program.name(), of.id)
+                format!("made           {}/{} ({bytes} bytes)\n", reference.program.name(), reference.id)
             }
             Err(error @ RunError::NotAvailable { .. }) => {
                 say("warning", &error.to_string());
-                format!("not-available  {}/{}\n", of.program.name(), of.id)
+                format!("not-available  {}/{}\n", reference.program.name(), reference.id)
             }
             Err(error) => {
                 failed = true;
-                say("error", &format!("{}: {error}", of.id));
-                format!("failed         {}/{}\n", of.program.name(), of.id)
+                say("error", &format!("{}: {error}", reference.id));
+                format!("failed         {}/{}\n", reference.program.name(), reference.id)
             }
         };
-        lines.push_str(&said);
+        lines.push_str(&outcome);
         progress.advance();
     }
     drop(progress);
@@ -195,9 +195,9 @@ fn verify(arguments: &Verify) -> Outcome {
     let start = Instant::now();
     let progress = Progress::new(wanted.len() as u64, "runs");
     let mut verdicts = Vec::new();
-    for of in &wanted {
-        progress.now(&of.id);
-        verdicts.extend(compare(of)?);
+    for reference in &wanted {
+        progress.now(&reference.id);
+        verdicts.extend(compare(reference)?);
         progress.advance();
     }
     drop(progress);

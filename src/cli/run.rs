@@ -163,7 +163,7 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
         }
         keep(program, &report)?;
     }
-    let is_mute = selected.iter().any(|of| of.stranger.is_some()) && says_nothing(&report);
+    let is_mute = selected.iter().any(|selection| selection.stranger.is_some()) && says_nothing(&report);
     if left > 0 {
         report.red_because.push(interrupted(left));
     }
@@ -220,7 +220,7 @@ pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
 
 /// Rejects a data directory if no claim uses it, if it contains none of the needed data, or if the data is damaged.
 fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault> {
-    let runs = selected.iter().flat_map(|of| &of.claims).flat_map(|claim| &claim.runs);
+    let runs = selected.iter().flat_map(|selection| &selection.claims).flat_map(|claim| &claim.runs);
     let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
     needed.sort_by_key(|data| data.name);
     needed.dedup_by_key(|data| data.name);
@@ -233,8 +233,8 @@ fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault>
     let is_wrong = |reason: &NotMade| matches!(reason, NotMade::Wrong(_));
     let any_is_wrong = not_made.iter().any(is_wrong);
     if any_is_wrong || not_made.len() == needed.len() {
-        let told = not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(NotMade::into_words);
-        return Err(Fault::input(format!("--data: {}", told.collect::<Vec<_>>().join("; "))));
+        let reasons = not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(NotMade::into_words);
+        return Err(Fault::input(format!("--data: {}", reasons.collect::<Vec<_>>().join("; "))));
     }
     Ok(())
 }

@@ -106,7 +106,9 @@ impl Arguments {
             ("--substeps", self.substeps.is_some(), Method::Rigid),
             ("--iterations", self.iterations.is_some(), Method::Rigid),
         ];
-        let Some((option, ..)) = given.into_iter().find(|(_, is_given, of)| *is_given && *of != method) else {
+        let Some((option, ..)) =
+            given.into_iter().find(|(_, is_given, option_method)| *is_given && *option_method != method)
+        else {
             return Ok(());
         };
         let own = match method {

@@ -99,7 +99,7 @@ impl Solvers for WithStrangers {
     }
 
     fn strangers(&self) -> Vec<Stranger> {
-        let of = |stranger: &Arc<Outside>| {
+        let description = |stranger: &Arc<Outside>| {
             let manifest = stranger.manifest();
             Stranger {
                 name: stranger.name(),
@@ -110,7 +110,7 @@ impl Solvers for WithStrangers {
                 stays: !manifest.worker.is_empty(),
             }
         };
-        self.strangers.iter().map(of).collect()
+        self.strangers.iter().map(description).collect()
     }
 
     fn edition(&self, name: &str) -> String {

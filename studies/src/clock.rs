@@ -11,13 +11,15 @@ pub fn cpu_seconds() -> f64 {
     #[cfg(unix)]
     {
         use nix::sys::resource::{UsageWho, getrusage};
-        let of = |who| {
+        let usage_seconds = |who| {
             getrusage(who).map(|usage| {
                 let seconds = |time: nix::sys::time::TimeVal| time.tv_sec() as f64 + 1e-6 * time.tv_usec() as f64;
                 seconds(usage.user_time()) + seconds(usage.system_time())
             })
         };
-        if let (Ok(own), Ok(children)) = (of(UsageWho::RUSAGE_SELF), of(UsageWho::RUSAGE_CHILDREN)) {
+        if let (Ok(own), Ok(children)) =
+            (usage_seconds(UsageWho::RUSAGE_SELF), usage_seconds(UsageWho::RUSAGE_CHILDREN))
+        {
             return own + children;
         }
     }

@@ -110,13 +110,13 @@ impl RunCache {
 
     /// Removes the least recently used files until the rest fits the maximum size.
     pub fn make_room(&self) {
-        let of = |entry: fs::DirEntry| {
+        let file_entry = |entry: fs::DirEntry| {
             let is_one = entry.path().extension().is_some_and(|ending| ending == ENDING);
             let about = entry.metadata().ok().filter(|_| is_one)?;
             Some((about.modified().unwrap_or(SystemTime::UNIX_EPOCH), about.len(), entry.path()))
         };
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries.filter_map(of).collect();
+        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries.filter_map(file_entry).collect();
         files.sort();
         let mut all: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
         for (_, bytes, path) in files {

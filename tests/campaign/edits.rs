@@ -63,8 +63,8 @@ fn an_edited_input_is_run_again() {
         assert!(text.contains(from), "{file}: {from}");
         fs::write(&path, text.replacen(from, to, 1)).unwrap();
         let stale = grainbench(here, &["collect", "p"]);
-        let said = "expected the file that was planned with, found another";
-        assert!(stale.code == Some(2) && stale.err.contains(said), "{file}: {}", stale.err);
+        let message = "expected the file that was planned with, found another";
+        assert!(stale.code == Some(2) && stale.err.contains(message), "{file}: {}", stale.err);
         ok(&grainbench(here, &[&["plan"], plan, &["--out", "p"]].concat()));
         let again = ok(&grainbench(here, &["work", "p"])).out.clone();
         assert!(again.contains(" 0 were finished"), "{file}: {again}");

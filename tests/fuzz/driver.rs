@@ -72,8 +72,8 @@ impl Lot {
     }
 
     /// Draws one of several values.
-    pub(crate) fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
-        &of[self.draw(0..of.len())]
+    pub(crate) fn one<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
+        &choices[self.draw(0..choices.len())]
     }
 }
 
@@ -186,7 +186,7 @@ fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
     let Range { seed, from, count } = range;
     let folder = tempfile::tempdir().expect("a place for notes");
     let notes = Notes::of(folder.path());
-    let said = folder.path().join("said");
+    let output = folder.path().join("said");
     let mut child = Command::new("sh")
         // On a system without this limit, there is no limit.
         .args(["-c", &format!("ulimit -v {MEMORY} 2>/dev/null; exec \"$@\""), "sh"])
@@ -196,7 +196,7 @@ fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
         .env(NOTES, folder.path())
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(fs::File::create(&said).expect("notes"))
+        .stderr(fs::File::create(&output).expect("notes"))
         .spawn()
         .expect("this program starts");
     let at = || fs::read_to_string(&notes.at).ok().and_then(|text| text.parse::<u64>().ok());
@@ -221,7 +221,7 @@ fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
         found.split('\u{1e}').map(str::trim_start).filter(|text| !text.is_empty()).map(str::to_owned).collect();
     let Some(ended) = ended else { return (found, from + count) };
     let number = at().unwrap_or(from);
-    let words = fs::read_to_string(&said).unwrap_or_default();
+    let words = fs::read_to_string(&output).unwrap_or_default();
     let tail: Vec<&str> = words.lines().rev().take(4).collect();
     let tail: Vec<&str> = tail.into_iter().rev().collect();
     let shown = fs::read_to_string(&notes.shown).unwrap_or_default();

@@ -299,12 +299,12 @@ fn of_report(lot: &mut Lot) -> Answer {
         Err(error) => return one_line_of(&path, &error),
         Ok(report) => report,
     };
-    let told = [
+    let errors = [
         page::render(&report).err().map(|error| error.to_string()),
         results_json(&report).err().map(|error| error.to_string()),
         junit_xml(&report).err().map(|error| error.to_string()),
     ];
-    for message in told.into_iter().flatten() {
+    for message in errors.into_iter().flatten() {
         expect(!message.chars().any(char::is_control), &format!("badly said: {message:?}"))?;
     }
     Ok(())

@@ -151,8 +151,8 @@ fn sound(record: &Record) -> Result<(), String> {
     }
     for snapshot in &record.snapshots {
         let grains = snapshot.grains.iter().all(|grain| {
-            let told = [grain.force, grain.torque].into_iter().flatten();
-            [grain.position, grain.velocity, grain.spin].into_iter().chain(told).all(|vector| finite(&vector))
+            let vectors = [grain.force, grain.torque].into_iter().flatten();
+            [grain.position, grain.velocity, grain.spin].into_iter().chain(vectors).all(|vector| finite(&vector))
         });
         let contacts = snapshot.told_contacts().iter().all(|contact| {
             finite(&contact.shear_force) && contact.overlap.is_finite() && contact.normal_force.is_finite()

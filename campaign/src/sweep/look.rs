@@ -243,16 +243,16 @@ impl Own {
         let numbers = Arc::new(Numbers::of(table, scene).map_err(Missing)?);
         let read = Read { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
         let (time, value) = read.one(seen.done)?;
-        let of = |formula: &Expression| {
+        let evaluated = |formula: &Expression| {
             formula.value(&|name| match name {
                 "t" => Some(time),
                 _ => (seen.factor)(name).or_else(|| numbers.get(name)),
             })
         };
-        let Some(expected) = self.equals.as_ref().map(of) else {
+        let Some(expected) = self.equals.as_ref().map(evaluated) else {
             return Ok(Looked { value: Some(value).filter(|value| value.is_finite()), ..Looked::default() });
         };
-        let own_scale = self.scale.as_ref().map(of);
+        let own_scale = self.scale.as_ref().map(evaluated);
         let scale = own_scale.unwrap_or(expected.abs());
         let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or_default(), Made::Judged);
         if own_scale.is_some_and(|scale| !is_scale(scale)) {

@@ -93,10 +93,10 @@ impl Formula {
         }
     }
 
-    fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> Value {
+    fn value(&self, factor_value: &dyn Fn(&str) -> Option<f64>) -> Value {
         match self {
-            Self::One(expression) => Value::from(expression.value(of)),
-            Self::List(list) => list.iter().map(|formula| formula.value(of)).collect(),
+            Self::One(expression) => Value::from(expression.value(factor_value)),
+            Self::List(list) => list.iter().map(|formula| formula.value(factor_value)).collect(),
         }
     }
 }
@@ -107,8 +107,8 @@ impl Sweep {
     /// # Errors
     /// The error names the file, the key, what was expected and what was found.
     pub fn read(path: &Path) -> Result<Self, Fault> {
-        let told = |(expected, found): (&'static str, String)| Fault::in_file(path, expected, found);
-        let text = written(path).map_err(told)?;
+        let input_fault = |(expected, found): (&'static str, String)| Fault::in_file(path, expected, found);
+        let text = written(path).map_err(input_fault)?;
         let file: File = toml::from_str(&text).map_err(|error| {
             let place = format!("{}:{}", path.display(), line_of(&text, &error).unwrap_or(1));
             Fault::expected(place, "the keys of a sweep", error.message().replace('\n', ", "))
@@ -323,18 +323,18 @@ impl Sweep {
         Ok((last.ok_or_else(missing)?, timings))
     }
 
-    /// Returns the report of finished tasks. `of` returns the result of a task index.
+    /// Returns the report of finished tasks. `output_of_point` returns the result of a task index.
     #[must_use]
     pub fn report(
         &self,
         names: &[String],
         provenance: grainbench_reports::Provenance,
-        of: impl Fn(usize) -> Option<Left>,
+        output_of_point: impl Fn(usize) -> Option<Left>,
     ) -> grainbench_reports::sweep::Sweep {
         let mut points = Vec::new();
         let mut missing = 0;
         for place in 0..self.points.len() * self.levels.len() {
-            let (Some(left), Some((point, level))) = (of(place), self.place(place)) else {
+            let (Some(left), Some((point, level))) = (output_of_point(place), self.place(place)) else {
                 missing += 1;
                 continue;
             };
@@ -381,9 +381,9 @@ fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     let Some(line) = &file.line else { return Ok(None) };
     let place = format!("{}: line", path.display());
     let Some(axes) = &file.map else { return Err(Fault::expected(place, "`map`, on which it is drawn", "none")) };
-    let told =
+    let formula_fault =
         |error| Fault::expected(format!("{place}.formula"), "arithmetic", format!("`{}`: {error}", line.formula));
-    let formula = Expression::read(&line.formula).map_err(told)?;
+    let formula = Expression::read(&line.formula).map_err(formula_fault)?;
     match formula.names().into_iter().find(|name| *name != axes[0]) {
         Some(unknown) => {
             let expected = format!("arithmetic over `{}`, the first factor of the map", axes[0]);
@@ -472,10 +472,10 @@ fn flat(table: &toml::Table) -> Vec<(String, toml::Value)> {
 /// Reads the scene text, with its case or, if it belongs to none, its file.
 fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>, Option<PathBuf>), Fault> {
     let is_file = Path::new(&file.scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    let told = |error: grainbench_scene::error::SceneError| Fault::Input(error.to_string());
+    let input_fault = |error: grainbench_scene::error::SceneError| Fault::Input(error.to_string());
     if is_file {
         let place = path.parent().unwrap_or(Path::new("")).join(&file.scene);
-        return Ok((SceneSource::read(&place).map_err(told)?, None, Some(place)));
+        return Ok((SceneSource::read(&place).map_err(input_fault)?, None, Some(place)));
     }
     let (name, variant) = file.scene.split_once('/').map_or((file.scene.as_str(), None), |(a, b)| (a, Some(b)));
     let Some(case) = CASES.iter().copied().find(|case| case.name == name) else {
@@ -490,7 +490,7 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
         Some(variant) => source.variant(variant),
     };
     // An unknown variant is reported now.
-    source.scene_file().map_err(told)?;
+    source.scene_file().map_err(input_fault)?;
     Ok((source, Some(case), None))
 }
 

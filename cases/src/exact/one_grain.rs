@@ -344,18 +344,18 @@ mod tests {
     /// The closed form of the undamped spring reaches nearly the bound of `compliance` and does not exceed it.
     #[test]
     fn an_undamped_spring_takes_no_more_than_compliance_says() {
-        let worst = |grain: OneGrain, of: fn(State) -> f64| {
+        let worst = |grain: OneGrain, component: fn(State) -> f64| {
             let used = |t: f64| {
-                let exact = of(grain.rigid_incline(t));
-                ((of(grain.compliant_incline(t)) - exact) / exact).abs() / of(grain.compliance(t))
+                let exact = component(grain.rigid_incline(t));
+                ((component(grain.compliant_incline(t)) - exact) / exact).abs() / component(grain.compliance(t))
             };
             (0..200).map(|at| used(1.0 + 1e-3 * f64::from(at))).fold(0.0, f64::max)
         };
         let rolls = worst(OneGrain { friction: 1.5, ..disc() }, |state| state.x);
         assert!((0.99..1.0 + 1e-9).contains(&rolls), "{rolls}");
         let all: [fn(State) -> f64; 3] = [|state| state.x, |state| state.v, |state| state.omega];
-        for of in all {
-            let slips = worst(disc(), of);
+        for component in all {
+            let slips = worst(disc(), component);
             assert!((0.4..1.0).contains(&slips), "{slips}");
         }
     }
@@ -409,7 +409,7 @@ mod tests {
         };
         let [early, late] = [200_000, 200_000].map(&mut after);
         let left = (early - late) / half / (grain.along / (1.0 + grain.inertia_factor));
-        let said = grain.rolled(rolling_friction, half);
-        assert!(left < said && left > 0.5 * said, "{left} of {said}");
+        let expected = grain.rolled(rolling_friction, half);
+        assert!(left < expected && left > 0.5 * expected, "{left} of {expected}");
     }
 }

@@ -65,11 +65,11 @@ impl PartialEq for Function {
 }
 
 const FUNCTIONS: [Function; 17] = {
-    const fn one(name: &'static str, of: fn(&[f64]) -> f64) -> Function {
-        Function { name, arguments: 1, of }
+    const fn one(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
+        Function { name, arguments: 1, of: function }
     }
-    const fn two(name: &'static str, of: fn(&[f64]) -> f64) -> Function {
-        Function { name, arguments: 2, of }
+    const fn two(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
+        Function { name, arguments: 2, of: function }
     }
     [
         one("sin", |x| x[0].sin()),
@@ -119,13 +119,13 @@ impl Expression {
     }
 
     /// Evaluates the expression with the values of its names. An unknown name gives NaN.
-    pub fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> f64 {
+    pub fn value(&self, variable: &dyn Fn(&str) -> Option<f64>) -> f64 {
         match self {
             Self::Number(value) => *value,
-            Self::Name(name) => of(name).unwrap_or(f64::NAN),
-            Self::Negative(inner) => -inner.value(of),
+            Self::Name(name) => variable(name).unwrap_or(f64::NAN),
+            Self::Negative(inner) => -inner.value(variable),
             Self::Of(operator, sides) => {
-                let [left, right] = [sides[0].value(of), sides[1].value(of)];
+                let [left, right] = [sides[0].value(variable), sides[1].value(variable)];
                 match operator {
                     Operator::Plus => left + right,
                     Operator::Minus => left - right,
@@ -135,7 +135,7 @@ impl Expression {
                 }
             }
             Self::Call(function, arguments) => {
-                (function.of)(&arguments.iter().map(|argument| argument.value(of)).collect::<Vec<_>>())
+                (function.of)(&arguments.iter().map(|argument| argument.value(variable)).collect::<Vec<_>>())
             }
         }
     }
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said_with_its_column() {
         let (deep, long) = ("(".repeat(1000), "1+".repeat(20_000) + "1");
-        for (text, said) in [
+        for (text, message) in [
             ("", "expected a number, a name or `(` at column 1, found the end"),
             ("1 +", "at column 4, found the end"),
             ("(1", "expected `)` at column 3"),
@@ -335,7 +335,7 @@ mod tests {
             (long.as_str(), "expected at most 1000 numbers and names, found more at column 2001"),
         ] {
             let found = value(text);
-            let is_said = found.as_ref().is_err_and(|error| error.contains(said));
+            let is_said = found.as_ref().is_err_and(|error| error.contains(message));
             assert!(is_said || (text == "µ" && found.is_ok_and(f64::is_nan)), "{text}: {:?}", value(text));
         }
     }

@@ -168,9 +168,9 @@ pub fn files(folder: &Path) -> Result<Vec<PathBuf>, NoCase> {
 
 /// Reads the text of a file.
 fn text_of(file: &Path) -> Result<String, NoCase> {
-    let told =
+    let case_error =
         |(expected, found)| NoCase { file: file.to_owned(), what: format!("expected {expected}, found {found}") };
-    written(file).map_err(told)
+    written(file).map_err(case_error)
 }
 
 #[cfg(test)]
@@ -187,8 +187,8 @@ mod tests {
             let claims = claims(case, text);
             let rows: Vec<_> = claims.iter().map(|claim| runner(case).judge(claim)).collect();
             assert_eq!(rows.iter().map(|row| row.outcome).collect::<Vec<_>>(), [Outcome::Fail], "{text}");
-            let said = rows[0].detail.clone().unwrap_or_default();
-            assert!(said.contains("claims.toml: "), "{said}");
+            let message = rows[0].detail.clone().unwrap_or_default();
+            assert!(message.contains("claims.toml: "), "{message}");
         }
     }
 }

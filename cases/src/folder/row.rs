@@ -193,9 +193,9 @@ fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, Wrong>
     }
 }
 
-fn check_names(key: &'static str, of: &Expression, numbers: &Numbers, with_time: bool) -> Result<(), Wrong> {
+fn check_names(key: &'static str, expression: &Expression, numbers: &Numbers, with_time: bool) -> Result<(), Wrong> {
     let known = |name: &&str| numbers.get(name).is_some() || (with_time && *name == TIME);
-    match of.names().into_iter().find(|name| !known(name)) {
+    match expression.names().into_iter().find(|name| !known(name)) {
         None => Ok(()),
         Some(unknown) => Err(wrong(key, "numbers of the scene, by their keys", quoted(unknown))),
     }

@@ -190,8 +190,11 @@ mod tests {
         let (along, r) = ([x + 1.0, y], (x + 1.0).hypot(y));
         let radial = -2.0 * along[0] / (r * r);
         let e = along.map(|part| part / r);
-        let of = |i: usize, j: usize, rest: f64| radial * e[i] * e[j] + rest;
-        [[of(0, 0, 0.5 + 0.5 * x), of(0, 1, 0.5 * y)], [of(1, 0, 0.5 * y), of(1, 1, 0.5 - 0.5 * x)]]
+        let component = |i: usize, j: usize, rest: f64| radial * e[i] * e[j] + rest;
+        [
+            [component(0, 0, 0.5 + 0.5 * x), component(0, 1, 0.5 * y)],
+            [component(1, 0, 0.5 * y), component(1, 1, 0.5 - 0.5 * x)],
+        ]
     }
 
     /// Checks that the rim is free of traction except at the contact. The strain along the diameter and Johnson's

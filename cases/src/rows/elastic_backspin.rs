@@ -23,7 +23,7 @@ pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
     if states.is_empty() {
         return Err(Missing("samples after .5 s".to_owned()));
     }
-    let mean = |of: &dyn Fn(usize) -> f64| (0..states.len()).map(of).sum::<f64>() / states.len() as f64;
+    let mean = |value: &dyn Fn(usize) -> f64| (0..states.len()).map(value).sum::<f64>() / states.len() as f64;
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 

@@ -240,18 +240,18 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
 /// Claims damped motion against the rigid solution.
 fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
-    let of = |quantity: &str, unit, pick: fn(State) -> f64| {
+    let rigid_claim = |quantity: &str, unit, pick: fn(State) -> f64| {
         claim(quantity, unit)
             .of(at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))
             .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
             .within(computed(pick(allowed), if slope.sticks { SWINGS } else { LATE }))
             .refuses(telling(slope))
     };
-    let mut claims = vec![of("displacement at 1 s", "m", |state| state.x)];
+    let mut claims = vec![rigid_claim("displacement at 1 s", "m", |state| state.x)];
     // Velocity and spin of a rolling grain have a tighter claim in `final_motion`, to rounding.
     if !slope.sticks {
-        claims.push(of("velocity at 1 s", "m/s", |state| state.v));
-        claims.push(of("spin at 1 s", "rad/s", |state| state.omega));
+        claims.push(rigid_claim("velocity at 1 s", "m/s", |state| state.v));
+        claims.push(rigid_claim("spin at 1 s", "rad/s", |state| state.omega));
     }
     claims
 }
@@ -289,7 +289,7 @@ fn telling(slope: Slope) -> Control {
 /// solver-independent.
 fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, NEARLY_RIGID);
-    let of = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
+    let near_rigid_claims = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
         let tolerance = if slope.sticks {
             computed(
                 NEARLY_RIGID,
@@ -307,9 +307,9 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
             .at_other_numbers(quantity[1], ELSEWHERE, move |scene| pick(elsewhere(scene)))
     };
     vec![
-        of(["displacement", "displacement at the end"], "m", |state| state.x),
-        of(["velocity", "velocity at the end"], "m/s", |state| state.v),
-        of(["spin", "spin at the end"], "rad/s", |state| state.omega),
+        near_rigid_claims(["displacement", "displacement at the end"], "m", |state| state.x),
+        near_rigid_claims(["velocity", "velocity at the end"], "m/s", |state| state.v),
+        near_rigid_claims(["spin", "spin at the end"], "rad/s", |state| state.omega),
     ]
 }
 
@@ -340,7 +340,7 @@ fn elsewhere(scene: &Scene) -> State {
 
 /// Claims rolling at the end: v and ΩR to rounding, with the torque arm of each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
-    let of = |solver: &'static str, quantity: &str, of_spin: bool| {
+    let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
             .of(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
@@ -359,10 +359,10 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
             })
     };
     vec![
-        of("dem:lammps", "final velocity, rolling, arm R", false),
-        of("dem:lammps", "final ΩR, rolling, arm R", true),
-        of("dem:liggghts", "final velocity, rolling, arm R − overlap/2", false),
-        of("dem:liggghts", "final Ωa, rolling, arm a = R − overlap/2", true),
+        speed_claim("dem:lammps", "final velocity, rolling, arm R", false),
+        speed_claim("dem:lammps", "final ΩR, rolling, arm R", true),
+        speed_claim("dem:liggghts", "final velocity, rolling, arm R − overlap/2", false),
+        speed_claim("dem:liggghts", "final Ωa, rolling, arm a = R − overlap/2", true),
     ]
 }
 
@@ -382,7 +382,9 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
             thin.iter().map(|(t, s)| (*t, s.x)).collect(),
         ));
         spin.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
-        let exact = |of: &dyn Fn(f64) -> f64| (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, of(t))).collect();
+        let exact = |exact_value: &dyn Fn(f64) -> f64| {
+            (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, exact_value(t))).collect()
+        };
         displacement.push(curve(
             format!("{}, rigid", slope.variant),
             Stroke::Dashed,

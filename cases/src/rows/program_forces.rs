@@ -24,13 +24,13 @@ pub fn forces(
     columns: &'static [&'static str],
     unit: impl Fn(&Scene, f64) -> f64 + Clone + Send + Sync + 'static,
 ) -> Vec<Claim> {
-    let of = |pair: [&'static str; 2]| {
+    let force_row = |pair: [&'static str; 2]| {
         let unit = unit.clone();
         row("force at contacts, worst", "N", rounding(1.0, BECAUSE), pair.map(&runs), stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })
     };
-    PAIRS.map(of).to_vec()
+    PAIRS.map(force_row).to_vec()
 }
 
 /// Claims the forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves
@@ -46,7 +46,7 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Toler
         let stiffness = scene.laws[0].map_or(0.0, |law| law.normal_stiffness());
         stiffness * phase.velocity.norm() * phase.stop.seconds(time_step)
     };
-    let of = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
+    let force_row = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
         let runs = pair.map(|solver| {
             let run = Run::new(variant, solver, resolution);
             if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
@@ -56,8 +56,8 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Toler
         })
     };
     vec![
-        of(PAIRS[0], "forces between discs, worst", BETWEEN),
-        of(PAIRS[1], "forces between discs, worst", BETWEEN),
-        of(PAIRS[0], "forces at walls, worst", AT_WALLS),
+        force_row(PAIRS[0], "forces between discs, worst", BETWEEN),
+        force_row(PAIRS[1], "forces between discs, worst", BETWEEN),
+        force_row(PAIRS[0], "forces at walls, worst", AT_WALLS),
     ]
 }

@@ -19,11 +19,11 @@ pub(crate) fn row(
     tolerance: Tolerance,
     runs: [Run; 2],
     control: Control,
-    of: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
+    measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
 ) -> Claim {
     claim(format!("{quantity}, against {}", runs[1].solver), unit)
         .of_all(runs)
-        .agrees(Source::Program, of)
+        .agrees(Source::Program, measure)
         .within(tolerance)
         .refuses(control)
 }
@@ -147,7 +147,7 @@ pub fn turning_walls(
         scene.global_damping = 0.0;
         scene.change_laws(|law| law.stiffness_damping = 0.0);
     }
-    let of = |pair: [&'static str; 2]| {
+    let wall_row = |pair: [&'static str; 2]| {
         let runs = pair.map(|solver| {
             let run = Run::new(variant, solver, resolution);
             if pair[1] == "liggghts" {
@@ -167,7 +167,7 @@ pub fn turning_walls(
             worst(done, &NINE_DISCS, travel(&done[0]))
         })
     };
-    PAIRS.map(of).to_vec()
+    PAIRS.map(wall_row).to_vec()
 }
 
 /// Claims the velocity of a Hertz sphere over an impact, and its spin if `turns`.
@@ -200,7 +200,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
 /// Claims a grain that rolls to rest on a flat plane, in units of R. `ahead` is the tolerance for LIGGGHTS.
 #[must_use]
 pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Vec<Claim> {
-    let of = |pair: [&'static str; 2]| {
+    let rolling_rows = |pair: [&'static str; 2]| {
         let same = rounding(1.0, "the same cycle; in units of R");
         let allowed = if pair[1] == "lammps" { same } else { ahead.clone() };
         let runs = pair.map(|solver| Run::new(variant, solver, step));
@@ -209,7 +209,7 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
         });
         row("position over 1 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
     };
-    PAIRS.map(of).to_vec()
+    PAIRS.map(rolling_rows).to_vec()
 }
 
 /// Claims a grain that starts from rest on a slope, with a damped rolling spring. `tilted` returns the run of each

@@ -69,7 +69,7 @@ fn wrong(row: Row) -> Control {
 
 /// Claims displacement, velocity and spin at 1 s against the rigid solution.
 fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
-    let of = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
+    let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
             .of(run(row.variant, DEFAULT))
             .equals(RIGID_SOURCE, move |done| {
@@ -82,9 +82,9 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
     };
     let [x, v, omega] = allowed;
     vec![
-        of("displacement at 1 s", "m", x, x_control, |state| state.x),
-        of("velocity at 1 s", "m/s", v, wrong(row), |state| state.v),
-        of("spin at 1 s", "rad/s", omega, wrong(row), |state| state.omega),
+        rigid_claim("displacement at 1 s", "m", x, x_control, |state| state.x),
+        rigid_claim("velocity at 1 s", "m/s", v, wrong(row), |state| state.v),
+        rigid_claim("spin at 1 s", "rad/s", omega, wrong(row), |state| state.omega),
     ]
 }
 

@@ -171,8 +171,9 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
             .follows(
                 SOURCE,
                 |done, t| {
-                    let of = oscillators(&done.scene)[1];
-                    OneGrain::of(&done.scene).along / (of.frequency * of.frequency) * of.approach(t)
+                    let oscillator = oscillators(&done.scene)[1];
+                    OneGrain::of(&done.scene).along / (oscillator.frequency * oscillator.frequency)
+                        * oscillator.approach(t)
                 },
                 |done| peak(&done.scene),
             )

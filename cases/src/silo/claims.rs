@@ -137,35 +137,35 @@ fn angle_of_windows(done: &Done, flow: Flow) -> Result<f64, Missing> {
 impl Silo {
     /// Returns the claims on every silo.
     pub(crate) fn of_every(&self) -> Vec<Claim> {
-        let of = self.numbers;
+        let numbers = self.numbers;
         // For pushed silos, the difference between ten packings exceeds the effect of halving the friction.
         let of_sine = match self.flow {
             Flow::Drained => half_the_friction(),
             Flow::Pushed => no_springs(),
         };
         let mut all = vec![
-            self.equals(SINE, of.sine, of_sine, sine),
-            self.equals(PACKING, of.packing, no_springs(), packing),
+            self.equals(SINE, numbers.sine, of_sine, sine),
+            self.equals(PACKING, numbers.packing, no_springs(), packing),
             self.range_of_friction(),
             self.beginning(),
         ];
         let beside: [([&str; 2], Quantity); 2] = [(SINE, sine), (PACKING, packing)];
-        all.extend(beside.map(|(name, of)| self.beside_lammps(name, of)));
+        all.extend(beside.map(|(name, quantity)| self.beside_lammps(name, quantity)));
         all
     }
 
     /// Returns the claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over
     /// the inertial number.
-    pub(crate) fn of_drains(&self, of: &Drained) -> Vec<Claim> {
+    pub(crate) fn of_drains(&self, numbers: &Drained) -> Vec<Claim> {
         let mut all = vec![
-            self.equals(PLATEAU, of.plateau, no_springs(), plateau),
-            self.equals(ONSET, of.onset, no_springs(), onset),
+            self.equals(PLATEAU, numbers.plateau, no_springs(), plateau),
+            self.equals(ONSET, numbers.onset, no_springs(), onset),
         ];
-        all.extend(self.over_inertia(of.bins));
-        all.extend(self.correlations(of.correlations));
-        all.extend(self.coaxiality(of.angles));
+        all.extend(self.over_inertia(numbers.bins));
+        all.extend(self.correlations(numbers.correlations));
+        all.extend(self.coaxiality(numbers.angles));
         let beside: [([&str; 2], Quantity); 2] = [(PLATEAU, plateau), (ONSET, onset)];
-        all.extend(beside.map(|(name, of)| self.beside_lammps(name, of)));
+        all.extend(beside.map(|(name, quantity)| self.beside_lammps(name, quantity)));
         all
     }
 
@@ -182,7 +182,7 @@ impl Silo {
         [quantity, unit]: [&'static str; 2],
         cited: Cited,
         control: Control,
-        of: Quantity,
+        read: Quantity,
     ) -> Claim {
         let flow = self.flow;
         let (scale, in_units) = if unit == "deg" { (45.0, "of 45°") } else { (cited.value.abs(), "of the value") };
@@ -190,7 +190,7 @@ impl Silo {
         let because = format!("{PACKINGS}, and what the prototype says of its own mean; in units {in_units}");
         claim(quantity, unit)
             .of(self.run.clone())
-            .equals_cited(cited, scale, move |done| of(&done[0], flow))
+            .equals_cited(cited, scale, move |done| read(&done[0], flow))
             .within(computed(allowed, because))
             .refuses(control)
     }
@@ -297,7 +297,7 @@ impl Silo {
     }
 
     /// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same grains.
-    pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], of: Quantity) -> Claim {
+    pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
         let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
         let control = Control::ours("tangential springs a millionth as stiff in ours", |scene| {
@@ -307,7 +307,7 @@ impl Silo {
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
         let allowed = computed(apart / mean, format!("{because}; in units of the mean of ten packings"));
         row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
-            Ok(Measured::new(of(&done[0], flow)?, of(&done[1], flow)?, mean))
+            Ok(Measured::new(read(&done[0], flow)?, read(&done[1], flow)?, mean))
         })
     }
 

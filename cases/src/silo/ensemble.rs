@@ -127,7 +127,8 @@ pub(crate) fn of_rates(done: &Done) -> Result<f64, Missing> {
 fn correlation(pairs: &[[f64; 2]]) -> f64 {
     let count = pairs.len() as f64;
     let [x, y] = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>() / count);
-    let sum = |of: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|pair| of(pair[0] - x, pair[1] - y)).sum::<f64>();
+    let sum =
+        |product: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|pair| product(pair[0] - x, pair[1] - y)).sum::<f64>();
     sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
 }
 
@@ -243,11 +244,11 @@ pub(crate) fn before_dilation(done: &Done) -> Result<Vec<f64>, Missing> {
             None => courses.push((tracer, vec![[packing, sine]])),
         }
     }
-    let of = |(_, course): &(f64, Vec<[f64; 2]>)| {
+    let peak_sine = |(_, course): &(f64, Vec<[f64; 2]>)| {
         let dilated = course.iter().position(|[packing, _]| *packing < course[0][0] - DILATION)?;
         Some(course[..dilated].iter().map(|[_, sine]| *sine).fold(0.0, f64::max))
     };
-    let found: Vec<f64> = courses.iter().filter_map(of).collect();
+    let found: Vec<f64> = courses.iter().filter_map(peak_sine).collect();
     if found.len() < FEWEST_TRACERS { Err(Missing(format!("{FEWEST_TRACERS} tracers that dilate"))) } else { Ok(found) }
 }
 

@@ -53,8 +53,8 @@ fn courses(done: &Done, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     tracers.dedup();
     let (mut lines, lowest) = (Vec::new(), ensemble::lowest(done));
     for tracer in tracers {
-        let of = |row: &&[f64; 4]| row[0] == tracer && row[1] > lowest;
-        let course: Vec<[f64; 2]> = all.iter().filter(of).map(|row| [row[2], row[3]]).collect();
+        let is_strained = |row: &&[f64; 4]| row[0] == tracer && row[1] > lowest;
+        let course: Vec<[f64; 2]> = all.iter().filter(is_strained).map(|row| [row[2], row[3]]).collect();
         let mean =
             |some: &[[f64; 2]]| [0, 1].map(|axis| some.iter().map(|at| at[axis]).sum::<f64>() / some.len() as f64);
         let smooth: Vec<[f64; 2]> = course.chunks(SMOOTH).map(mean).collect();

@@ -61,8 +61,8 @@ pub(super) fn axes(blocks: &[Element], masked: &[Masked], grid: &Grid) -> Table 
 
 /// Returns the axes of a stress, each of length √|principal value of the deviator|.
 fn long(stress: &Matrix3<f64>) -> [Vector3<f64>; 3] {
-    let of = principal(&deviator(stress, 3), 3);
-    [0, 1, 2].map(|number| of.axes[number] * of.values[number].abs().sqrt())
+    let deviatoric = principal(&deviator(stress, 3), 3);
+    [0, 1, 2].map(|number| deviatoric.axes[number] * deviatoric.values[number].abs().sqrt())
 }
 
 /// Returns the contacts between grains whose contact point is in a part of the silo.

@@ -70,15 +70,16 @@ const PROTOTYPE: f64 = 14.0;
 const STRAINED: &str = "after 14 τ, the end of the prototype, the packing fraction of slow elements is 0.009 to 0.018 lower: \
                         they have a larger strain, and φ is a function of |I₀| only for elements in steady shear";
 /// Claims φ over |I₀| up to a time against the prototype, in each bin of the prototype.
-fn over_inertia(of: Quantity, bins: &'static [Cited], until: f64, control: Control) -> Claim {
-    of.equals(bins[0].source(), move |done| {
-        let cited = bins.iter().map(|cited| cited.value).enumerate();
-        let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, cited)?;
-        let [found, expected] = ensemble::worst(&pairs);
-        Ok(Measured::new(found, expected, 1.0))
-    })
-    .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
-    .refuses(control)
+fn over_inertia(quantity: Quantity, bins: &'static [Cited], until: f64, control: Control) -> Claim {
+    quantity
+        .equals(bins[0].source(), move |done| {
+            let cited = bins.iter().map(|cited| cited.value).enumerate();
+            let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, cited)?;
+            let [found, expected] = ensemble::worst(&pairs);
+            Ok(Measured::new(found, expected, 1.0))
+        })
+        .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+        .refuses(control)
 }
 
 /// Returns a tolerance that was required beforehand.
@@ -125,13 +126,13 @@ impl PaperSize {
         // Few blocks of a pushed silo flow throughout twenty frames.
         let drained = self.drained.iter();
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
-        all.extend(drained.flat_map(|of| self.of_drains(of)));
+        all.extend(drained.flat_map(|numbers| self.of_drains(numbers)));
         all
     }
 
     /// Returns the claims on a draining silo.
-    fn of_drains(&self, of: &Drained) -> Vec<Claim> {
-        let (bins, over_the_slit) = self.bins.split_at(of.bins);
+    fn of_drains(&self, numbers: &Drained) -> Vec<Claim> {
+        let (bins, over_the_slit) = self.bins.split_at(numbers.bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
         let one = |quantity: &str| self.claim(quantity, "1");
         let density = Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one);
@@ -153,11 +154,11 @@ impl PaperSize {
                 Control::misread("what comes after 14 τ left out", ensemble::without_the_end),
             ),
             one("packing fraction of tracers strained by more than .4")
-                .equals_cited(of.plateau, 1.0, |done| ensemble::plateau(&done[0]))
+                .equals_cited(numbers.plateau, 1.0, |done| ensemble::plateau(&done[0]))
                 .within(asked(0.008, TENTH))
                 .refuses(larger()),
             one("largest sin φ of tracers before they dilate, median")
-                .equals_cited(of.onset, 1.0, |done| ensemble::onset(&done[0]))
+                .equals_cited(numbers.onset, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
                 .refuses(tangent()),
         ];
@@ -174,9 +175,9 @@ impl PaperSize {
                     .refuses(larger()),
             );
         }
-        if let Some(other) = of.beside {
+        if let Some(other) = numbers.beside {
             all.push(collapse::of_drains(self.run(), other, ["the wide silo", SUFFIX]));
-            all.push(collapse::of_strained(self.run(), of.others, SUFFIX));
+            all.push(collapse::of_strained(self.run(), numbers.others, SUFFIX));
         }
         all
     }
@@ -185,8 +186,8 @@ impl PaperSize {
     pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
         let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
         let mut all = super::figures::all(&done, self.flow, self.bins);
-        if let Some(of) = &self.drained {
-            all.extend(flows::figures(&done, self.label, of.others));
+        if let Some(numbers) = &self.drained {
+            all.extend(flows::figures(&done, self.label, numbers.others));
         }
         let named = |figure: Figure| Figure {
             name: format!("{}-paper", figure.name),

@@ -47,11 +47,11 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     // Whole blocks of two elements, starting on the floor. One more block gives the surface a cell above it.
     let height = ((top / (2.0 * ELEMENT)).ceil() + 1.0) * 2.0 * ELEMENT;
     let corners = (Vector3::new(width[0], depth[0], 0.0), Vector3::new(width[1], depth[1], height));
-    let of = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
-    let blocks = of(2.0 * ELEMENT);
+    let grid_of_size = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
+    let blocks = grid_of_size(2.0 * ELEMENT);
     let frames = scene.snapshots as usize + 2;
-    let mut course = Course::new(of(ELEMENT), Dimension::Three, PLANE, MASKS, false);
-    course.trails = Some(Trails::new(of(2.0 * ELEMENT)));
+    let mut course = Course::new(grid_of_size(ELEMENT), Dimension::Three, PLANE, MASKS, false);
+    course.trails = Some(Trails::new(grid_of_size(2.0 * ELEMENT)));
     Box::new(Silo {
         course,
         every_blocks: (blocks.cells() * frames).div_ceil(MOST_ROWS).max(1),
@@ -182,13 +182,13 @@ impl Silo {
             }
         }
         let [left, right] = pressures;
-        let told = left + right > 0.0;
+        let is_known = left + right > 0.0;
         self.whole.push(&[
             Some(frame.time),
             Some(above as f64),
             (bulk > 0.0).then(|| filled / bulk),
-            told.then(|| shear / (left + right)),
-            told.then(|| right / left),
+            is_known.then(|| shear / (left + right)),
+            is_known.then(|| right / left),
         ]);
     }
 
@@ -271,8 +271,8 @@ fn is_side(grid: &Grid, cell: usize) -> bool {
 fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
     let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
     let count = all.len() as f64;
-    let sum = |of: &dyn Fn(&Element) -> Option<Matrix3<f64>>| -> Option<Matrix3<f64>> {
-        all.iter().try_fold(Matrix3::zeros(), |sum, element| Some(sum + of(element)? / count))
+    let sum = |matrix: &dyn Fn(&Element) -> Option<Matrix3<f64>>| -> Option<Matrix3<f64>> {
+        all.iter().try_fold(Matrix3::zeros(), |sum, element| Some(sum + matrix(element)? / count))
     };
     let mut motion = all[0].motion;
     motion.gradient = sum(&|element| element.motion.gradient);

@@ -132,8 +132,8 @@ pub fn against<'a>(
         // representative, and the largest over time is used.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
-            let of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
-            Envelope::of(peer.series.time.clone(), &of(&peer.series), &of(half))
+            let values_of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
+            Envelope::of(peer.series.time.clone(), &values_of(&peer.series), &values_of(half))
         });
         let sample = |((time, found), expected): ((&f64, &f64), &f64)| Sample {
             time: *time,

@@ -31,9 +31,9 @@ pub struct Parting {
 }
 
 /// Returns the index of the last sample up to which the perturbed run is within [`PARTED`].
-fn last_together(of: Parting, run: &Done, perturbed: &Done) -> Result<usize, Missing> {
+fn last_together(columns: Parting, run: &Done, perturbed: &Done) -> Result<usize, Missing> {
     let mut last = run.series().step.len();
-    for column in of.columns {
+    for column in columns.columns {
         let (b, a) = together(perturbed, run, column)?;
         let scale = PARTED * largest(&a);
         let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > scale;
@@ -43,27 +43,27 @@ fn last_together(of: Parting, run: &Done, perturbed: &Done) -> Result<usize, Mis
 }
 
 /// Returns the step number of the horizon, from our run and its perturbed run.
-fn step_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<u64, Missing> {
-    Ok(run.series().step[last_together(of, run, perturbed)?])
+fn step_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result<u64, Missing> {
+    Ok(run.series().step[last_together(columns, run, perturbed)?])
 }
 
 /// Returns the time of the horizon (s).
 ///
 /// # Errors
 /// When a column is missing.
-pub fn time_of_horizon(of: Parting, run: &Done, perturbed: &Done) -> Result<f64, Missing> {
-    Ok(run.series().time[last_together(of, run, perturbed)?])
+pub fn time_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result<f64, Missing> {
+    Ok(run.series().time[last_together(columns, run, perturbed)?])
 }
 
 /// Returns the claim about the horizon itself. The expected value is a regression value from when the case was written.
 #[must_use]
-pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
+pub fn horizon(columns: Parting, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
     claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
         .of_all(runs)
         .equals(
             Source::Regression("steps until a run and its perturbed run, one position moved by one unit in the last place, part"),
-            move |done| Ok(Measured::new(step_of_horizon(of, &done[0], &done[1])? as f64, expected, expected)),
+            move |done| Ok(Measured::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
         )
         .within(computed(
             0.25,
@@ -79,13 +79,13 @@ pub fn horizon(of: Parting, steps: u64, runs: [Run; 2]) -> Claim {
 ///
 /// The third and the fourth run give the horizon.
 #[must_use]
-pub fn pointwise(of: Parting, runs: Vec<Run>, control: Control) -> Claim {
+pub fn pointwise(columns: Parting, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
     claim(format!("energy and stress up to the horizon, worst, against {program}"), "1")
         .of_all(runs)
         .agrees(Source::Program, move |done| {
-            let horizon = step_of_horizon(of, &done[2], &done[3])?;
-            let found: Result<Vec<Measured>, Missing> = of
+            let horizon = step_of_horizon(columns, &done[2], &done[3])?;
+            let found: Result<Vec<Measured>, Missing> = columns
                 .columns
                 .iter()
                 .map(|column| {
@@ -126,12 +126,17 @@ pub struct Sum {
 ///
 /// The error is in units of half the confidence interval of the difference.
 #[must_use]
-pub fn statistics(of: Parting, Sum { column, words, unit, logarithm }: Sum, runs: Vec<Run>, control: Control) -> Claim {
+pub fn statistics(
+    columns: Parting,
+    Sum { column, words, unit, logarithm }: Sum,
+    runs: Vec<Run>,
+    control: Control,
+) -> Claim {
     let program = runs[1].solver;
     claim(format!("mean {words} after the horizon, against {program}"), unit)
         .of_all(runs)
         .agrees(Source::Program, move |done| {
-            let horizon = step_of_horizon(of, &done[2], &done[3])?;
+            let horizon = step_of_horizon(columns, &done[2], &done[3])?;
             let (ours, theirs) = together(&done[0], &done[1], column)?;
             let from = done[1].series().step.partition_point(|&step| step <= horizon);
             let read = |values: &[f64]| -> Vec<f64> {

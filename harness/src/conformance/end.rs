@@ -73,11 +73,11 @@ impl End {
 /// the stiffest contact. Every step also rounds velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
     let rate = 2.0 / scene.critical_time_step();
-    let of = |end: &End| {
+    let rounding_error = |end: &End| {
         let (far, fast) = end.reach();
         f64::EPSILON * (far * rate * rate * end.time + fast * end.steps)
     };
-    of(ends[0]).max(of(ends[1]))
+    rounding_error(ends[0]).max(rounding_error(ends[1]))
 }
 
 #[cfg(test)]

@@ -34,12 +34,13 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let angular = rows.each(frictionless, &terms.resolution, quantity, |named| {
         let end = End::of(solver, &named.scene, &terms.resolution)?;
         let grains = &named.scene.grains;
-        let of = |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;
+        let angular_momentum =
+            |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;
         let turning = |spin: &Vector3<f64>, at: usize| spin * grains[at].inertia;
-        let before = grains.iter().map(|grain| of(&grain.position, &grain.velocity, grain.mass));
+        let before = grains.iter().map(|grain| angular_momentum(&grain.position, &grain.velocity, grain.mass));
         let before =
             before.chain(grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
-        let after = end.grains.iter().map(|grain| of(&grain.position, &grain.velocity, grain.mass));
+        let after = end.grains.iter().map(|grain| angular_momentum(&grain.position, &grain.velocity, grain.mass));
         let after =
             after.chain(end.grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
         Ok(kept(&before, &after, end.steps))

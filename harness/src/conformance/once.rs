@@ -34,7 +34,7 @@ impl Solver for Once<'_> {
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((.., record)) = known.iter().find(|(of, at, _)| of == scene && at == resolution) {
+        if let Some((.., record)) = known.iter().find(|(known_scene, at, _)| known_scene == scene && at == resolution) {
             return record.clone();
         }
         let record = self.solver.run(scene, resolution, watch);

@@ -96,8 +96,8 @@ fn hints(
         judged.iter().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
     let judged: Vec<Judged<'_>> = judged
         .into_iter()
-        .filter(|of| failed(of.row) || of.row.outcome == Outcome::Pass)
-        .filter(|of| of.row.error.is_some() && scenes(of.claim).is_subset(&in_question))
+        .filter(|judged| failed(judged.row) || judged.row.outcome == Outcome::Pass)
+        .filter(|judged| judged.row.error.is_some() && scenes(judged.claim).is_subset(&in_question))
         .collect();
     if in_question.is_empty() {
         return vec![None; rows.len()];
@@ -135,13 +135,13 @@ fn explains(error: Option<f64>, row: &Verdict) -> bool {
 
 /// Returns the number of failed results that a mistake explains, minus the number of results that it contradicts.
 fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
-    let of = |(error, judged): (&Option<f64>, &Judged<'_>)| match (error, judged.row.outcome) {
+    let agreement = |(error, judged): (&Option<f64>, &Judged<'_>)| match (error, judged.row.outcome) {
         (None, _) => 0,
         (Some(_), Outcome::Fail) if explains(*error, judged.row) => 1,
         (Some(error), Outcome::Pass) if error.abs() <= 2.0 * judged.row.allowed => 0,
         _ => -1,
     };
-    candidate.errors.iter().zip(judged).map(of).sum()
+    candidate.errors.iter().zip(judged).map(agreement).sum()
 }
 
 /// Computes the errors with each mistake on all processors.
@@ -163,7 +163,7 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<
             Mistake::Method(slip) => small(case, solvers, Some(*slip)),
             Mistake::Scene(_) | Mistake::Control(_) => Runner::new(case, Arc::clone(solvers)),
         };
-        let of = |(place, judged): (usize, &Judged<'_>)| match mistake {
+        let candidate_error = |(place, judged): (usize, &Judged<'_>)| match mistake {
             Mistake::Method(_) if is_right(place) => changed(method_error(&runner, judged), by_method[place]),
             Mistake::Scene(control) if can[place][0] => {
                 changed(scene_error(&runner, judged.claim, control.clone()), by_scene[place])
@@ -173,7 +173,7 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<
             }
             _ => None,
         };
-        judged.iter().enumerate().map(of).collect()
+        judged.iter().enumerate().map(candidate_error).collect()
     };
     let mistakes = mistakes(&plain, judged);
     let count = thread::available_parallelism().map_or(1, usize::from);
@@ -235,7 +235,11 @@ fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
         let sides = 0.5 * (grains + 1.0) + scene.walls.len() as f64;
         Some([grains, grains * sides].map(|count| count * steps as f64))
     };
-    let sum = claim.runs.iter().map(work).try_fold([0.0; 2], |sum, of| of.map(|of| [sum[0] + of[0], sum[1] + of[1]]));
+    let sum = claim
+        .runs
+        .iter()
+        .map(work)
+        .try_fold([0.0; 2], |sum, sums| sums.map(|sums| [sum[0] + sums[0], sum[1] + sums[1]]));
     sum.map_or([false; 2], |[scene, method]| [scene <= SCENE_WORK, method <= METHOD_WORK])
 }
 

@@ -103,11 +103,11 @@ impl Column {
 
     /// Returns the difference. `interpolated` is the interpolation error, which is added to the uncertainty.
     pub(super) fn finish(mut self, interpolated: f64) -> Difference {
-        let of = |which: usize| {
+        let column_extent = |which: usize| {
             let change = self.changes[which];
             if self.is_coordinate && change > 0.0 { change } else { self.magnitudes[which] }
         };
-        let extents = [of(0), of(1)];
+        let extents = [column_extent(0), column_extent(1)];
         let extent = extents.into_iter().find(|extent| *extent > 0.0);
         self.difference.scale = extent.unwrap_or(1.0);
         // Numbers that are printed alike throughout are equal, however few digits they have.

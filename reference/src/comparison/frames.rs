@@ -211,7 +211,9 @@ impl Frames {
             match open.read(snapshot) {
                 Ok(true) => {
                     *is_new = false;
-                    if let Some(before) = before.filter(|of| !of.columns.is_empty() && of.step == snapshot.step) {
+                    if let Some(before) =
+                        before.filter(|previous| !previous.columns.is_empty() && previous.step == snapshot.step)
+                    {
                         snapshot.check_repeated(&self.file, &before)?;
                     }
                     return Ok(true);

@@ -155,9 +155,9 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
         return Err(ReadError::at(&files[1].file, 1, expected, quoted(other)));
     }
     let [a, b] = [files[0].columns(), files[1].columns()];
-    let missing = |of: usize, expected: String| {
-        let line = places[of].first().map_or(1, |place| place.line.saturating_sub(1));
-        ReadError::at(&files[of].file, line, expected, quoted(&[&a, &b][of].join(" ")))
+    let missing = |which: usize, expected: String| {
+        let line = places[which].first().map_or(1, |place| place.line.saturating_sub(1));
+        ReadError::at(&files[which].file, line, expected, quoted(&[&a, &b][which].join(" ")))
     };
     for (asked, has) in options.columns.iter().flat_map(|name| [(name, 0), (name, 1)]) {
         if ![&a, &b][has].contains(asked) {
@@ -170,8 +170,8 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
         return Err(missing(1, format!("a column of {}", quoted(&a.join(" ")))));
     }
     let printed = columns.iter().map(|name| [files[0].printed(name), files[1].printed(name)]).collect();
-    let alone = |of: &[String], other: &[String]| -> Vec<String> {
-        of.iter().filter(|name| is_asked(name) && !other.contains(name)).cloned().collect()
+    let alone = |own_columns: &[String], other: &[String]| -> Vec<String> {
+        own_columns.iter().filter(|name| is_asked(name) && !other.contains(name)).cloned().collect()
     };
     let (lonely, cuts) = ([alone(&a, &b), alone(&b, &a)], files.map(|file| file.cut));
     Ok(Survey { columns, printed, lonely, places, cuts })
@@ -246,7 +246,7 @@ impl Walk {
                 (Some(before), Some(next)) if self.key == Key::Time => {
                     matched(&frame, next, &second.file, self.key)?;
                     matched(&frame, before, &second.file, self.key)?;
-                    let [low, high] = [before, next].map(|of| self.key.of(&of.place));
+                    let [low, high] = [before, next].map(|sample| self.key.of(&sample.place));
                     let values = between(before, next, (at - low) / (high - low));
                     self.interpolated += 1;
                     self.take(at, &frame, &values);

@@ -120,13 +120,13 @@ fn vector(vector: &Vector3<f64>) -> [f64; 3] {
 /// Returns the deformable materials.
 pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     let named = scene.materials.iter().zip(&scene.deformable);
-    let material = |(name, of): (&String, &Option<Deformable>)| {
-        let of = of.as_ref()?;
+    let material = |(name, deformable): (&String, &Option<Deformable>)| {
+        let deformable = deformable.as_ref()?;
         Some(Material {
             material: name.clone(),
-            bulk_modulus: of.bulk_modulus,
-            shear_modulus: of.shear_modulus,
-            law: of.constitutive,
+            bulk_modulus: deformable.bulk_modulus,
+            shear_modulus: deformable.shear_modulus,
+            law: deformable.constitutive,
         })
     };
     named.filter_map(material).collect()
@@ -169,17 +169,17 @@ pub(super) fn settle(scene: &Scene) -> Option<Settle> {
 
 /// Returns the probes of bodies, and of points inside bodies and grains.
 pub(super) fn probes(scene: &Scene) -> Vec<BodyProbe> {
-    let name = |of: BodyName| match of {
+    let name = |body_name: BodyName| match body_name {
         BodyName::Grain(at) => format!("grain {}", at + 1),
         BodyName::Body(at) => scene.bodies[at].name.clone(),
     };
     let probe = |probe: &grainbench_scene::scene::Probe| {
-        let (of, at) = match probe.target {
+        let (body, at) = match probe.target {
             ProbeTarget::Body(at) => (BodyName::Body(at), None),
             ProbeTarget::Point(at) => (scene.spots[at].body, Some(vector(&scene.spots[at].at))),
             _ => return None,
         };
-        Some(BodyProbe { name: probe.name.clone(), of: name(of), at })
+        Some(BodyProbe { name: probe.name.clone(), of: name(body), at })
     };
     scene.probes.iter().filter_map(probe).collect()
 }

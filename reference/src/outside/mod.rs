@@ -135,9 +135,9 @@ impl Outside {
     }
 
     fn limits(&self, time: Duration, bytes: u64) -> process::Limits {
-        let of = &self.manifest.limits;
-        let memory = of.memory_mib.map(|most| most.saturating_mul(1024));
-        process::Limits { deadline: Deadline::after(time), bytes, memory, threads: of.threads }
+        let limits = &self.manifest.limits;
+        let memory = limits.memory_mib.map(|most| most.saturating_mul(1024));
+        process::Limits { deadline: Deadline::after(time), bytes, memory, threads: limits.threads }
     }
 
     /// Executes a command other than that of a run, and returns its output.
@@ -154,8 +154,9 @@ impl Outside {
             at: Some(&self.folder),
         };
         let failed = |what: String, lines: Vec<String>| {
-            let said = if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) };
-            format!("`{}` {what}{said}", one_line(&command.join(" ")))
+            let last_words =
+                if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) };
+            format!("`{}` {what}{last_words}", one_line(&command.join(" ")))
         };
         let ended = process::run(&started, self.limits(time, MOST_PRINTED))
             .map_err(|(failure, lines)| failed(failure.to_string(), lines))?;
@@ -280,7 +281,7 @@ impl Outside {
         let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(given.scene, given.stepping);
         let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
         let mut start = Instant::now();
-        let (said, last_lines) = if self.manifest.worker.is_empty() {
+        let (message, last_lines) = if self.manifest.worker.is_empty() {
             let started = Started {
                 executable: &executable,
                 arguments: &arguments,
@@ -306,7 +307,7 @@ impl Outside {
             idle().push(worker);
             (Said::by_worker(answer), last_lines)
         };
-        Ok(Finished { folder, said, last_lines, seconds: start.elapsed().as_secs_f64() })
+        Ok(Finished { folder, said: message, last_lines, seconds: start.elapsed().as_secs_f64() })
     }
 
     /// Returns the path of the program that is started.
@@ -318,7 +319,8 @@ impl Outside {
     /// Returns the time of a run with zero steps (s).
     fn start_up(&self, given: &Given<'_>) -> f64 {
         let grains = given.scene.grains.len();
-        let known = |of: &Self| of.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
+        let known =
+            |program: &Self| program.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
         known(self).unwrap_or_else(|| {
             let stepping = Stepping { steps: 0, interval: 1, ..given.stepping };
             let seconds = self.start(&Given { stepping, ..*given }).map_or(0.0, |finished| finished.seconds);
@@ -371,7 +373,7 @@ fn observe_grains(
     folder: &Path,
     (grains, contacts): (&Grains, Option<&str>),
 ) -> Result<Observed, Failure> {
-    let told = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
+    let output_failure = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
     let names = grains.names();
     let observed = match grains.format {
         GrainFormat::Csv => {
@@ -391,7 +393,7 @@ fn observe_grains(
             let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
             let snapshot_steps = recorder.snapshot_steps().to_vec();
             let sources = Sources { files, names, time_step, most_rows, snapshot_steps, ..Sources::default() };
-            Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(told)
+            Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(output_failure)
         }
     };
     observed.map_err(|failure| match failure {
@@ -422,9 +424,9 @@ impl Said {
     /// Returns the message that follows from the exit code, the report and the printed text in the folder.
     fn by_process(ended: &Ended, own: OwnReport, folder: &Path) -> Self {
         if ended.code == CANNOT {
-            let said = fs::read(folder.join(SCREEN)).unwrap_or_default();
-            let said = String::from_utf8_lossy(&said).into_owned();
-            let reason = said.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
+            let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
+            let screen = String::from_utf8_lossy(&screen).into_owned();
+            let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
             return Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} and gave no reason")));
         }
         match own.failed {
@@ -492,10 +494,10 @@ impl Solver for Outside {
         self.prepare()?;
         let particles = scene.grains.len() as u64;
         watch.begin(Ahead { time_step: stepping.time_step, steps: stepping.steps, particles });
-        let Finished { folder, said, last_lines, seconds } = self.start(&given)?;
+        let Finished { folder, said: message, last_lines, seconds } = self.start(&given)?;
         let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
-        let told = match said {
-            Said::Ran(told) => told,
+        let times = match message {
+            Said::Ran(times) => times,
             Said::Cannot(reason) => return Err(cannot(reason)),
             Said::Failed(failure) => return Err(fail(failure)),
         };
@@ -503,8 +505,8 @@ impl Solver for Outside {
         observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
         complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
         watch.progress(stepping.steps, stepping.steps);
-        let seconds = match told {
-            Some(told) => told.solve,
+        let seconds = match times {
+            Some(times) => times.solve,
             None => (seconds - self.start_up(&given)).max(0.0),
         };
         let options = self.version().into_iter().collect();

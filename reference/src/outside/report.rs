@@ -45,10 +45,10 @@ pub(super) struct Failed {
 impl Failed {
     /// Returns the description as text.
     pub(super) fn words(&self) -> String {
-        let of = |value: &Option<Value>| {
+        let text = |value: &Option<Value>| {
             value.as_ref().map_or_else(|| "not told".to_owned(), |value| one_line(&value.to_string()))
         };
-        format!("by its own report: when {}, where {}, why {}", of(&self.when), of(&self.place), of(&self.why))
+        format!("by its own report: when {}, where {}, why {}", text(&self.when), text(&self.place), text(&self.why))
     }
 }
 

@@ -68,9 +68,9 @@ pub(crate) struct ByPlace<F> {
 }
 
 impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> ByPlace<F> {
-    /// Returns the snapshots of a file. `of` returns the snapshot at an index, or `None` after the last one.
-    pub(crate) fn boxed(path: &Path, of: F) -> Box<dyn Moments> {
-        Box::new(Self { file: path.to_string_lossy().into_owned(), of, next: 0 })
+    /// Returns the snapshots of a file. `read_at` returns the snapshot at an index, or `None` after the last one.
+    pub(crate) fn boxed(path: &Path, read_at: F) -> Box<dyn Moments> {
+        Box::new(Self { file: path.to_string_lossy().into_owned(), of: read_at, next: 0 })
     }
 }
 

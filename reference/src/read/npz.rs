@@ -147,8 +147,9 @@ impl Course {
     /// Returns the grains at a moment, or `None` after the last.
     pub(crate) fn snapshot(&self, moment: usize) -> Option<DumpSnapshot> {
         let (grains, step) = (self.grains, *self.steps.get(moment)?);
-        let number = |grain: usize, of: &(Vec<f64>, bool)| of.0[if of.1 { moment * grains + grain } else { grain }];
-        let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |of| number(grain, of))).collect();
+        let number =
+            |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
+        let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |array| number(grain, array))).collect();
         let time = self.times.as_ref().map(|times| times[moment]);
         let (columns, numbering) = (self.columns.clone(), self.numbering);
         Some(DumpSnapshot { step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() })

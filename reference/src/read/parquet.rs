@@ -28,10 +28,10 @@ pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
     // must be an error instead.
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
-        let told = panic::take_hook();
-        panic::set_hook(Box::new(move |of| {
+        let previous_hook = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
             if !READING.get() {
-                told(of)
+                previous_hook(info)
             }
         }));
     });
@@ -51,8 +51,8 @@ fn damaged(name: &str, found: &str) -> ReadError {
 }
 
 fn whole(file: File, name: &str) -> Result<Table, ReadError> {
-    let told = |error: ParquetError| damaged(name, &quoted(&error.to_string()));
-    let reader = SerializedFileReader::new(file).map_err(told)?;
+    let damage = |error: ParquetError| damaged(name, &quoted(&error.to_string()));
+    let reader = SerializedFileReader::new(file).map_err(damage)?;
     let about = reader.metadata();
     let names = about.file_metadata().schema_descr().columns().iter().map(|column| column.name().to_owned());
     let columns: Vec<NumberColumn> =
@@ -66,8 +66,8 @@ fn whole(file: File, name: &str) -> Result<Table, ReadError> {
         return Err(ReadError::at(name, 1, "a row of numbers", "none"));
     }
     let mut values = Vec::new();
-    for (at, row) in reader.get_row_iter(None).map_err(told)?.enumerate() {
-        let row = row.map_err(told)?;
+    for (at, row) in reader.get_row_iter(None).map_err(damage)?.enumerate() {
+        let row = row.map_err(damage)?;
         let before = values.len();
         for (column, field) in row.get_column_iter() {
             let number = number(field).filter(|number| number.is_finite());

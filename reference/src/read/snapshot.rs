@@ -125,10 +125,10 @@ impl DumpSnapshot {
         if self.rows() != other.rows() {
             return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
         }
-        let orders = [other, self].map(|of| {
-            let mut order: Vec<usize> = (0..of.rows()).collect();
-            if let Some(id) = of.column("id") {
-                order.sort_by(|&a, &b| of.row(a)[id].total_cmp(&of.row(b)[id]));
+        let orders = [other, self].map(|snapshot| {
+            let mut order: Vec<usize> = (0..snapshot.rows()).collect();
+            if let Some(id) = snapshot.column("id") {
+                order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
             }
             order
         });

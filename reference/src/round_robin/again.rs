@@ -66,8 +66,8 @@ pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     };
     let (large, small, drum) = (codes("large"), codes("small"), codes("case2"));
     let mut all = Vec::new();
-    let mut add = |key, what: String, time, of: &[&Published], read: &dyn Fn(&Kind) -> Option<f64>| {
-        let values: Option<Vec<f64>> = of.iter().map(|table| read(&table.kind)).collect();
+    let mut add = |key, what: String, time, published: &[&Published], read: &dyn Fn(&Kind) -> Option<f64>| {
+        let values: Option<Vec<f64>> = published.iter().map(|table| read(&table.kind)).collect();
         if let Some(pair) = values.as_deref().and_then(Pair::of) {
             all.push(Quantity { key, what, time, pair });
         }
@@ -136,12 +136,14 @@ mod tests {
             table("case1_small_M1_musen", [100e3, 84e3, 68e3]),
         ];
         let all = pairs(&tables);
-        let of = |key: &str| all.iter().find(|quantity| quantity.key == key && quantity.time.is_none()).unwrap();
-        let rate = &of("silo_large_rate").pair;
+        let quantity_named =
+            |key: &str| all.iter().find(|quantity| quantity.key == key && quantity.time.is_none()).unwrap();
+        let rate = &quantity_named("silo_large_rate").pair;
         assert!((rate.mean - 24.5).abs() < 1e-12 && (rate.half.unwrap() - 0.5).abs() < 1e-12, "{rate:?}");
-        assert_eq!(of("silo_small_rate").pair, Pair { mean: 8.0, half: None });
-        assert_eq!(of("silo_large_out_2").pair, Pair { mean: 49.0, half: Some(1.0) });
-        let left: Vec<f64> = all.iter().filter(|of| of.key == "silo-large").map(|of| of.pair.mean).collect();
+        assert_eq!(quantity_named("silo_small_rate").pair, Pair { mean: 8.0, half: None });
+        assert_eq!(quantity_named("silo_large_out_2").pair, Pair { mean: 49.0, half: Some(1.0) });
+        let left: Vec<f64> =
+            all.iter().filter(|found| found.key == "silo-large").map(|found| found.pair.mean).collect();
         assert_eq!(left[3], 51e3);
         // The table ends before the last of the times.
         assert_eq!(left.len(), 8);
@@ -164,11 +166,11 @@ mod tests {
             fallen("case3_50k_musen", 0.0, 0.0, 2),
         ];
         let all = pairs(&tables);
-        let of = |key: &str| all.iter().find(|quantity| quantity.key == key).map(|quantity| quantity.pair.clone());
-        let found = of("height_30_100k").unwrap();
+        let pair_of = |key: &str| all.iter().find(|quantity| quantity.key == key).map(|quantity| quantity.pair.clone());
+        let found = pair_of("height_30_100k").unwrap();
         // The second ball is 3 mm lower. The error of linear interpolation of the parabola is g/8 times the square of
         // 1 ms.
         assert!((found.mean - (1e3 * flight(0.03) - 1.5)).abs() < 2e-3 && (found.half.unwrap() - 1.5).abs() < 2e-3);
-        assert_eq!(of("height_30_50k"), None);
+        assert_eq!(pair_of("height_30_50k"), None);
     }
 }

@@ -60,7 +60,7 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
             .split_whitespace()
             .map(|field| field.parse().ok().filter(|number: &f64| number.abs() < 1.0))
             .collect();
-        let is = |radius: f64, of: usize| (radius - RADII[of]).abs() < ROUNDED;
+        let is = |radius: f64, kind: usize| (radius - RADII[kind]).abs() < ROUNDED;
         match numbers.as_deref() {
             Some(&[radius, x, y, z]) if is(radius, 0) && grains.len() < count => grains.push([x, y, z]),
             Some(&[radius, x, y, z]) if is(radius, 1) && balls.is_empty() => balls.push([x, y, z]),

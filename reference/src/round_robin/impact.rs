@@ -100,10 +100,14 @@ impl Impact {
 
     /// Returns the mean and the standard deviations of a quantity over those time series for which `kept` returns
     /// true.
-    pub fn spread(&self, kept: impl Fn(&Course) -> bool, of: impl Fn(&Self, &Course) -> Option<f64>) -> Option<Spread> {
+    pub fn spread(
+        &self,
+        kept: impl Fn(&Course) -> bool,
+        value: impl Fn(&Self, &Course) -> Option<f64>,
+    ) -> Option<Spread> {
         let kept: Vec<&Course> = self.courses.iter().filter(|course| kept(course)).collect();
         let values: Option<Vec<(&str, f64)>> =
-            kept.iter().map(|course| Some((course.code.as_str(), of(self, course)?))).collect();
+            kept.iter().map(|course| Some((course.code.as_str(), value(self, course)?))).collect();
         Spread::of(values?)
     }
 }

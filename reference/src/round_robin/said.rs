@@ -54,7 +54,7 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
     let mut all = Vec::new();
     let mut first: Option<(&str, &Drum)> = None;
     for Published { name, kind } in tables {
-        let of = match kind {
+        let findings = match kind {
             Kind::Impact(impact) => of_impact(impact),
             Kind::Drum(drum) => {
                 let beside = first.map(|first| of_drums(drum, first)).unwrap_or_default();
@@ -63,10 +63,10 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
             }
             Kind::Silo(_) => Vec::new(),
         };
-        all.extend(of.into_iter().map(|said| {
+        all.extend(findings.into_iter().map(|finding| {
             // A time series that is alone in its file has the same name as the file.
-            let about = if said.about == *name { String::new() } else { said.about };
-            Said { table: name.clone(), about, ..said }
+            let about = if finding.about == *name { String::new() } else { finding.about };
+            Said { table: name.clone(), about, ..finding }
         }));
     }
     all
@@ -116,22 +116,22 @@ fn name(course: &Course) -> String {
 fn released(impact: &Impact, course: &Course) -> Option<Said> {
     const FLIGHT: [f64; 2] = [0.001, 0.002];
     let speed = impact.velocity(course, FLIGHT)? + GRAVITY * 0.5 * (FLIGHT[0] + FLIGHT[1]);
-    let said =
+    let finding =
         || Said::new(name(course), "velocity at the start", format!("{speed:.2} m/s"), format!("{RELEASED} m/s"));
-    ((speed - RELEASED).abs() > OTHER_RELEASE).then(said)
+    ((speed - RELEASED).abs() > OTHER_RELEASE).then(finding)
 }
 
 /// Returns the clock errors. They follow from the height in the first sample, and are compared with the next sample.
 fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
-    let of = |code: &str, time: f64| -> Option<f64> {
-        let of: Option<Vec<f64>> =
+    let relative_height = |code: &str, time: f64| -> Option<f64> {
+        let heights: Option<Vec<f64>> =
             flown.iter().filter(|course| course.code == code).map(|course| impact.held_up(course, time)).collect();
-        of.filter(|of| !of.is_empty()).map(|of| mean(&of) / RELEASED)
+        heights.filter(|heights| !heights.is_empty()).map(|heights| mean(&heights) / RELEASED)
     };
     let (Some(&first), Some(&later)) = (impact.times.first(), impact.times.get(1)) else { return Vec::new() };
     let mut all = Vec::new();
     for code in codes(flown) {
-        let (Some(ahead), Some(later)) = (of(code, first), of(code, later)) else { continue };
+        let (Some(ahead), Some(later)) = (relative_height(code, first), relative_height(code, later)) else { continue };
         if ahead.abs() > 1e-5 || later.abs() > 1e-5 {
             let found = format!("{ahead:.2e} s, and {later:.1e} s at the next");
             all.push(Said::new(code, "clock ahead at its first sample", found, "0 s"));
@@ -153,11 +153,11 @@ fn codes<'a>(courses: &[&'a Course]) -> Vec<&'a str> {
 /// Returns the height of the ball above free flight (m) at the first contact with each bed, by code and number of the
 /// bed.
 fn prints<'a>(impact: &Impact, flown: &[&'a Course]) -> Vec<(&'a str, Vec<(usize, f64)>)> {
-    let of = |code: &'a str| {
+    let heights_of_code = |code: &'a str| {
         let beds = flown.iter().filter(|course| course.code == code);
         (code, beds.filter_map(|course| Some((course.bed, impact.held_up(course, MET)?))).collect())
     };
-    codes(flown).into_iter().map(of).collect()
+    codes(flown).into_iter().map(heights_of_code).collect()
 }
 
 /// Returns the beds that have different numbers in different codes. The initial height above free flight is a
@@ -166,27 +166,32 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let prints = prints(impact, flown);
     // Median over the codes for each number.
     let usual = |bed: usize| {
-        let mut of: Vec<f64> = prints
+        let mut heights: Vec<f64> = prints
             .iter()
-            .flat_map(|(_, of)| of.iter().filter(|(number, _)| *number == bed).map(|(_, up)| *up))
+            .flat_map(|(_, heights)| heights.iter().filter(|(number, _)| *number == bed).map(|(_, up)| *up))
             .collect();
-        of.sort_by(f64::total_cmp);
-        of.get(of.len() / 2).copied()
+        heights.sort_by(f64::total_cmp);
+        heights.get(heights.len() / 2).copied()
     };
     let mut all = Vec::new();
-    for (code, of) in &prints {
+    for (code, heights) in &prints {
         let off = |shift: usize| -> Vec<f64> {
-            of.iter().filter_map(|&(bed, up)| Some(up - usual(bed.checked_sub(shift)?)?)).collect()
+            heights.iter().filter_map(|&(bed, up)| Some(up - usual(bed.checked_sub(shift)?)?)).collect()
         };
         let size = |off: &[f64]| (off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt();
         let (as_said, shifted) = (off(0), off(1));
-        if of.len() < 3 || size(&as_said) < SAME_BED || size(&shifted) > SAME_BED {
+        if heights.len() < 3 || size(&as_said) < SAME_BED || size(&shifted) > SAME_BED {
             continue;
         }
-        let others: Vec<String> = of
+        let others: Vec<String> = heights
             .iter()
             .filter(|(_, up)| {
-                prints.iter().flat_map(|(_, of)| of).filter(|(_, other)| (up - other).abs() < SAME_BED).count() < 2
+                prints
+                    .iter()
+                    .flat_map(|(_, heights)| heights)
+                    .filter(|(_, other)| (up - other).abs() < SAME_BED)
+                    .count()
+                    < 2
             })
             .map(|(bed, up)| format!("; its bed {bed} (held up by {:.0} µm) is none of the others'", up * 1e6))
             .collect();
@@ -205,16 +210,17 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
 /// Returns beds and codes that are outliers at 30 ms.
 fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let depth = |course: &Course| impact.height(course, DEEP).map(|height| height * 1e3);
-    let of = |code: &str, but: Option<usize>| -> Vec<f64> {
-        let of = flown.iter().filter(|course| course.code == code && Some(course.bed) != but);
-        of.filter_map(|course| depth(course)).collect()
+    let depths_of_code = |code: &str, but: Option<usize>| -> Vec<f64> {
+        let courses = flown.iter().filter(|course| course.code == code && Some(course.bed) != but);
+        courses.filter_map(|course| depth(course)).collect()
     };
-    let deviation =
-        |of: &[f64]| (of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>() / (of.len() as f64 - 1.0)).sqrt();
+    let deviation = |values: &[f64]| {
+        (values.iter().map(|value| (value - mean(values)).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)).sqrt()
+    };
     let mut all = Vec::new();
     let mut left_out = Vec::new();
     for course in flown {
-        let (rest, Some(depth)) = (of(&course.code, Some(course.bed)), depth(course)) else { continue };
+        let (rest, Some(depth)) = (depths_of_code(&course.code, Some(course.bed)), depth(course)) else { continue };
         let off = depth - mean(&rest);
         if rest.len() > 2 && off.abs() > 2.0 * STANDS_OUT * deviation(&rest) {
             let found = format!(
@@ -233,12 +239,13 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
     let means: Vec<(&str, f64)> = codes(flown)
         .into_iter()
         .map(|code| {
-            let of: Vec<f64> = known.iter().filter(|of| of.code == code).filter_map(|of| depth(of)).collect();
-            (code, mean(&of))
+            let depths: Vec<f64> =
+                known.iter().filter(|course| course.code == code).filter_map(|course| depth(course)).collect();
+            (code, mean(&depths))
         })
         .collect();
     for (code, depth) in &means {
-        let rest: Vec<f64> = means.iter().filter(|(other, _)| other != code).map(|(_, of)| *of).collect();
+        let rest: Vec<f64> = means.iter().filter(|(other, _)| other != code).map(|(_, mean)| *mean).collect();
         let off = depth - mean(&rest);
         if rest.len() > 2 && off.abs() > STANDS_OUT * deviation(&rest) {
             let found = format!(
@@ -264,12 +271,12 @@ pub fn of_drum(drum: &Drum) -> Vec<Said> {
     let even = |row: usize| drum.zones.iter().all(|zone| zone[row] % 2.0 == 0.0);
     let twice = |row: &usize| even(*row) && total(*row) > 1.6 * total(row - 1);
     let rows = (2..drum.times.len()).filter(twice);
-    let said = |row: usize| {
+    let finding = |row: usize| {
         let times = total(row) / total(row - 1);
         let found = format!("{times:.2} times those of a sample before, and all four numbers even: counted twice");
         Said::new(format!("t = {} s", drum.times[row]), "grains in both zones", found, "about as many")
     };
-    rows.map(said).collect()
+    rows.map(finding).collect()
 }
 
 /// Tolerance of the number of grains M1 in zone 2 between two runs of the drum. LIGGGHTS and MUSEN, rerun from the
@@ -280,12 +287,12 @@ const SAME_DRUM: f64 = 0.1;
 #[must_use]
 pub fn of_drums(drum: &Drum, (name, other): (&str, &Drum)) -> Vec<Said> {
     let at = |time: f64| {
-        let (of, against) = (drum.in_zone_2(time)?, other.in_zone_2(time)?);
-        let off = of / against - 1.0;
-        let found = format!("{of}, {:+.1} % of {name}'s {against}", 100.0 * off);
-        let said =
+        let (fraction, against) = (drum.in_zone_2(time)?, other.in_zone_2(time)?);
+        let off = fraction / against - 1.0;
+        let found = format!("{fraction}, {:+.1} % of {name}'s {against}", 100.0 * off);
+        let finding =
             Said::new(format!("t = {time} s"), "M1 in zone 2", found, format!("within {:.0} %", 100.0 * SAME_DRUM));
-        (off.abs() > SAME_DRUM).then_some(said)
+        (off.abs() > SAME_DRUM).then_some(finding)
     };
     [0.5, 1.0, 2.0].into_iter().filter_map(at).collect()
 }

@@ -19,12 +19,13 @@ impl Spread {
     pub fn of<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
         let mut codes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         values.into_iter().for_each(|(code, value)| codes.entry(code).or_default().push(value));
-        let means: Vec<f64> = codes.values().map(|of| mean(of)).collect();
-        let freedom: usize = codes.values().map(|of| of.len() - 1).sum();
+        let means: Vec<f64> = codes.values().map(|code_values| mean(code_values)).collect();
+        let freedom: usize = codes.values().map(|code_values| code_values.len() - 1).sum();
         if means.len() < 2 || freedom == 0 {
             return None;
         }
-        let about = |of: &Vec<f64>| of.iter().map(|value| (value - mean(of)).powi(2)).sum::<f64>();
+        let about =
+            |code_values: &Vec<f64>| code_values.iter().map(|value| (value - mean(code_values)).powi(2)).sum::<f64>();
         let all = mean(&means);
         let between: f64 = means.iter().map(|value| (value - all).powi(2)).sum();
         Some(Self {

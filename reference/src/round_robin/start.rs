@@ -72,8 +72,8 @@ impl Start {
     /// Returns both kinds of grains as data files for the scene of the drum, by name and text.
     #[must_use]
     pub fn files(&self) -> [(&'static str, String); 2] {
-        let of = |kind: usize, diameter, density| atoms(&self.kinds[kind], diameter, density);
-        [("drum-m2.data", of(0, 0.004, 2000.0)), ("drum-m1.data", of(1, 0.002, DENSITY_M1))]
+        let kind_atoms = |kind: usize, diameter, density| atoms(&self.kinds[kind], diameter, density);
+        [("drum-m2.data", kind_atoms(0, 0.004, 2000.0)), ("drum-m1.data", kind_atoms(1, 0.002, DENSITY_M1))]
     }
 }
 

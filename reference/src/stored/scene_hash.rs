@@ -23,17 +23,17 @@ pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
 /// Writing the digits takes a hundred times longer.
 #[must_use]
 pub fn scene_hash_by_bits(scene: &Scene, stepping: &Stepping) -> String {
-    let of = |bits: &[u8]| blake3::hash(bits).to_hex().to_string();
-    let grains = format!("grains {}\n", of(&scene.grains.bits()));
-    let springs = |springs: &Springs| format!("springs {}\n", of(&springs.bits())).into();
+    let hash_of_bits = |bits: &[u8]| blake3::hash(bits).to_hex().to_string();
+    let grains = format!("grains {}\n", hash_of_bits(&scene.grains.bits()));
+    let springs = |springs: &Springs| format!("springs {}\n", hash_of_bits(&springs.bits())).into();
     format!("{BY_BITS}{}", hash_of(scene, stepping, &grains, springs))
 }
 
 /// Returns true if a scene and its steps match a hash of either kind.
 #[must_use]
-pub fn is_scene_of(told: &str, scene: &Scene, stepping: &Stepping) -> bool {
-    let found = if told.starts_with(BY_BITS) { scene_hash_by_bits } else { scene_hash };
-    found(scene, stepping) == told
+pub fn is_scene_of(stored_hash: &str, scene: &Scene, stepping: &Stepping) -> bool {
+    let found = if stored_hash.starts_with(BY_BITS) { scene_hash_by_bits } else { scene_hash };
+    found(scene, stepping) == stored_hash
 }
 
 const BY_BITS: &str = "2:";
@@ -114,14 +114,14 @@ impl Known {
     }
 
     /// Returns the cache entry of a list, which can still be empty.
-    fn lines(&self, of: blake3::Hash) -> Lines {
+    fn lines(&self, key: blake3::Hash) -> Lines {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, lines)) = known.iter().find(|(other, _)| *other == of) {
+        if let Some((_, lines)) = known.iter().find(|(other, _)| *other == key) {
             return Arc::clone(lines);
         }
         let lines = Lines::default();
         known.truncate(FEW - 1);
-        known.insert(0, (of, Arc::clone(&lines)));
+        known.insert(0, (key, Arc::clone(&lines)));
         lines
     }
 }

@@ -9,7 +9,7 @@ pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::
     let grid = &course.grid;
     let [across, deep, up] = grid.count;
     let extent = format!("0 {across} 0 {deep} 0 {up}");
-    let vector = |of: [f64; 3]| format!("{:?} {:?} {:?}", of[0], of[1], of[2]);
+    let vector = |components: [f64; 3]| format!("{:?} {:?} {:?}", components[0], components[1], components[2]);
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(out, "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">")?;
     let (origin, spacing) = (vector(grid.low.into()), vector(grid.cell.into()));

@@ -32,11 +32,11 @@ pub fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
         let (low, high) = bounds_along(snapshot, axis);
         writeln!(out, "{low:?} {high:?}")?;
     }
-    let told = snapshot.grains.iter().all(|grain| grain.force.is_some() && grain.torque.is_some());
-    writeln!(out, "ITEM: ATOMS {COLUMNS}{}", if told { FORCES } else { "" })?;
+    let has_forces = snapshot.grains.iter().all(|grain| grain.force.is_some() && grain.torque.is_some());
+    writeln!(out, "ITEM: ATOMS {COLUMNS}{}", if has_forces { FORCES } else { "" })?;
     for grain in &snapshot.grains {
         write!(out, "{} {} {:?} {:?}", grain.id, u32::from(grain.material) + 1, grain.radius, grain.mass)?;
-        let forces = [grain.force, grain.torque].into_iter().flatten().filter(|_| told);
+        let forces = [grain.force, grain.torque].into_iter().flatten().filter(|_| has_forces);
         for vector in [grain.position, grain.velocity, grain.spin].into_iter().chain(forces) {
             write_vector(out, &vector)?;
         }

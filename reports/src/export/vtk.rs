@@ -35,10 +35,10 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
 /// Writes a quantity that every grain reports. If a grain lacks it, no array is written, rather than zeros.
 fn told<T>(
     grains: &[GrainState],
-    of: impl Fn(&GrainState) -> Option<T>,
+    value: impl Fn(&GrainState) -> Option<T>,
     write: impl FnOnce(Vec<T>) -> io::Result<()>,
 ) -> io::Result<()> {
-    grains.iter().map(of).collect::<Option<Vec<T>>>().map_or(Ok(()), write)
+    grains.iter().map(value).collect::<Option<Vec<T>>>().map_or(Ok(()), write)
 }
 
 /// Writes the material points of deformable bodies.

@@ -88,7 +88,9 @@ fn card(
         .filter_map(|row| Some((wrongness(row)?, row)))
         .max_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let line = cost.and_then(|cost| Some((cost, cost.lines.iter().find(|line| line.solver == solver)?)));
-    let hold = stability.and_then(|of| Some((of, of.lines.iter().find(|line| line.solver == solver)?)));
+    let hold = stability.and_then(|stability_of_case| {
+        Some((stability_of_case, stability_of_case.lines.iter().find(|line| line.solver == solver)?))
+    });
     let filter = |outcome: Option<&'static str>, text: Markup| {
         html! {
             a href="#matrix" data-solver=(solver) data-outcome=[outcome] { (text) }
@@ -109,8 +111,8 @@ fn card(
                         }
                     }
                 }
-                @if let Some((of, hold)) = hold { (stable(of, hold)) }
-                @if let Some((of, line)) = line { (price(of, line)) }
+                @if let Some((stability_of_case, hold)) = hold { (stable(stability_of_case, hold)) }
+                @if let Some((costs, line)) = line { (price(costs, line)) }
             }
         }
     }
@@ -132,8 +134,8 @@ fn compared(report: &Report, solver: &str) -> Markup {
     }
 }
 
-fn stable(of: &Stability, hold: &Hold) -> Markup {
-    let class = of.stamp.is_old(&hold.solver).then_some("old");
+fn stable(stability: &Stability, hold: &Hold) -> Markup {
+    let class = stability.stamp.is_old(&hold.solver).then_some("old");
     let range = |[low, high]: [f64; 2]| format!("{}–{}", number::significant(low, 3), number::significant(high, 3));
     html! {
         @if let Some((ends, _)) = hold.limit {
@@ -153,9 +155,9 @@ fn stable(of: &Stability, hold: &Hold) -> Markup {
     }
 }
 
-fn price(of: &Costs, line: &Line) -> Markup {
+fn price(costs: &Costs, line: &Line) -> Markup {
     html! {
-        div class=[of.stamp.is_old(&line.solver).then_some("old")] {
+        div class=[costs.stamp.is_old(&line.solver).then_some("old")] {
             dt { "1 % costs" }
             dd {
                 @if let Some(factor) = line.factors[AT] {

@@ -91,7 +91,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                 tr {
                     td {}
                     @for column in &columns { th scope="col" { span { (column) } } }
-                    @for of in &report.judged { th scope="col" { span { (of.program) } } }
+                    @for results in &report.judged { th scope="col" { span { (results.program) } } }
                 }
             }
             tbody {
@@ -99,7 +99,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                     tr data-case=(section.name) {
                         th scope="row" { a href={ "#" (anchor) } { (section.name) } }
                         @for column in &columns { td { (ours(section, column, anchor)) } }
-                        @for of in &report.judged { td { (theirs(of, &section.name)) } }
+                        @for results in &report.judged { td { (theirs(results, &section.name)) } }
                     }
                 }
             }
@@ -146,10 +146,10 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
     }
 }
 
-fn theirs(of: &Judged, case: &str) -> Markup {
-    let rows: Vec<&Row> = of.rows.iter().filter(|row| row.case == case).collect();
+fn theirs(results: &Judged, case: &str) -> Markup {
+    let rows: Vec<&Row> = results.rows.iter().filter(|row| row.case == case).collect();
     let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
-    let used = of.count(Some(case)).worst;
-    let words = format!("{case}, {}: {}", of.program, worst.verdict.word());
+    let used = results.count(Some(case)).worst;
+    let words = format!("{case}, {}: {}", results.program, worst.verdict.word());
     html! { span class=(class(worst.verdict, used)) title=(words) { (text(worst.verdict, used)) } }
 }

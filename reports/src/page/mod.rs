@@ -85,11 +85,11 @@ pub(crate) fn rows_of(anchor: &str) -> String {
 /// Returns the file names of all figures, section by section.
 pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     let mut taken = BTreeSet::new();
-    let of = |section: &crate::report::Section| {
+    let section_names = |section: &crate::report::Section| {
         let stem = |figure: &grainbench_harness::figure::Figure| slug(&format!("{}-{}", section.name, figure.name));
         section.figures.iter().map(|figure| unique(&stem(figure), &mut taken)).collect()
     };
-    report.sections.iter().map(of).collect()
+    report.sections.iter().map(section_names).collect()
 }
 
 /// Returns a complete HTML page with a body.

@@ -45,14 +45,14 @@ fn programs(judged: &[Judged]) -> Markup {
                 }
             }
             tbody {
-                @for of in judged {
-                    @let count = of.count(None);
+                @for results in judged {
+                    @let count = results.count(None);
                     tr {
-                        th scope="row" { (of.program) span.title { (of.version) } }
+                        th scope="row" { (results.program) span.title { (results.version) } }
                         td { (tally(&count)) }
                         td { (count.controls_red) " of " (count.controls) }
-                        td { (of.day()) ", commit " (of.provenance.commit) }
-                        td { (of.provenance.machine) }
+                        td { (results.day()) ", commit " (results.provenance.commit) }
+                        td { (results.provenance.machine) }
                     }
                 }
             }
@@ -75,7 +75,7 @@ fn by_case(report: &Report) -> Markup {
                 tr {
                     th scope="col" { "Case" }
                     th scope="col" { "ours" }
-                    @for of in &report.judged { th scope="col" { (of.program) } }
+                    @for results in &report.judged { th scope="col" { (results.program) } }
                 }
             }
             tbody {
@@ -83,7 +83,7 @@ fn by_case(report: &Report) -> Markup {
                     tr {
                         th scope="row" { (case) }
                         td { @if let Some(worst) = ours(report, case) { (number::significant(worst, 2)) } @else { "—" } }
-                        @for of in &report.judged { (cell(&of.count(Some(case)))) }
+                        @for results in &report.judged { (cell(&results.count(Some(case)))) }
                     }
                 }
             }
@@ -104,7 +104,7 @@ fn cell(count: &Count) -> Markup {
 /// Returns the largest |error|/allowed of our results in a case, for quantities and resolutions that external solvers
 /// also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
-    let asked = report.judged.iter().flat_map(|of| &of.rows).filter(|row| row.case == case);
+    let asked = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {
         let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
         let is_it = |theirs: &Row| {

@@ -67,7 +67,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
                         }
                     }
                     "stability" => { @if let Some(stable) = &stable { (stable) } }
-                    _ => { @if let Some(of) = &measured.effects { details { summary { "Every scene" } (effects::heat(&of.ledger)) } } }
+                    _ => { @if let Some(study) = &measured.effects { details { summary { "Every scene" } (effects::heat(&study.ledger)) } } }
                 }
             }
         }
@@ -77,9 +77,9 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
 /// Returns the date of a measurement, and the solvers that have changed since.
 fn age(measured: &Measurements, id: &str) -> Markup {
     let stamp: Option<&Stamp> = match id {
-        "costs" => measured.cost.as_ref().map(|of| &of.stamp),
-        "stability" => measured.stability.as_ref().map(|of| &of.stamp),
-        _ => measured.effects.as_ref().map(|of| &of.stamp),
+        "costs" => measured.cost.as_ref().map(|part| &part.stamp),
+        "stability" => measured.stability.as_ref().map(|part| &part.stamp),
+        _ => measured.effects.as_ref().map(|part| &part.stamp),
     };
     let Some(stamp) = stamp else { return html! {} };
     let changed: Vec<&str> = palette::SOLVERS.into_iter().filter(|solver| stamp.is_old(solver)).collect();
@@ -204,7 +204,7 @@ fn changes(effects: &Effects) -> Markup {
     const ROW: f64 = 36.0;
     const FRAME: [f64; 2] = [150.0, 400.0];
     let names = distinct(effects.ledger.iter().map(|entry| entry.effect.as_str()));
-    let of = |name: &str| effects.ledger.iter().filter(move |entry| entry.effect == name).collect::<Vec<_>>();
+    let entries_of = |name: &str| effects.ledger.iter().filter(move |entry| entry.effect == name).collect::<Vec<_>>();
     let scale = Scale::fit(CHANGES.into_iter(), true, 0.03, 7);
     let across = |value: f64| FRAME[0] + (FRAME[1] - FRAME[0]) * scale.position(value);
     let bottom = 34.0 + ROW * names.len() as f64;
@@ -213,9 +213,9 @@ fn changes(effects: &Effects) -> Markup {
         places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
     };
     let mut order = names.clone();
-    order.sort_by_key(|name| std::cmp::Reverse(needed(&of(name)).0));
+    order.sort_by_key(|name| std::cmp::Reverse(needed(&entries_of(name)).0));
     let most = order.iter().take(3).map(|name| {
-        let (count, all) = needed(&of(name));
+        let (count, all) = needed(&entries_of(name));
         format!("without {name} in {count} of {all}")
     });
     let most = most.collect::<Vec<_>>().join(", ");
@@ -233,7 +233,7 @@ fn changes(effects: &Effects) -> Markup {
                 }
                 path d=(format!("M{} {bottom}H{}", FRAME[0], FRAME[1])) stroke="#222" {}
                 @for (at, name) in names.iter().enumerate() {
-                    @let (y, entries) = (34.0 + ROW * at as f64, of(name));
+                    @let (y, entries) = (34.0 + ROW * at as f64, entries_of(name));
                     text x="0" y=(y + 9.0) { (name) }
                     text x="0" y=(y + 24.0) font-size="12" fill="#666" { "needed in " (needed(&entries).0) " of " (needed(&entries).1) }
                     path d=(marks(&entries, Worth::Needed, y)) stroke="#222" stroke-width="2" stroke-opacity=".55" {}

@@ -27,10 +27,10 @@ pub(super) trait Columns {
         let mut all = true;
         let mut numbers = value.unwrap_or([0.0; N]);
         for (name, number) in names.into_iter().zip(&mut numbers) {
-            let mut told = value.is_some().then_some(*number);
-            self.told(name, &mut told);
-            all &= told.is_some();
-            *number = told.unwrap_or(*number);
+            let mut component = value.is_some().then_some(*number);
+            self.told(name, &mut component);
+            all &= component.is_some();
+            *number = component.unwrap_or(*number);
         }
         *value = all.then_some(numbers);
     }

@@ -133,20 +133,28 @@ impl OpenPart {
         fn rows<'s, R, I: Iterator<Item = R> + 's>(
             first: u64,
             snapshots: &'s [Snapshot],
-            of: impl Fn(&'s Snapshot) -> I + 's,
+            rows_of: impl Fn(&'s Snapshot) -> I + 's,
         ) -> impl Iterator<Item = Stepped<R>> + 's {
             (first..).zip(snapshots).flat_map(move |(number, snapshot)| {
                 let (step, time) = (snapshot.step, snapshot.time);
-                of(snapshot).map(move |row| Stepped { snapshot: number, step, time, row })
+                rows_of(snapshot).map(move |row| Stepped { snapshot: number, step, time, row })
             })
         }
         let directory = self.directory.path().join("part");
-        self.frames.add(&directory, &[], rows(first, snapshots, |of| std::iter::once(Frame::of(of))))?;
-        self.grains.add(&directory, &self.without, rows(first, snapshots, |of| of.grains.iter().cloned()))?;
-        self.contacts.add(&directory, &[], rows(first, snapshots, |of| of.told_contacts().iter().copied()))?;
-        self.walls.add(&directory, &[], rows(first, snapshots, |of| of.walls.iter().cloned()))?;
-        self.bodies.add(&directory, &[], rows(first, snapshots, |of| of.bodies.iter().cloned()))?;
-        self.points.add(&directory, &[], rows(first, snapshots, |of| of.points.iter().copied()))?;
+        self.frames.add(&directory, &[], rows(first, snapshots, |snapshot| std::iter::once(Frame::of(snapshot))))?;
+        self.grains.add(
+            &directory,
+            &self.without,
+            rows(first, snapshots, |snapshot| snapshot.grains.iter().cloned()),
+        )?;
+        self.contacts.add(
+            &directory,
+            &[],
+            rows(first, snapshots, |snapshot| snapshot.told_contacts().iter().copied()),
+        )?;
+        self.walls.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.walls.iter().cloned()))?;
+        self.bodies.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.bodies.iter().cloned()))?;
+        self.points.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.points.iter().copied()))?;
         self.rows += snapshots.iter().map(rows_of).sum::<u64>();
         Ok(())
     }

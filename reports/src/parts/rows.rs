@@ -18,13 +18,13 @@ const MEAN_VIRIAL: [&str; 6] =
 
 /// Returns the columns of grains that the snapshots lack.
 pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
-    let of: [(Chosen, Vec<&'static str>); 4] = [
+    let columns_of: [(Chosen, Vec<&'static str>); 4] = [
         (Chosen::Spin, [&SPIN[..], &["angle"]].concat()),
         (Chosen::Force, [FORCE, TORQUE].concat()),
         (Chosen::Virial, VIRIAL.to_vec()),
         (Chosen::MeanVirial, MEAN_VIRIAL.to_vec()),
     ];
-    of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
+    columns_of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
 }
 
 /// A snapshot without the data of the other tables.
@@ -68,9 +68,9 @@ impl Row for Frame {
         for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut snapshot.periodic) {
             columns.flag(name, periodic);
         }
-        let mut told = snapshot.contacts.is_some();
-        columns.flag("contacts_told", &mut told);
-        snapshot.contacts = told.then(Vec::new);
+        let mut has_contacts = snapshot.contacts.is_some();
+        columns.flag("contacts_told", &mut has_contacts);
+        snapshot.contacts = has_contacts.then(Vec::new);
     }
 }
 

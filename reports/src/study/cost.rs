@@ -201,11 +201,11 @@ pub fn scatters(study: &Study) -> Vec<Figure> {
 
 /// Returns the point of a solver with the smallest error in each diagram of a unit.
 fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
-    let of = |diagram: &'a Diagram| {
+    let cheapest = |diagram: &'a Diagram| {
         let points = of_line(diagram, line).filter(|point| point.unit == unit && point.place().is_some());
         points.min_by(|a, b| a.error.unwrap_or(f64::NAN).total_cmp(&b.error.unwrap_or(f64::NAN)))
     };
-    study.diagrams.iter().filter_map(of).collect()
+    study.diagrams.iter().filter_map(cheapest).collect()
 }
 
 /// Returns bias and spread of measured/expected. The bias is the geometric mean, and the spread is the standard

@@ -36,8 +36,8 @@ pub struct Lap {
 }
 
 /// Returns the median over the timings.
-fn middle(load: &Load, of: fn(&Lap) -> f64) -> f64 {
-    median(&load.laps.iter().map(of).collect::<Vec<_>>())
+fn middle(load: &Load, value: fn(&Lap) -> f64) -> f64 {
+    median(&load.laps.iter().map(value).collect::<Vec<_>>())
 }
 
 /// Returns the figure of processor time per second of simulated time against grains; none without timings.

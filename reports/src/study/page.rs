@@ -248,8 +248,8 @@ fn row(point: &Point) -> Markup {
             td.n { (seconds(point.start_up_seconds)) }
             td.n { (number::count(point.counts.steps)) }
             td.n { (number::count(point.counts.particle_steps)) }
-            @for told in [point.counts.contact_evaluations, point.counts.node_updates, point.counts.bytes] {
-                td.n { (told.map_or("—".to_owned(), number::count)) }
+            @for count in [point.counts.contact_evaluations, point.counts.node_updates, point.counts.bytes] {
+                td.n { (count.map_or("—".to_owned(), number::count)) }
             }
             td.wide { (point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")) }
         }

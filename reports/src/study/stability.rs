@@ -117,8 +117,8 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
     let knob = rows.first()?.knob.clone();
     let exact = rows.iter().any(|row| row.exact.is_some());
-    let points = |of: &dyn Fn(&Limit) -> Option<f64>| -> Points {
-        let mut points: Points = rows.iter().filter_map(|row| Some((row.at?, of(row)?))).collect();
+    let points = |curve: &dyn Fn(&Limit) -> Option<f64>| -> Points {
+        let mut points: Points = rows.iter().filter_map(|row| Some((row.at?, curve(row)?))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };

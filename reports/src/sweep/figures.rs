@@ -33,10 +33,10 @@ fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
 fn work(sweep: &Sweep) -> Option<Figure> {
     let mut curves: Vec<Curve> = Vec::new();
     for (solver, level) in levels(sweep) {
-        let of = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
+        let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
         let mut steps: Vec<f64> =
-            of().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps as f64)).collect();
-        let mut errors: Vec<f64> = of().filter_map(super::Point::error).collect();
+            level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps as f64)).collect();
+        let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
         let Some(middle) = quantile(&mut steps, 0.5) else { continue };
         for (label, part, stroke) in
             [("median", 0.5, Stroke::MarkedLine), ("nine in ten below", 0.9, Stroke::MarkedLine)]

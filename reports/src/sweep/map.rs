@@ -136,9 +136,9 @@ fn panel(
 ) -> Markup {
     let [across, up] = [axes[0].values.len(), axes[1].values.len()];
     let mut cells = vec![[0_usize; 3]; across * up];
-    let of = |point: &&Point| point.solver == solver && point.resolution == level;
+    let is_in_panel = |point: &&Point| point.solver == solver && point.resolution == level;
     let mut all = [0_usize; 3];
-    for point in sweep.points.iter().filter(of) {
+    for point in sweep.points.iter().filter(is_in_panel) {
         // A cell without a judged point has the colour of amber points.
         let standing = (point.standing() as usize).min(Standing::Amber as usize);
         all[standing] += 1;

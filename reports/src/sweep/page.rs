@@ -51,14 +51,15 @@ fn factors(sweep: &Sweep) -> String {
 /// Renders a table with one row per solver and level: number of points by status, and errors.
 fn table(sweep: &Sweep) -> Markup {
     let rows = levels(sweep).into_iter().map(|(solver, level)| {
-        let of = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
-        let count = |standing| of().filter(|point| point.standing() == standing).count() as u64;
-        let mut errors: Vec<f64> = of().filter_map(super::Point::error).collect();
+        let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
+        let count = |standing| level_points().filter(|point| point.standing() == standing).count() as u64;
+        let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
         errors.sort_by(f64::total_cmp);
         let at = |part: f64| {
             errors.get(((errors.len() as f64 * part) as usize).min(errors.len().saturating_sub(1))).copied()
         };
-        let mut steps: Vec<u64> = of().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
+        let mut steps: Vec<u64> =
+            level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
         steps.sort_unstable();
         let error = |value: Option<f64>| value.map_or_else(|| "—".to_owned(), number::fraction);
         [

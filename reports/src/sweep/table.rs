@@ -11,26 +11,26 @@ use std::io::{self, Write};
 type Row<'a> = (&'a Point, usize, &'a Looked);
 
 fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
-    let of = |point| -> Vec<Row<'_>> {
+    let point_rows = |point| -> Vec<Row<'_>> {
         let point: &Point = point;
         point.left.looked.iter().enumerate().map(|(at, looked)| (point, at, looked)).collect()
     };
-    sweep.points.iter().flat_map(of).collect()
+    sweep.points.iter().flat_map(point_rows).collect()
 }
 
 /// Returns the columns with their names. Absent values are null.
 pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     let rows = rows(sweep);
-    let words = |of: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(of).collect());
-    let told = |of: &dyn Fn(&Row<'_>) -> Option<f64>| Values::Told(rows.iter().map(of).collect());
-    let count = |of: &dyn Fn(&super::Ran) -> Option<u64>| {
-        told(&|(point, _, _)| point.left.ran.as_ref().and_then(of).map(|count| count as f64))
+    let words = |value: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(value).collect());
+    let optional = |value: &dyn Fn(&Row<'_>) -> Option<f64>| Values::Told(rows.iter().map(value).collect());
+    let count = |value: &dyn Fn(&super::Ran) -> Option<u64>| {
+        optional(&|(point, _, _)| point.left.ran.as_ref().and_then(value).map(|count| count as f64))
     };
     let mut columns = vec![("case".to_owned(), words(&|_| sweep.scene.clone()))];
     for (place, factor) in sweep.factors.iter().enumerate() {
         let are_numbers = sweep.points.iter().all(|point| point.factors[place].is_number());
         let values = if are_numbers {
-            told(&|(point, _, _)| point.factors[place].as_f64())
+            optional(&|(point, _, _)| point.factors[place].as_f64())
         } else {
             words(&|(point, _, _)| match &point.factors[place] {
                 Value::String(word) => word.clone(),
@@ -50,20 +50,20 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
         ("resolution", words(&|(point, _, _)| point.resolution.clone())),
         ("quantity", words(&|(_, at, _)| sweep.quantities[*at].words.clone())),
         ("unit", words(&|(_, at, _)| sweep.quantities[*at].unit.clone())),
-        ("value", told(&|(_, _, looked)| looked.value)),
-        ("expected", told(&|(_, _, looked)| looked.expected.and_then(Expected::value))),
+        ("value", optional(&|(_, _, looked)| looked.value)),
+        ("expected", optional(&|(_, _, looked)| looked.expected.and_then(Expected::value))),
         ("bound", words(&|(_, _, looked)| bound(looked))),
-        ("scale", told(&|(_, _, looked)| looked.scale)),
-        ("error", told(&|(_, _, looked)| looked.error)),
-        ("allowed", told(&|(_, _, looked)| looked.allowed)),
+        ("scale", optional(&|(_, _, looked)| looked.scale)),
+        ("error", optional(&|(_, _, looked)| looked.error)),
+        ("allowed", optional(&|(_, _, looked)| looked.allowed)),
         ("verdict", words(&|(_, _, looked)| looked.verdict.map_or("", Outcome::word).to_owned())),
         ("detail", words(&|(point, _, looked)| detail(point, looked))),
         ("steps", count(&|ran| Some(ran.steps))),
         ("particle_steps", count(&|ran| Some(ran.particle_steps))),
         ("contact_evaluations", count(&|ran| ran.contact_evaluations)),
         ("node_updates", count(&|ran| ran.node_updates)),
-        ("time_step", told(&|(point, _, _)| point.left.ran.map(|ran| ran.time_step))),
-        ("wall_seconds", told(&|(point, _, _)| wall(point))),
+        ("time_step", optional(&|(point, _, _)| point.left.ran.map(|ran| ran.time_step))),
+        ("wall_seconds", optional(&|(point, _, _)| wall(point))),
     ];
     columns.extend(rest.map(|(name, values)| (name.to_owned(), values)));
     columns
@@ -90,13 +90,13 @@ pub(super) fn write_results(sweep: &Sweep, out: &mut impl Write) -> io::Result<(
     out.write_all(b",\n  \"verdicts\": [")?;
     let mut before = "\n    ";
     for point in &sweep.points {
-        for (of, looked) in sweep.quantities.iter().zip(&point.left.looked) {
+        for (quantity, looked) in sweep.quantities.iter().zip(&point.left.looked) {
             let detail = looked.detail.as_ref().or(point.left.detail.as_ref());
             let row = serde_json::json!({
                 "case": sweep.scene, "variant": "", "set": knobs(point), "solver": point.solver,
-                "resolution": point.resolution, "quantity": of.words, "unit": of.unit, "value": looked.value,
+                "resolution": point.resolution, "quantity": quantity.words, "unit": quantity.unit, "value": looked.value,
                 "expected": looked.expected, "scale": looked.scale, "error": looked.error, "allowed": looked.allowed,
-                "source": of.source, "verdict": looked.verdict.map(Outcome::word), "detail": detail,
+                "source": quantity.source, "verdict": looked.verdict.map(Outcome::word), "detail": detail,
             });
             out.write_all(before.as_bytes())?;
             serde_json::to_writer(&mut *out, &row)?;

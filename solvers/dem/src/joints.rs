@@ -24,17 +24,17 @@ pub(crate) struct Joints {
 impl Joints {
     /// Finds the joined edges. Walls that move differently have no joint.
     pub(crate) fn new(walls: &[Wall]) -> Self {
-        let of = walls.iter().enumerate().map(|(number, wall)| {
+        let joined_edges = walls.iter().enumerate().map(|(number, wall)| {
             let joined = |edge: &Edge| -> Vec<usize> {
                 let others = walls.iter().enumerate().filter(|(other, _)| *other != number);
                 let on = others.filter(|(_, other)| moves_alike(wall, other) && edge.lies_on(other));
                 on.map(|(other, _)| other).collect()
             };
-            let edges = edges(&wall.shape).into_iter().enumerate().map(|(edge, of)| (edge, joined(&of)));
+            let edges = edges(&wall.shape).into_iter().enumerate().map(|(edge, ends)| (edge, joined(&ends)));
             edges.filter(|(_, on)| !on.is_empty()).collect()
         });
-        let of: Vec<Vec<(usize, Vec<usize>)>> = of.collect();
-        if of.iter().all(Vec::is_empty) { Self::default() } else { Self { of } }
+        let edge_lists: Vec<Vec<(usize, Vec<usize>)>> = joined_edges.collect();
+        if edge_lists.iter().all(Vec::is_empty) { Self::default() } else { Self { of: edge_lists } }
     }
 
     /// Finds the grains at joined edges whose contact belongs to another wall, and passes their springs on to it, so

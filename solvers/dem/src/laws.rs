@@ -140,10 +140,10 @@ pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST])
 pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     lanes: L,
     table: &[[Quad; N]],
-    of: usize,
+    material: usize,
     at: &[usize; WIDEST],
 ) -> [Wide<L>; 4] {
-    let [a, b, c, d] = lanes.gather(table, of, at);
+    let [a, b, c, d] = lanes.gather(table, material, at);
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 
@@ -153,10 +153,10 @@ pub(crate) fn gathered_of<L: Lanes, const N: usize>(
 pub(crate) fn between<L: Lanes, const N: usize>(
     lanes: L,
     table: &[[Quad; N]],
-    of: usize,
+    material: usize,
     [from, to]: [&[usize; WIDEST]; 2],
 ) -> [Wide<L>; 4] {
-    let [a, b, c, d] = lanes.between(table, of, from, to);
+    let [a, b, c, d] = lanes.between(table, material, from, to);
     [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
 }
 
@@ -166,11 +166,11 @@ pub(crate) fn between<L: Lanes, const N: usize>(
 /// # Panics
 /// When an index is out of range.
 #[inline(always)]
-pub(crate) fn places<L: Lanes>(_: L, of: &[u32], length: usize) -> [usize; WIDEST] {
-    let of = &of[..L::WIDTH];
+pub(crate) fn places<L: Lanes>(_: L, slots: &[u32], length: usize) -> [usize; WIDEST] {
+    let slots = &slots[..L::WIDTH];
     let mut places = [0; WIDEST];
     for lane in 0..L::WIDTH {
-        places[lane] = of[lane] as usize;
+        places[lane] = slots[lane] as usize;
         assert!(places[lane] < length, "a place in the tables");
     }
     places

@@ -89,8 +89,10 @@ impl Pairs {
         });
         for (at, (.., memory)) in sorted.iter().enumerate() {
             pairs.touches[at / WIDEST] |= 1 << (at % WIDEST);
-            for (number, of) in pairs.memory[at / BLOCK].iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
-                of.push(memory[number]);
+            for (number, values) in
+                pairs.memory[at / BLOCK].iter_mut().enumerate().filter(|(_, values)| !values.is_empty())
+            {
+                values.push(memory[number]);
             }
         }
         pairs
@@ -101,8 +103,8 @@ impl Pairs {
         let own = self.own();
         self.places().into_iter().enumerate().filter_map(move |(at, place)| {
             let number = |number: usize| self.memory[at / BLOCK][number].get(place as usize).copied().unwrap_or(0.0);
-            let told = place > 0 && own.contains(&at);
-            told.then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
+            let is_remembered = place > 0 && own.contains(&at);
+            is_remembered.then(|| (self.row[at], self.partner[at], std::array::from_fn(number)))
         })
     }
 
@@ -127,7 +129,7 @@ impl Pairs {
         let nothing = lists
             .iter()
             .find_map(|list| list.memory.first())
-            .map(|of| of.each_ref().map(|of| of[..of.len().min(1)].to_vec()));
+            .map(|values| values.each_ref().map(|values| values[..values.len().min(1)].to_vec()));
         for list in lists {
             let own = list.own();
             for (at, place) in list.places().into_iter().enumerate().take(own.end) {
@@ -164,7 +166,7 @@ impl Pairs {
 
     /// Returns the range of pairs in its own rows.
     pub(crate) fn own(&self) -> Range<usize> {
-        let end = |of: Option<&u32>| of.map_or(0, |&end| end as usize);
+        let end = |end_index: Option<&u32>| end_index.map_or(0, |&end| end as usize);
         end(self.start.first())..end(self.start.last())
     }
 
@@ -180,9 +182,12 @@ impl Pairs {
         let rows = start.len() == grains + 1 || start == &[0];
         let in_order = start.first() == Some(&0) && start.is_sorted();
         let remembers = |count: usize| if layout.numbers > 0 && *start != [0] { count } else { 0 };
-        let told = |(bits, of): (&[u8], &Remembered)| {
+        let is_consistent = |(bits, history): (&[u8], &Remembered)| {
             let touched = bits.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
-            of.iter().enumerate().all(|(number, of)| of.len() == if number < layout.numbers { 1 + touched } else { 0 })
+            history
+                .iter()
+                .enumerate()
+                .all(|(number, numbers)| numbers.len() == if number < layout.numbers { 1 + touched } else { 0 })
         };
         rows && in_order
             && start.last().is_some_and(|&last| last as usize == count)
@@ -194,7 +199,7 @@ impl Pairs {
             && (shift.is_empty() || shift.len() == partner.len())
             && touches.len() == remembers(count.div_ceil(WIDEST))
             && memory.len() == remembers(count.div_ceil(BLOCK))
-            && touches.chunks(BLOCK / WIDEST).zip(memory).all(told)
+            && touches.chunks(BLOCK / WIDEST).zip(memory).all(is_consistent)
             // The padding after the last pair holds slot 0, even if there are no grains.
             && row.iter().chain(partner).all(|&slot| (slot as usize) < grains.max(1))
     }
@@ -240,22 +245,22 @@ impl Pairs {
         let Some(memory) = self.memory.get_mut(block) else { return };
         if let Some(before) = before {
             std::mem::swap(memory, before);
-            for (of, before) in memory.iter_mut().zip(before) {
+            for (values, before) in memory.iter_mut().zip(before) {
                 // All entries will be overwritten, except for the first, which is zero.
-                of.resize(if before.is_empty() { 0 } else { of.len().max(1) }, 0.0);
+                values.resize(if before.is_empty() { 0 } else { values.len().max(1) }, 0.0);
             }
         }
-        for of in memory.iter_mut().filter(|of| !of.is_empty()) {
+        for values in memory.iter_mut().filter(|values| !values.is_empty()) {
             let room = 1 + count + WIDEST;
-            reserve(of, room.saturating_sub(of.len()));
-            of.resize(room, 0.0);
+            reserve(values, room.saturating_sub(values.len()));
+            values.resize(room, 0.0);
         }
     }
 
     /// Removes the padding of a block's history after a number of contacts has been written.
     pub(crate) fn remember(&mut self, block: usize, count: usize) {
         if let Some(memory) = self.memory.get_mut(block) {
-            memory.iter_mut().for_each(|of| of.truncate(1 + count));
+            memory.iter_mut().for_each(|values| values.truncate(1 + count));
         }
     }
 
@@ -289,19 +294,24 @@ mod tests {
                 partners.push(1)
             }
         });
-        let of = |pairs: &Pairs, grains: usize| pairs.is_of(grains, layout);
-        assert!(of(&pairs, 2) && of(&Pairs::empty(), 2) && !of(&pairs, 1) && !of(&pairs, 3));
+        let is_of_grains = |pairs: &Pairs, grains: usize| pairs.is_of(grains, layout);
+        assert!(
+            is_of_grains(&pairs, 2)
+                && is_of_grains(&Pairs::empty(), 2)
+                && !is_of_grains(&pairs, 1)
+                && !is_of_grains(&pairs, 3)
+        );
         let mut other = pairs.clone();
         other.partner[0] = 2;
-        assert!(!of(&other, 2));
-        assert!(!of(&Pairs { start: vec![0, 2, 1], ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { start: vec![0, 1, 2], ..pairs.clone() }, 2));
+        assert!(!is_of_grains(&other, 2));
+        assert!(!is_of_grains(&Pairs { start: vec![0, 2, 1], ..pairs.clone() }, 2));
+        assert!(!is_of_grains(&Pairs { start: vec![0, 1, 2], ..pairs.clone() }, 2));
         let mut other = pairs.clone();
         other.row[0] = 1;
-        assert!(!of(&other, 2));
-        assert!(!of(&Pairs { touches: Vec::new(), ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { touches: vec![1], ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { memory: Default::default(), ..pairs.clone() }, 2));
-        assert!(!of(&Pairs { row: vec![0], ..pairs }, 2));
+        assert!(!is_of_grains(&other, 2));
+        assert!(!is_of_grains(&Pairs { touches: Vec::new(), ..pairs.clone() }, 2));
+        assert!(!is_of_grains(&Pairs { touches: vec![1], ..pairs.clone() }, 2));
+        assert!(!is_of_grains(&Pairs { memory: Default::default(), ..pairs.clone() }, 2));
+        assert!(!is_of_grains(&Pairs { row: vec![0], ..pairs }, 2));
     }
 }

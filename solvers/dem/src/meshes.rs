@@ -128,9 +128,9 @@ fn remembered(own: &[Held], found: &[Touched], touched: &Touched, radius: f64) -
     if let Some(same) = own.iter().find(|held| held.group == touched.group) {
         return same.memory;
     }
-    let is_new = |of: &Touched| own.iter().all(|held| held.group != of.group);
+    let is_new = |contact: &Touched| own.iter().all(|held| held.group != contact.group);
     let left = own.iter().filter(|held| found.iter().all(|other| other.group != held.group));
-    let away = |held: &Held, of: &Touched| (held.point - of.point).norm();
+    let away = |held: &Held, contact: &Touched| (held.point - contact.point).norm();
     let nearest = left.min_by(|a, b| away(a, touched).total_cmp(&away(b, touched)));
     nearest.filter(|held| away(held, touched) <= GOES_ON * radius).map_or_else(Default::default, |held| {
         let nearer = |other: &&Touched| is_new(other) && away(held, other) < away(held, touched);

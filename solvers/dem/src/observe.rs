@@ -17,7 +17,7 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
     let contacts = simulation.take_contacts();
     let (simulation, scene) = (&*simulation, &simulation.scene);
     let grains: Vec<GrainState> = grain_states(simulation).collect();
-    let elastic_energy = simulation.energies().map(|of| of.elastic).sum();
+    let elastic_energy = simulation.energies().map(|energies| energies.elastic).sum();
     let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
     let walls = simulation
         .walls

@@ -91,7 +91,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     ) -> Self {
         let Pairs { shift, memory, .. } = pairs;
         let memory = match memory.get_mut(block) {
-            Some(memory) => memory.each_mut().map(|of| of.get_mut(1..).unwrap_or_default()),
+            Some(memory) => memory.each_mut().map(|numbers| numbers.get_mut(1..).unwrap_or_default()),
             None => Default::default(),
         };
         Self { terms, touching, grains, sums, shift, memory, seen, chain: PhantomData }

@@ -103,14 +103,18 @@ fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> Simulate
             *each = if number % 2 == 0 { law } else { other };
         }
         for convention in Convention::ALL {
-            let of = |path, team: &Team| state(simulated(&scene, &convention, team.clone()), path);
-            let expected = of(Processor::Portable, &Team::default());
+            let state_on = |path, team: &Team| state(simulated(&scene, &convention, team.clone()), path);
+            let expected = state_on(Processor::Portable, &Team::default());
             for path in Processor::all() {
-                assert!(of(path, &Team::default()) == expected, "{}, {name}: {}", convention.name, path.name());
+                assert!(state_on(path, &Team::default()) == expected, "{}, {name}: {}", convention.name, path.name());
             }
             for team in &teams {
                 let threads = team.members();
-                assert!(of(Processor::best(), team) == expected, "{}, {name}: {threads} threads", convention.name);
+                assert!(
+                    state_on(Processor::best(), team) == expected,
+                    "{}, {name}: {threads} threads",
+                    convention.name
+                );
             }
         }
     }

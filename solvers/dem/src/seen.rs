@@ -69,7 +69,7 @@ impl Seen {
         if !self.one_by_one {
             return;
         }
-        let vector = |of: S::Vectors<X>| Vector3::from(S::whole(of, zero).map(X::first));
+        let vector = |vectors: S::Vectors<X>| Vector3::from(S::whole(vectors, zero).map(X::first));
         let (normal, overlap) = (vector(answer.normal), answer.overlap.first());
         self.contacts.push(ContactState {
             grain,

@@ -72,7 +72,7 @@ impl Share {
 
     /// Selects the pairs in some rows, and the pairs that involve their grains.
     pub(crate) fn reaching(shares: &[Self], rows: Range<usize>) -> Self {
-        let lists = |of: fn(&Self) -> &Pairs| shares.iter().map(of).collect::<Vec<_>>();
+        let lists = |pairs_of: fn(&Self) -> &Pairs| shares.iter().map(pairs_of).collect::<Vec<_>>();
         let chosen = |lists: &[&Pairs]| Pairs::chosen(lists, rows.clone(), |partner| rows.contains(&partner));
         Self {
             near: chosen(&lists(|share| &share.near)),

@@ -140,8 +140,8 @@ impl<S: Geometry> Simulated<S> {
             accounting: scene.asks_for_budget(),
             accounts: Accounts::default(),
             mean_virial: {
-                let of = |columns: &Columns| MeanVirial::new(scene.grains.len(), columns.mean_every);
-                scene.columns.has(Chosen::MeanVirial).then(|| Box::new(of(&scene.columns)))
+                let empty_mean_virial = |columns: &Columns| MeanVirial::new(scene.grains.len(), columns.mean_every);
+                scene.columns.has(Chosen::MeanVirial).then(|| Box::new(empty_mean_virial(&scene.columns)))
             },
             free_mass: {
                 let groups = scene.driven_group_of_grains();
@@ -174,8 +174,9 @@ impl<S: Geometry> Simulated<S> {
 
     /// Returns the energies of the contacts in the last recorded force evaluation.
     pub(crate) fn energies(&self) -> impl Iterator<Item = &Energies> {
-        let of = |list: usize| self.neighbours.shares.iter().flat_map(move |share| &share.seen()[list].energies);
-        self.seen_at_walls.energies.iter().chain(of(0)).chain(of(1))
+        let list_energies =
+            |list: usize| self.neighbours.shares.iter().flat_map(move |share| &share.seen()[list].energies);
+        self.seen_at_walls.energies.iter().chain(list_energies(0)).chain(list_energies(1))
     }
 
     /// Returns the number of rows of grains and contacts.
@@ -195,7 +196,7 @@ impl<S: Geometry> Simulated<S> {
             let apart = self.grains.position(b) - self.grains.position(a) - shift;
             apart.norm() < self.grains.radius(a) + self.grains.radius(b)
         };
-        let of = |pairs: &Pairs| {
+        let pairs_in_contact = |pairs: &Pairs| {
             pairs
                 .own()
                 .filter(|&at| {
@@ -204,7 +205,8 @@ impl<S: Geometry> Simulated<S> {
                 })
                 .count()
         };
-        let pairs = self.neighbours.shares.iter().map(|share| of(&share.near) + of(&share.across));
+        let pairs =
+            self.neighbours.shares.iter().map(|share| pairs_in_contact(&share.near) + pairs_in_contact(&share.across));
         pairs.sum::<usize>() + self.walls.iter().map(MovingWall::pairs).sum::<usize>()
     }
 
@@ -246,8 +248,9 @@ impl<S: Geometry> Simulated<S> {
     fn add_virials(&mut self) {
         let Self { mean_virial, neighbours, seen_at_walls, scene, step, .. } = self;
         if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(*step)) {
-            let of = |list: usize| neighbours.shares.iter().flat_map(move |share| &share.seen()[list].contacts);
-            mean.add(seen_at_walls.contacts.iter().chain(of(0)).chain(of(1)), &scene.grains);
+            let list_contacts =
+                |list: usize| neighbours.shares.iter().flat_map(move |share| &share.seen()[list].contacts);
+            mean.add(seen_at_walls.contacts.iter().chain(list_contacts(0)).chain(list_contacts(1)), &scene.grains);
         }
     }
 
@@ -407,8 +410,8 @@ impl<S: Geometry> Simulated<S> {
             velocities: velocities.collect(),
             gravity: self.scene.gravity,
             free_mass: self.free_mass,
-            friction: self.energies().map(|of| of.rubbed).sum(),
-            released: self.energies().map(|of| of.released).sum(),
+            friction: self.energies().map(|energies| energies.rubbed).sum(),
+            released: self.energies().map(|energies| energies.released).sum(),
             time_step: self.motion.time_step,
         });
     }
@@ -463,8 +466,8 @@ impl<S: Geometry> Simulated<S> {
         let Self { neighbours, grains, mean_radius, step, .. } = self;
         let pairs = neighbours.pairs();
         let steps = (*step - neighbours.built_at).max(1);
-        let of = [pairs as f64, grains.len() as f64, steps as f64];
-        neighbours.skin = skin::next(neighbours.skin, *mean_radius, of, S::DIMENSION);
+        let counts = [pairs as f64, grains.len() as f64, steps as f64];
+        neighbours.skin = skin::next(neighbours.skin, *mean_radius, counts, S::DIMENSION);
     }
 
     /// Rebuilds the neighbour list, after a check of every grain.

@@ -132,8 +132,8 @@ const ALL: u32 = 255;
 
 /// Returns eight integers of a row, from an index.
 #[inline(always)]
-fn eight(of: &[u32], from: usize) -> [u32; WIDEST] {
+fn eight(values: &[u32], from: usize) -> [u32; WIDEST] {
     let mut eight = [0; WIDEST];
-    eight.copy_from_slice(&of[from..from + WIDEST]);
+    eight.copy_from_slice(&values[from..from + WIDEST]);
     eight
 }

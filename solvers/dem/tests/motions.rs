@@ -74,7 +74,7 @@ fn pressed(motion: &str) -> Record {
 
 /// Returns the bits of all samples.
 fn bits(record: &Record) -> Vec<u64> {
-    let columns = record.series.columns.iter().flat_map(|of| column(record, &of.name));
+    let columns = record.series.columns.iter().flat_map(|series_column| column(record, &series_column.name));
     columns.map(|value| value.to_bits()).collect()
 }
 

@@ -180,15 +180,15 @@ fn driven_grains_give_what_they_say() {
         Dem::new(Convention::CUNDALL_STRACK).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap();
     assert!((last(&record, "moved.y") - 0.1).abs() < 1e-12 && last(&record, "still.y") == 0.0);
     assert!(last(&record, "moved.omega") == 0.0 && last(&record, "free.omega") != 0.0);
-    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+    let budget = |entry: &str| last(&record, &format!("budget.{entry}"));
     for axis in ["x", "y"] {
         let start = record.series.column(&format!("budget.momentum_{axis}")).unwrap()[0];
-        let off = of(&format!("momentum_{axis}")) - start - of(&format!("impulse_{axis}"));
+        let off = budget(&format!("momentum_{axis}")) - start - budget(&format!("impulse_{axis}"));
         assert!(off.abs() < 1e-10, "{axis}: {off}");
     }
-    let open = of("unbalanced") - record.series.column("budget.unbalanced").unwrap()[0];
-    assert!(of("friction") > 0.0 && open.abs() < 1e-3 * of("work").abs(), "{open} of {}", of("work"));
-    assert!((open - of("friction")).abs() > 1e-2 * of("work").abs(), "it would not close without friction");
+    let open = budget("unbalanced") - record.series.column("budget.unbalanced").unwrap()[0];
+    assert!(budget("friction") > 0.0 && open.abs() < 1e-3 * budget("work").abs(), "{open} of {}", budget("work"));
+    assert!((open - budget("friction")).abs() > 1e-2 * budget("work").abs(), "it would not close without friction");
 }
 
 /// Forces do not move a grain with prescribed motion. It acts on the dashpot of a contact like a wall, and the

@@ -19,8 +19,8 @@ impl Lanes for V3 {
         pulp::cast([a, b, c, d])
     }
     #[inline(always)]
-    fn store(self, of: __m256d) -> [f64; WIDEST] {
-        let [a, b, c, d] = pulp::cast(of);
+    fn store(self, register: __m256d) -> [f64; WIDEST] {
+        let [a, b, c, d] = pulp::cast(register);
         [a, b, c, d, 0.0, 0.0, 0.0, 0.0]
     }
     #[inline(always)]
@@ -56,43 +56,43 @@ impl Lanes for V3 {
         self.avx._mm256_movemask_pd(mask).cast_unsigned()
     }
     #[inline(always)]
-    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m256d; 4] {
+    fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [__m256d; 4] {
         self.turned([
-            pulp::cast(table[at[0]][of].0),
-            pulp::cast(table[at[1]][of].0),
-            pulp::cast(table[at[2]][of].0),
-            pulp::cast(table[at[3]][of].0),
+            pulp::cast(table[at[0]][number].0),
+            pulp::cast(table[at[1]][number].0),
+            pulp::cast(table[at[2]][number].0),
+            pulp::cast(table[at[3]][number].0),
         ])
     }
     #[inline(always)]
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],
-        of: usize,
+        number: usize,
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [__m256d; 4] {
         self.turned([
-            less(self, table[from[0]][of], table[to[0]][of]),
-            less(self, table[from[1]][of], table[to[1]][of]),
-            less(self, table[from[2]][of], table[to[2]][of]),
-            less(self, table[from[3]][of], table[to[3]][of]),
+            less(self, table[from[0]][number], table[to[0]][number]),
+            less(self, table[from[1]][number], table[to[1]][number]),
+            less(self, table[from[2]][number], table[to[2]][number]),
+            less(self, table[from[3]][number], table[to[3]][number]),
         ])
     }
     #[inline(always)]
-    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+    fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
         let places = PLACES[(bits & 255) as usize];
-        pulp::cast(self.avx2._mm256_permutevar8x32_epi32(pulp::cast(*of), pulp::cast(places)))
+        pulp::cast(self.avx2._mm256_permutevar8x32_epi32(pulp::cast(*integers), pulp::cast(places)))
     }
     #[inline(always)]
-    fn quads(self, of: [__m256d; 4]) -> [Quad; WIDEST] {
-        let ([a, b, c, d], none) = (self.turned(of), Quad::default());
+    fn quads(self, registers: [__m256d; 4]) -> [Quad; WIDEST] {
+        let ([a, b, c, d], none) = (self.turned(registers), Quad::default());
         let quad = |row| Quad(pulp::cast(row));
         [quad(a), quad(b), quad(c), quad(d), none, none, none, none]
     }
     #[inline(always)]
-    fn pairs(self, of: [[__m256d; 4]; 2]) -> [[Quad; 2]; WIDEST] {
-        crate::paired(self.quads(of[0]), self.quads(of[1]))
+    fn pairs(self, registers: [[__m256d; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+        crate::paired(self.quads(registers[0]), self.quads(registers[1]))
     }
     #[inline(always)]
     fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
@@ -137,8 +137,8 @@ impl FourLanes for V3 {
         self.avx._mm256_setr_pd(a, b, c, d)
     }
     #[inline(always)]
-    fn values(self, of: __m256d) -> [f64; LANES] {
-        pulp::cast(of)
+    fn values(self, register: __m256d) -> [f64; LANES] {
+        pulp::cast(register)
     }
     #[inline(always)]
     fn sums(self, [a, b, c, d]: [__m256d; LANES]) -> [f64; LANES] {

@@ -29,12 +29,12 @@ const SIGN: u64 = 1 << 63;
 /// Returns the quads of a table at eight indices, two per register: 0 and 2, 1 and 3, 4 and 6, 5 and 7. With this
 /// order, the last step of the transposition leaves them in sequence.
 #[inline(always)]
-fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
+fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
     [
-        both(lanes, table[at[0]][of], table[at[2]][of]),
-        both(lanes, table[at[1]][of], table[at[3]][of]),
-        both(lanes, table[at[4]][of], table[at[6]][of]),
-        both(lanes, table[at[5]][of], table[at[7]][of]),
+        both(lanes, table[at[0]][number], table[at[2]][number]),
+        both(lanes, table[at[1]][number], table[at[3]][number]),
+        both(lanes, table[at[4]][number], table[at[6]][number]),
+        both(lanes, table[at[5]][number], table[at[7]][number]),
     ]
 }
 
@@ -89,8 +89,8 @@ impl Lanes for V4 {
         pulp::cast(*from)
     }
     #[inline(always)]
-    fn store(self, of: __m512d) -> [f64; WIDEST] {
-        pulp::cast(of)
+    fn store(self, register: __m512d) -> [f64; WIDEST] {
+        pulp::cast(register)
     }
     #[inline(always)]
     fn add(self, a: __m512d, b: __m512d) -> __m512d {
@@ -125,18 +125,18 @@ impl Lanes for V4 {
         u32::from(mask)
     }
     #[inline(always)]
-    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
-        turned(self, twos(self, table, of, at))
+    fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
+        turned(self, twos(self, table, number, at))
     }
     #[inline(always)]
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],
-        of: usize,
+        number: usize,
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [__m512d; 4] {
-        let (from, to) = (twos(self, table, of, from), twos(self, table, of, to));
+        let (from, to) = (twos(self, table, number, from), twos(self, table, number, to));
         turned(
             self,
             [
@@ -148,8 +148,8 @@ impl Lanes for V4 {
         )
     }
     #[inline(always)]
-    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
-        pulp::cast(self.avx512vl._mm256_maskz_compress_epi32(bits as __mmask8, pulp::cast(*of)))
+    fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+        pulp::cast(self.avx512vl._mm256_maskz_compress_epi32(bits as __mmask8, pulp::cast(*integers)))
     }
     #[inline(always)]
     fn quads(self, [a, b, c, d]: [__m512d; 4]) -> [Quad; WIDEST] {

@@ -72,7 +72,7 @@ pub trait Lanes: Copy + 'static {
     /// Loads the first numbers of a row, one per lane.
     fn load(self, from: &[f64; WIDEST]) -> Self::Register;
     /// Stores the number of each lane at the start of a row.
-    fn store(self, of: Self::Register) -> [f64; WIDEST];
+    fn store(self, register: Self::Register) -> [f64; WIDEST];
     /// Returns `a + b`.
     fn add(self, a: Self::Register, b: Self::Register) -> Self::Register;
     /// Returns `a − b`.
@@ -89,25 +89,25 @@ pub trait Lanes: Copy + 'static {
     fn choose(self, mask: Self::Mask, yes: Self::Register, no: Self::Register) -> Self::Register;
     /// Returns the mask as bits, with the first lane as the lowest bit.
     fn bits(self, mask: Self::Mask) -> u32;
-    /// Gathers quad `of` of the table entries at the first indices of `at`, and transposes them: the first register
+    /// Gathers quad `number` of the table entries at the first indices of `at`, and transposes them: the first register
     /// holds the first numbers of all quads, and so on.
-    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
+    fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
     /// Returns the differences between the quads at the first indices of `to` and at those of `from`, transposed as in
     /// [`gather`](Self::gather). The fourth register holds sums instead.
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],
-        of: usize,
+        number: usize,
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [Self::Register; 4];
     /// Moves the integers whose bit is set to the front, in their order; the remaining entries are unspecified. The
     /// first bit is the lowest.
-    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
+    fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
     /// Reverses [`gather`](Self::gather): returns one quad per lane at the start of a row.
-    fn quads(self, of: [Self::Register; 4]) -> [Quad; WIDEST];
+    fn quads(self, registers: [Self::Register; 4]) -> [Quad; WIDEST];
     /// Returns two quads per lane.
-    fn pairs(self, of: [[Self::Register; 4]; 2]) -> [Self::Pair; WIDEST];
+    fn pairs(self, registers: [[Self::Register; 4]; 2]) -> [Self::Pair; WIDEST];
     /// Adds a pair of quads to two quads.
     fn add_to(self, quads: &mut [Quad; 2], pair: Self::Pair);
     /// Subtracts the first quad of a pair from the first of two quads, and adds the second to the second.
@@ -139,9 +139,9 @@ pub trait FourLanes: Lanes {
     /// Returns a register with these numbers.
     fn of(self, values: [f64; LANES]) -> Self::Register;
     /// Returns the numbers of a register.
-    fn values(self, of: Self::Register) -> [f64; LANES];
+    fn values(self, register: Self::Register) -> [f64; LANES];
     /// Returns the sums over the lanes of four registers, (a₀ + a₁) + (a₂ + a₃).
-    fn sums(self, of: [Self::Register; LANES]) -> [f64; LANES];
+    fn sums(self, registers: [Self::Register; LANES]) -> [f64; LANES];
 }
 
 #[cfg(test)]

@@ -155,8 +155,8 @@ impl<L: FourLanes> Wide<L> {
     /// Returns the sum over the lanes of each register.
     #[inline(always)]
     #[must_use]
-    pub fn sums(of: [Self; LANES]) -> [f64; LANES] {
-        let [a, b, c, d] = of;
+    pub fn sums(numbers: [Self; LANES]) -> [f64; LANES] {
+        let [a, b, c, d] = numbers;
         a.lanes.sums([a.register, b.register, c.register, d.register])
     }
 }

@@ -48,57 +48,57 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
     }
     #[inline(always)]
     fn load(self, from: &[f64; WIDEST]) -> [f64; WIDTH] {
-        let mut of = [0.0; WIDTH];
-        of.copy_from_slice(&from[..WIDTH]);
-        of
+        let mut register = [0.0; WIDTH];
+        register.copy_from_slice(&from[..WIDTH]);
+        register
     }
     #[inline(always)]
-    fn store(self, of: [f64; WIDTH]) -> [f64; WIDEST] {
+    fn store(self, register: [f64; WIDTH]) -> [f64; WIDEST] {
         let mut row = [0.0; WIDEST];
-        row[..WIDTH].copy_from_slice(&of);
+        row[..WIDTH].copy_from_slice(&register);
         row
     }
     #[inline(always)]
     fn add(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = a;
-        each!(lane of WIDTH => of[lane] = a[lane] + b[lane]);
-        of
+        let mut result = a;
+        each!(lane of WIDTH => result[lane] = a[lane] + b[lane]);
+        result
     }
     #[inline(always)]
     fn sub(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = a;
-        each!(lane of WIDTH => of[lane] = a[lane] - b[lane]);
-        of
+        let mut result = a;
+        each!(lane of WIDTH => result[lane] = a[lane] - b[lane]);
+        result
     }
     #[inline(always)]
     fn mul(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = a;
-        each!(lane of WIDTH => of[lane] = a[lane] * b[lane]);
-        of
+        let mut result = a;
+        each!(lane of WIDTH => result[lane] = a[lane] * b[lane]);
+        result
     }
     #[inline(always)]
     fn div(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = a;
-        each!(lane of WIDTH => of[lane] = a[lane] / b[lane]);
-        of
+        let mut result = a;
+        each!(lane of WIDTH => result[lane] = a[lane] / b[lane]);
+        result
     }
     #[inline(always)]
     fn sqrt(self, a: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = a;
-        each!(lane of WIDTH => of[lane] = a[lane].sqrt());
-        of
+        let mut result = a;
+        each!(lane of WIDTH => result[lane] = a[lane].sqrt());
+        result
     }
     #[inline(always)]
     fn below(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [u64; WIDTH] {
-        let mut of = [0; WIDTH];
-        each!(lane of WIDTH => of[lane] = all_bits(a[lane] < b[lane]));
-        of
+        let mut result = [0; WIDTH];
+        each!(lane of WIDTH => result[lane] = all_bits(a[lane] < b[lane]));
+        result
     }
     #[inline(always)]
     fn choose(self, mask: [u64; WIDTH], yes: [f64; WIDTH], no: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut of = yes;
-        each!(lane of WIDTH => of[lane] = chosen(mask[lane], yes[lane], no[lane]));
-        of
+        let mut result = yes;
+        each!(lane of WIDTH => result[lane] = chosen(mask[lane], yes[lane], no[lane]));
+        result
     }
     #[inline(always)]
     fn bits(self, mask: [u64; WIDTH]) -> u32 {
@@ -107,36 +107,36 @@ impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
         bits
     }
     #[inline(always)]
-    fn gather<const N: usize>(self, table: &[[Quad; N]], of: usize, at: &[usize; WIDEST]) -> [[f64; WIDTH]; 4] {
+    fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [[f64; WIDTH]; 4] {
         let mut rows = [[0.0; 4]; WIDTH];
-        each!(lane of WIDTH => rows[lane] = table[at[lane]][of].0);
+        each!(lane of WIDTH => rows[lane] = table[at[lane]][number].0);
         turned(rows)
     }
     #[inline(always)]
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],
-        of: usize,
+        number: usize,
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [[f64; WIDTH]; 4] {
         let mut rows = [[0.0; 4]; WIDTH];
-        each!(lane of WIDTH => rows[lane] = less(&table[from[lane]][of], &table[to[lane]][of]));
+        each!(lane of WIDTH => rows[lane] = less(&table[from[lane]][number], &table[to[lane]][number]));
         turned(rows)
     }
     #[inline(always)]
-    fn pack(self, of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
-        packed(of, bits)
+    fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+        packed(integers, bits)
     }
     #[inline(always)]
-    fn quads(self, of: [[f64; WIDTH]; 4]) -> [Quad; WIDEST] {
+    fn quads(self, rows: [[f64; WIDTH]; 4]) -> [Quad; WIDEST] {
         let mut quads = [Quad::default(); WIDEST];
-        each!(lane of WIDTH => quads[lane] = Quad([of[0][lane], of[1][lane], of[2][lane], of[3][lane]]));
+        each!(lane of WIDTH => quads[lane] = Quad([rows[0][lane], rows[1][lane], rows[2][lane], rows[3][lane]]));
         quads
     }
     #[inline(always)]
-    fn pairs(self, of: [[[f64; WIDTH]; 4]; 2]) -> [[Quad; 2]; WIDEST] {
-        crate::paired(self.quads(of[0]), self.quads(of[1]))
+    fn pairs(self, rows: [[[f64; WIDTH]; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+        crate::paired(self.quads(rows[0]), self.quads(rows[1]))
     }
     #[inline(always)]
     fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
@@ -162,12 +162,12 @@ impl FourLanes for Plain<LANES> {
         values
     }
     #[inline(always)]
-    fn values(self, of: [f64; LANES]) -> [f64; LANES] {
-        of
+    fn values(self, register: [f64; LANES]) -> [f64; LANES] {
+        register
     }
     #[inline(always)]
-    fn sums(self, of: [[f64; LANES]; LANES]) -> [f64; LANES] {
-        of.map(|lanes| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
+    fn sums(self, registers: [[f64; LANES]; LANES]) -> [f64; LANES] {
+        registers.map(|lanes| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
     }
 }
 
@@ -179,9 +179,9 @@ const fn less(Quad(from): &Quad, Quad(to): &Quad) -> [f64; 4] {
 
 /// Moves the integers whose bit is set to the front.
 #[inline(always)]
-fn packed(of: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
+fn packed(integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
     let (mut all, mut count) = ([0; WIDEST], 0);
-    for (lane, &value) in of.iter().enumerate() {
+    for (lane, &value) in integers.iter().enumerate() {
         // Every entry is written, and overwritten by the next one if its bit is not set; this avoids an unpredictable
         // branch.
         all[count % WIDEST] = value;

@@ -38,7 +38,7 @@ impl Kernel for Every<'_> {
             pairs.iter().enumerate().for_each(|(lane, &pair)| (a[lane], b[lane]) = pair);
             let [one, two] = [Wide::load(lanes, &a), Wide::load(lanes, &b)];
             let less = one.below(two);
-            let of = [
+            let operations = [
                 one + two,
                 one - two,
                 one * two,
@@ -52,7 +52,7 @@ impl Kernel for Every<'_> {
                 Wide::choose(less, one.like(1.0), one.like(0.0)),
             ];
             assert_eq!(one.anywhere(less), less.bits() != 0);
-            for (row, wide) in rows.iter_mut().zip(of) {
+            for (row, wide) in rows.iter_mut().zip(operations) {
                 row.extend(wide.store()[..pairs.len()].iter().map(|&value| bits(value)));
             }
             rows[11].extend((0..pairs.len()).map(|lane| u64::from(less.bits() >> lane & 1)));
@@ -128,11 +128,11 @@ impl Kernel for Between<'_> {
 fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
     let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
     let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
-    let of = |&at: &usize| {
+    let expected_quad = |&at: &usize| {
         let (from, to) = (table[at].0, table[19 - at].0);
         [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
     };
-    let expected: Vec<_> = at.iter().map(of).collect();
+    let expected: Vec<_> = at.iter().map(expected_quad).collect();
     for path in Processor::all() {
         assert_eq!(path.run(Between(&table, &at)), expected, "{}", path.name());
     }
@@ -145,15 +145,15 @@ impl Kernel for Packed {
     type Output = Vec<Vec<u32>>;
 
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
-        let of = [3, 1, 4, 15, 9, 2, 6, 5];
-        (0..256_u32).map(|bits| lanes.pack(&of, bits)[..bits.count_ones() as usize].to_vec()).collect()
+        let integers = [3, 1, 4, 15, 9, 2, 6, 5];
+        (0..256_u32).map(|bits| lanes.pack(&integers, bits)[..bits.count_ones() as usize].to_vec()).collect()
     }
 }
 
 #[test]
 fn whole_numbers_are_packed_by_bits() {
-    let of = [3, 1, 4, 15, 9, 2, 6, 5];
-    let wanted = |bits: u32| (0..8).filter(move |lane| bits >> lane & 1 == 1).map(|lane| of[lane]).collect();
+    let integers = [3, 1, 4, 15, 9, 2, 6, 5];
+    let wanted = |bits: u32| (0..8).filter(move |lane| bits >> lane & 1 == 1).map(|lane| integers[lane]).collect();
     let expected: Vec<Vec<u32>> = (0..256).map(wanted).collect();
     for path in Processor::all() {
         assert_eq!(path.run(Packed), expected, "{}", path.name());
@@ -202,7 +202,7 @@ impl Kernel for Pairs<'_> {
 fn two_quads_of_each_lane_are_added_together() {
     let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
     let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
-    let of = |&at: &usize| {
+    let expected_pair = |&at: &usize| {
         let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
         sums[0].add(&table[at]);
         sums[1].add(&table[19 - at]);
@@ -211,7 +211,7 @@ fn two_quads_of_each_lane_are_added_together() {
         sums[1].add(&table[19 - at]);
         [added, sums]
     };
-    let expected: Vec<_> = at.iter().flat_map(of).collect();
+    let expected: Vec<_> = at.iter().flat_map(expected_pair).collect();
     for path in Processor::all() {
         assert_eq!(path.run(Pairs(&table, &at)), expected, "{}", path.name());
     }

@@ -297,7 +297,8 @@ impl<S: Space> Accounts<S> {
             }
             sum
         };
-        let [contacts, stray, taken] = team.fold(blocks, add, [0.0; 3], |a, b| std::array::from_fn(|of| a[of] + b[of]));
+        let [contacts, stray, taken] =
+            team.fold(blocks, add, [0.0; 3], |a, b| std::array::from_fn(|entry| a[entry] + b[entry]));
         sums.contacts += contacts;
         sums.stray += stray;
         sums.taken += taken;

@@ -162,7 +162,7 @@ impl<S: Space> Contacts<S> {
         macro_rules! push {
             ($B:ty, $friction:expr, $ledger:expr) => {{
                 let (found, friction, basis) = (&found[..], $friction, PhantomData::<$B>);
-                let told = Told { ledger: $ledger, touches: record.then_some(touches), touched };
+                let outputs = Told { ledger: $ledger, touches: record.then_some(touches), touched };
                 processor.run_by_four(Push {
                     rules,
                     bodies,
@@ -172,7 +172,7 @@ impl<S: Space> Contacts<S> {
                     walls,
                     nodes,
                     most,
-                    told,
+                    told: outputs,
                     basis,
                 });
             }};
@@ -246,17 +246,17 @@ impl<S: Space> Contacts<S> {
         });
         state.team.each(parts, |_, (bodies, mut tracers)| {
             for body in bodies {
-                let (part, of) = (&body.part, tracers.take_off(slice::from_ref(body)));
+                let (part, view) = (&body.part, tracers.take_off(slice::from_ref(body)));
                 with_basis!(setting.basis, B => {
                     let basis = PhantomData::<B>;
                     match velocities {
                         Velocities::Stepped => {
                             let velocity = |node: &Node<S>| node.velocity;
-                            processor.run_by_four(Carry { lattice, part, of, nodes, most, velocity, elapsed, basis });
+                            processor.run_by_four(Carry { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
                         }
                         Velocities::Projected => {
                             let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                            processor.run_by_four(Carry { lattice, part, of, nodes, most, velocity, elapsed, basis });
+                            processor.run_by_four(Carry { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
                         }
                     }
                 });

@@ -80,9 +80,9 @@ impl Window {
     fn places<S: Space, B: Basis>(&self, base: [i32; 3]) -> impl Iterator<Item = (usize, usize)> {
         let depth = if S::DIMENSION == 3 { B::WIDTH } else { 1 };
         (0..depth * B::WIDTH * B::WIDTH).map(move |number| {
-            let of = [number % B::WIDTH, number / B::WIDTH % B::WIDTH, number / (B::WIDTH * B::WIDTH)];
-            let node = [0, 1, 2].map(|axis| base[axis] + of[axis] as i32);
-            (self.slot(node), of[0] + Patch::COPIES.row * of[1] + Patch::COPIES.layer * of[2])
+            let offsets = [number % B::WIDTH, number / B::WIDTH % B::WIDTH, number / (B::WIDTH * B::WIDTH)];
+            let node = [0, 1, 2].map(|axis| base[axis] + offsets[axis] as i32);
+            (self.slot(node), offsets[0] + Patch::COPIES.row * offsets[1] + Patch::COPIES.layer * offsets[2])
         })
     }
 

@@ -211,9 +211,9 @@ impl Batch {
 
     /// Sets lanes without a point to the value of the first point, so that all lanes use the nodes of the batch.
     #[inline(always)]
-    fn spread<L: FourLanes>(self, lanes: L, of: Wide<L>) -> Wide<L> {
-        let [first, ..] = of.values();
-        of.like(0.0).pick_below(Wide::four(lanes, OWN[self.count]), of, of.like(first))
+    fn spread<L: FourLanes>(self, lanes: L, values: Wide<L>) -> Wide<L> {
+        let [first, ..] = values.values();
+        values.like(0.0).pick_below(Wide::four(lanes, OWN[self.count]), values, values.like(first))
     }
 
     /// Returns an extensive quantity of each point, such as mass; zero in lanes without a point.

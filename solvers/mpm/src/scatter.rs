@@ -58,9 +58,9 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
 
 /// Returns the weighted sum over the nodes of a row.
 #[inline(always)]
-pub(crate) fn weighted<B: Basis, N: Number>(of: [N; 3], weights: [N; 3]) -> N {
-    let sum = of[0] * weights[0] + of[1] * weights[1];
-    if B::WIDTH == 3 { sum + of[2] * weights[2] } else { sum }
+pub(crate) fn weighted<B: Basis, N: Number>(values: [N; 3], weights: [N; 3]) -> N {
+    let sum = values[0] * weights[0] + values[1] * weights[1];
+    if B::WIDTH == 3 { sum + values[2] * weights[2] } else { sum }
 }
 
 /// Velocity of points extrapolated to the nodes of a stencil, v + A r with r from the point to the node. It holds the

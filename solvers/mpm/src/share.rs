@@ -131,12 +131,12 @@ impl<S: Space> Share<S> {
         self.pieces.clear();
         self.reach = 0;
         let mut before = &self.before[..];
-        for (body, of) in bodies.iter().enumerate() {
-            let all = &of.part.points;
+        for (body, part) in bodies.iter().enumerate() {
+            let all = &part.part.points;
             let range = all.start.max(self.points.start)..all.end.min(self.points.end);
             if !range.is_empty() {
                 let runs = runs::find::<S, B>(lattice, range, points, &mut before, &mut self.runs);
-                let ends = self.runs[runs.clone()].iter().map(|run| of.part.window.end_of::<S, B>(run.base));
+                let ends = self.runs[runs.clone()].iter().map(|run| part.part.window.end_of::<S, B>(run.base));
                 self.reach = ends.fold(self.reach, usize::max);
                 self.pieces.push(Piece { body, runs, bounds: NO_BOX });
             }

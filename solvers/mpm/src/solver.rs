@@ -199,7 +199,7 @@ fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
         };
         (in_cells(volume), boxed(2.0 * grain.radius))
     });
-    let (filled, nodes) = of_bodies.chain(of_grains).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+    let (filled, nodes) = of_bodies.chain(of_grains).fold((0.0, 0.0), |sum, size| (sum.0 + size.0, sum.1 + size.1));
     let in_cell = f64::from(points).powi(dimensions as i32);
     memory::beyond(filled * in_cell, "points", BYTES_OF_A_POINT)
         .or_else(|| memory::beyond(nodes, "nodes", BYTES_OF_A_NODE))

@@ -145,17 +145,17 @@ impl<S: Space> Tracers<S> {
         unit::<S>(self.area[at])
     }
 
-    /// Finds the chunks that can contain the nearest tracer of any tracer of the chunk `of`, which is moved by `shift`.
+    /// Finds the chunks that can contain the nearest tracer of any tracer of the chunk `searched`, which is moved by `shift`.
     #[inline(always)]
     pub(crate) fn find_near(
         &self,
-        of: &Chunk<S>,
+        searched: &Chunk<S>,
         shift: S::Vector,
         chunks: &Range<usize>,
         reach: f64,
         near: &mut Vec<usize>,
     ) {
-        let [low, high] = [of.low + shift, of.high + shift];
+        let [low, high] = [searched.low + shift, searched.high + shift];
         let is_near =
             |chunk: &usize| S::DIMENSION == 3 || self.chunks[*chunk].away_from(low, high) < 2.0 * reach * reach;
         near.clear();
@@ -336,7 +336,7 @@ impl<S: Space> TracersOf<'_, S> {
         self.first += count;
         let (neighbours, others) = self.neighbours.split_at(count);
         self.neighbours = others;
-        let [position, area] = [&mut self.position, &mut self.area].map(|of| take_off(of, count));
+        let [position, area] = [&mut self.position, &mut self.area].map(|list| take_off(list, count));
         let chunks = take_off(&mut self.chunks, bodies.iter().map(|body| body.chunks.len()).sum());
         Self { first, position, area, neighbours, chunks }
     }
@@ -361,8 +361,8 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
 impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'_, S, B, N, V> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, of, nodes, most, velocity, elapsed, .. } = self;
-        let TracersOf { first, position, area, neighbours, chunks } = of;
+        let Self { lattice, part, of: tracers, nodes, most, velocity, elapsed, .. } = self;
+        let TracersOf { first, position, area, neighbours, chunks } = tracers;
         let zero = Wide::splat(lanes, 0.0);
         // Placeholder that is overwritten before it is read.
         let Some(&any) = nodes.first() else { return };

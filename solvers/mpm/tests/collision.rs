@@ -53,11 +53,11 @@ fn damping_reaches_what_nodes_do_not_show() {
     let text = format!("global_damping = 1.0\n{}", text.replace("duration = ", "duration = 3.0\n#"));
     let early = last(&run("mpm", &text, 8.0, 3), "budget.kinetic");
     let record = run("mpm", &text.replace("duration = 3.0", "duration = 12.0"), 8.0, 3);
-    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
+    let budget = |entry: &str| last(&record, &format!("budget.{entry}"));
     let start = column(&record, "budget.kinetic")[0];
-    assert!(early < 0.1 * start && of("kinetic") < 1e-5 * start, "{early} {} of {start}", of("kinetic"));
-    assert!(of("damping") > 0.95 * start, "{} of {start}", of("damping"));
-    assert!((of("unbalanced") / start - 1.0).abs() < 1e-3, "{} of {start}", of("unbalanced"));
+    assert!(early < 0.1 * start && budget("kinetic") < 1e-5 * start, "{early} {} of {start}", budget("kinetic"));
+    assert!(budget("damping") > 0.95 * start, "{} of {start}", budget("damping"));
+    assert!((budget("unbalanced") / start - 1.0).abs() < 1e-3, "{} of {start}", budget("unbalanced"));
 }
 
 /// Off centre with strong friction, ωR/v₀ = .40 at eight cells per radius.

@@ -26,7 +26,7 @@ fn cost_grows_with_the_number_of_grains_and_no_faster() {
     let [few, many] = [discs([2, 5]), discs([25, 40])];
     assert_eq!(few.steps, many.steps);
     assert_eq!(100 * few.particle_steps, many.particle_steps);
-    let exponent = |of: fn(&Cost) -> u64| (of(&many) as f64 / of(&few) as f64).log10() / 2.0;
+    let exponent = |count: fn(&Cost) -> u64| (count(&many) as f64 / count(&few) as f64).log10() / 2.0;
     // Ten discs have 13 contacts and a thousand have 1935: counts by contact grow by 148.8 = 100^1.086.
     let contacts = (1935.0_f64 / 13.0).log10() / 2.0;
     let nodes = exponent(|cost| cost.node_updates.unwrap());

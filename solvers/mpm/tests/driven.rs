@@ -45,13 +45,13 @@ fn the_budget_of_a_push_closes() {
         ("mpm:no-slip", true, 5e-3, 0.05),
     ] {
         let record = run(name, &pushed(0.5, 0.5, yields), 8.0, 2);
-        let of = |entry: &str| last(&record, &format!("budget.{entry}"));
-        let open = (of("unbalanced") - column(&record, "budget.unbalanced")[0]) / of("work");
-        assert!(of("work") > 0.0 && open.abs() < allowed, "{name}: {open}");
-        assert_eq!(of("plastic") > 0.0, yields, "{name}");
-        assert_eq!(of("friction") > 0.0, name != "mpm:no-slip", "{name}");
+        let budget = |entry: &str| last(&record, &format!("budget.{entry}"));
+        let open = (budget("unbalanced") - column(&record, "budget.unbalanced")[0]) / budget("work");
+        assert!(budget("work") > 0.0 && open.abs() < allowed, "{name}: {open}");
+        assert_eq!(budget("plastic") > 0.0, yields, "{name}");
+        assert_eq!(budget("friction") > 0.0, name != "mpm:no-slip", "{name}");
         // Energy lost or created by the method is small compared with the work.
-        let made = (of("transfer") + of("contact")) / of("work");
+        let made = (budget("transfer") + budget("contact")) / budget("work");
         assert!(made.abs() < lost, "{name}: {made}");
     }
 }
@@ -60,9 +60,9 @@ fn the_budget_of_a_push_closes() {
 #[test]
 fn the_budget_misses_what_is_left_out() {
     let record = run("mpm", &pushed(0.5, 0.5, false), 8.0, 2);
-    let of = |entry: &str| last(&record, &format!("budget.{entry}"));
-    let open = of("unbalanced") - of("friction") - column(&record, "budget.unbalanced")[0];
-    assert!(open.abs() > 5e-3 * of("work"), "{open} of {}", of("work"));
+    let budget = |entry: &str| last(&record, &format!("budget.{entry}"));
+    let open = budget("unbalanced") - budget("friction") - column(&record, "budget.unbalanced")[0];
+    assert!(open.abs() > 5e-3 * budget("work"), "{open} of {}", budget("work"));
 }
 
 #[test]
@@ -100,8 +100,8 @@ fn the_budget_closes_as_the_step_goes_to_zero() {
 /// Positions follow the function to rounding; a spin is rejected.
 #[test]
 fn a_driven_grain_follows_a_sine() {
-    let of = |driven: &str| format!("{}[driven.ram]\ngrains = 'a'\n{driven}\n", collision(0.1, 0.0, 0.5));
-    let driven = of("motion = [{ sine = { amplitude = [0.0, 0.05], frequency = 0.02 } }]");
+    let scene_text = |driven: &str| format!("{}[driven.ram]\ngrains = 'a'\n{driven}\n", collision(0.1, 0.0, 0.5));
+    let driven = scene_text("motion = [{ sine = { amplitude = [0.0, 0.05], frequency = 0.02 } }]");
     let record = run("mpm", &driven, 8.0, 2);
     let (y, time) = (column(&record, "a.y"), &record.series.time);
     for (y_now, t) in y.iter().zip(time) {
@@ -109,6 +109,6 @@ fn a_driven_grain_follows_a_sine() {
         assert!((y_now - y[0] - exact).abs() < 1e-12, "{t}: {}", y_now - y[0]);
     }
     assert!((last(&record, "a.y") - y[0]).abs() > 1e-3);
-    let refusal = try_run("mpm", |_| (), &of("spin = 1.0"), Resolution::grid(8.0, 2)).unwrap_err().to_string();
+    let refusal = try_run("mpm", |_| (), &scene_text("spin = 1.0"), Resolution::grid(8.0, 2)).unwrap_err().to_string();
     assert!(refusal.contains("driven grains that turn"), "{refusal}");
 }

@@ -10,7 +10,7 @@ use support::{collision, column, last, try_run};
 /// order in the step. Without viscosity the entry is zero.
 #[test]
 fn the_budget_of_a_viscous_collision_closes() {
-    let of = |viscosity: &str, courant: f64| {
+    let budget_error = |viscosity: &str, courant: f64| {
         let modulus = "shear_modulus = 6.0";
         let text =
             collision(0.02, 0.0, 0.5).replace(modulus, &format!("{modulus}, {viscosity}")) + "budget.budget = true\n";
@@ -20,10 +20,10 @@ fn the_budget_of_a_viscous_collision_closes() {
         (last(&record, "budget.damping") / kinetic, open / kinetic)
     };
     let viscous = "constitutive = 'kelvin-voigt', viscosity = 0.5, bulk_viscosity = 0.2";
-    let (lost, coarse) = of(viscous, 0.4);
-    let (_, fine) = of(viscous, 0.1);
+    let (lost, coarse) = budget_error(viscous, 0.4);
+    let (_, fine) = budget_error(viscous, 0.1);
     assert!(lost > 0.05, "{lost}");
     assert!(fine.abs() < 1e-3 && (fine.abs() < 0.4 * coarse.abs() || fine.abs() < 1e-5), "{coarse} and {fine}");
-    let (nothing, _) = of("constitutive = 'neo-hookean'", 0.4);
+    let (nothing, _) = budget_error("constitutive = 'neo-hookean'", 0.4);
     assert_eq!(nothing, 0.0);
 }

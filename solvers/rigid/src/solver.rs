@@ -118,7 +118,10 @@ impl Rigid {
             "no sleeping, no continuous detection".to_owned(),
         ];
         words.push(match shared {
-            Some(of) => format!("friction {} and restitution {:.6} for all pairs", of.friction, of.restitution),
+            Some(coefficients) => format!(
+                "friction {} and restitution {:.6} for all pairs",
+                coefficients.friction, coefficients.restitution
+            ),
             None => "friction and restitution set pair by pair".to_owned(),
         });
         let recycled = recycling && shared.is_some();

@@ -45,8 +45,8 @@ impl Columns {
 
     /// Returns true if a column is chosen.
     #[must_use]
-    pub fn has(&self, of: Chosen) -> bool {
-        self.chosen.contains(&of)
+    pub fn has(&self, column: Chosen) -> bool {
+        self.chosen.contains(&column)
     }
 
     /// Reduces a snapshot to the chosen columns, adds virials computed from its contacts, and rounds its numbers.
@@ -92,7 +92,7 @@ impl Columns {
 fn round_grain(grain: &mut GrainState, bits: u32) {
     let GrainState { position, velocity, spin, angle, force, torque, virial, mean_virial, .. } = grain;
     let vectors = [Some(position), Some(velocity), Some(spin), force.as_mut(), torque.as_mut()];
-    let tensors = [virial, mean_virial].map(|told| told.as_deref_mut());
+    let tensors = [virial, mean_virial].map(|tensor| tensor.as_deref_mut());
     let numbers = vectors.into_iter().flatten().flatten().chain(tensors.into_iter().flatten().flatten()).chain(angle);
     numbers.for_each(|number| *number = rounded(*number, bits));
 }

@@ -397,7 +397,7 @@ impl ContactSpec {
         }
         let (mut compliance, mut shear_compliance) = (0.0, 0.0);
         for material in &self.between {
-            let of = |part: &str| format!("materials.{material}.{part}");
+            let key_of = |part: &str| format!("materials.{material}.{part}");
             let properties = &around.materials[material.as_str()];
             if properties.rigid {
                 continue;
@@ -406,10 +406,10 @@ impl ContactSpec {
                 let expected = "`young_modulus` and `poisson_ratio` (or `rigid = true`), since it has Hertz contacts";
                 return Err(check.error(&format!("materials.{material}"), expected, "not both"));
             };
-            check.positive(&of("young_modulus"), young, "modulus (Pa)")?;
+            check.positive(&key_of("young_modulus"), young, "modulus (Pa)")?;
             if !(poisson > -1.0 && poisson <= 0.5) {
                 let found = poisson.to_string();
-                return Err(check.error(&of("poisson_ratio"), "a ratio above −1 and at most 1/2", &found));
+                return Err(check.error(&key_of("poisson_ratio"), "a ratio above −1 and at most 1/2", &found));
             }
             compliance += (1.0 - poisson * poisson) / young;
             shear_compliance += 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;

@@ -208,9 +208,9 @@ mod tests {
             pairs: vec![(0, 1, vec![0.25])],
             walls: vec![(1, "floor".to_owned(), vec![-0.5])],
         };
-        let of = ["a".to_owned(), "dem".to_owned()];
+        let origin = ["a".to_owned(), "dem".to_owned()];
         let materials = vec!["m".to_owned()];
-        EndState { of, dimension: 3, time: 1.5, materials, grains: vec![grain(0.1), grain(0.2)], springs }
+        EndState { of: origin, dimension: 3, time: 1.5, materials, grains: vec![grain(0.1), grain(0.2)], springs }
     }
 
     /// Positions move by at most half a rounding step, which is 2⁻²⁰ · 2⁻¹ m.
@@ -267,13 +267,13 @@ mod tests {
             }
         }
         assert!((rounded.grains[2].position.y - 1.0 / 3.0).abs() > 1e-3 * step, "a third is no multiple");
-        let of = |springs: &Springs| {
+        let spring_texts = |springs: &Springs| {
             let pairs = springs.pairs.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32));
             pairs
                 .chain(springs.walls.iter().map(|(a, b, memory)| format!("{a} {b} {}", memory[0] as f32)))
                 .collect::<Vec<_>>()
         };
-        assert_eq!(of(&rounded.springs), of(&exact.springs));
+        assert_eq!(spring_texts(&rounded.springs), spring_texts(&exact.springs));
         // Values that cannot be rounded are rejected.
         exact.grains[0].position.x = 1e9;
         assert!(exact.to_rounded_bytes().is_err());

@@ -119,13 +119,13 @@ impl MaterialSpec {
         name: &str,
         check: &Checker<'_>,
     ) -> Result<(), SceneError> {
-        let of = [
+        let keys_of_laws = [
             ("viscosity", self.viscosity, ConstitutiveKind::KelvinVoigt),
             ("bulk_viscosity", self.bulk_viscosity, ConstitutiveKind::KelvinVoigt),
             ("yield_stress", self.yield_stress, ConstitutiveKind::VonMises),
             ("hardening_modulus", self.hardening_modulus, ConstitutiveKind::VonMises),
         ];
-        match of.into_iter().find(|(_, value, law)| value.is_some() && *law != kind) {
+        match keys_of_laws.into_iter().find(|(_, value, law)| value.is_some() && *law != kind) {
             Some((part, _, law)) => {
                 let (expected, found) = (format!("`constitutive = \"{law}\"` beside it"), format!("`{kind}`"));
                 Err(check.error(&format!("materials.{name}.{part}"), &expected, &found))

@@ -9,8 +9,8 @@ const UNTOLD: u64 = 8 << 30;
 /// limit of this process (`ulimit -v`, as set by batch queues) applies.
 #[must_use]
 pub fn available() -> u64 {
-    let told = fs::read_to_string("/proc/meminfo").ok();
-    told.as_deref().and_then(told_by).unwrap_or(UNTOLD).min(allowed().unwrap_or(u64::MAX))
+    let meminfo = fs::read_to_string("/proc/meminfo").ok();
+    meminfo.as_deref().and_then(told_by).unwrap_or(UNTOLD).min(allowed().unwrap_or(u64::MAX))
 }
 
 /// Returns the rest of this process's address-space limit (B); `None` without a limit.

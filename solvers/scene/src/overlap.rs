@@ -171,7 +171,7 @@ mod tests {
             let line = axis[1] - axis[0];
             let (u, length) = (across(line), line.norm());
             let v = line.cross(&u) / length;
-            let of = |part: f64, angle: f64| {
+            let surface_point = |part: f64, angle: f64| {
                 axis[0] + line * part + (u * angle.cos() + v * angle.sin()) * (radii[0] + (radii[1] - radii[0]) * part)
             };
             for number in 0..200 {
@@ -180,7 +180,8 @@ mod tests {
                 let found = nearest_on_round(point, &axis, &radii);
                 let mut nearest = f64::INFINITY;
                 for at in 0..40 * 90 {
-                    let sample = of(f64::from(at / 90) / 39.0, f64::from(at % 90) * std::f64::consts::TAU / 90.0);
+                    let sample =
+                        surface_point(f64::from(at / 90) / 39.0, f64::from(at % 90) * std::f64::consts::TAU / 90.0);
                     nearest = nearest.min((sample - point).norm());
                 }
                 let distance = (found - point).norm();

@@ -65,7 +65,7 @@ fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: 
     );
     let place = {
         let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = made.iter().find(|(of, _)| *of == recipe).map(|(_, place)| Arc::clone(place));
+        let known = made.iter().find(|(known_recipe, _)| *known_recipe == recipe).map(|(_, place)| Arc::clone(place));
         known.unwrap_or_else(|| {
             let place = Place::default();
             made.push_back((recipe, Arc::clone(&place)));

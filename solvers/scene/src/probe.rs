@@ -144,8 +144,8 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
             all
         }
         ProbeTarget::Stress => {
-            let of = |&(i, j): &(usize, usize)| (format!("sigma_{}{}", AXES[i], AXES[j]), "Pa");
-            let mut all: Vec<_> = mean_stresses(dimension).iter().map(of).collect();
+            let column = |&(i, j): &(usize, usize)| (format!("sigma_{}{}", AXES[i], AXES[j]), "Pa");
+            let mut all: Vec<_> = mean_stresses(dimension).iter().map(column).collect();
             all.extend(plain(&[("coordination", "1")]));
             all
         }
@@ -212,7 +212,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
         ProbeTarget::Driven(group) => vector(look.driven.get(group).unwrap_or(&UNKNOWN)),
         ProbeTarget::Budget => {
             let Some(budget) = &look.budget else { return vec![f64::NAN; ENERGIES.len() + 2 * count] };
-            let mut all = Vec::from(ENERGIES.map(|(_, of)| of(budget)));
+            let mut all = Vec::from(ENERGIES.map(|(_, energy)| energy(budget)));
             all.extend(vector(&budget.momentum));
             all.extend(vector(&budget.impulse));
             all

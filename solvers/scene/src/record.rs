@@ -292,7 +292,7 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
         (grain.position - reach, grain.position + reach)
     };
     let around = |boxes: &mut dyn Iterator<Item = (Vector3<f64>, Vector3<f64>)>| {
-        boxes.fold(start, |(low, high), of| (low.inf(&of.0), high.sup(&of.1)))
+        boxes.fold(start, |(low, high), extent| (low.inf(&extent.0), high.sup(&extent.1)))
     };
     let (mut low, mut high) = match (grains, &scene.bodies[..]) {
         ([], []) => (Vector3::zeros(), Vector3::zeros()),

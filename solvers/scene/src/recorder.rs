@@ -45,7 +45,7 @@ impl Recorder {
     #[must_use]
     pub fn is_of(&self, begun: &Self) -> bool {
         let Series { step, time, columns, values } = &self.series;
-        let asks = |of: &Self| (of.interval, of.steps);
+        let asks = |recorder: &Self| (recorder.interval, recorder.steps);
         let each = |column: &Vec<f64>| column.len() == time.len();
         asks(self) == asks(begun)
             && self.snapshot_steps == begun.snapshot_steps

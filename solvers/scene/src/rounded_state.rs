@@ -151,7 +151,7 @@ impl Packed {
         let mut names: Vec<String> = walls.iter().map(|wall| wall.1.clone()).collect();
         names.sort();
         names.dedup();
-        let name = |of: &String| names.binary_search(of).unwrap_or_default() as u32;
+        let name = |word: &String| names.binary_search(word).unwrap_or_default() as u32;
         let firsts: Vec<u32> = pairs.iter().map(|pair| pair.0).collect();
         let at_walls: Vec<u32> = walls.iter().map(|wall| wall.0).collect();
         Ok(Self {
@@ -188,13 +188,15 @@ impl Packed {
         let positions = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));
         let [x, y, z] = positions;
         let positions = [x?, y?, z?];
-        let singles: Vec<Vec<f64>> = self.grains[4..].iter().map(|of| read_singles(of)).collect::<Result<_, _>>()?;
+        let singles: Vec<Vec<f64>> =
+            self.grains[4..].iter().map(|singles_of| read_singles(singles_of)).collect::<Result<_, _>>()?;
         let lengths = positions.iter().map(Vec::len).chain(singles.iter().map(Vec::len));
         let firsts = following(&read_places(&self.pairs[0])?);
         let seconds = read_places(&self.pairs[1])?;
         let at_walls = following(&read_places(&self.walls[0])?);
         let names = read_places(&self.walls[1])?;
-        let springs: Vec<Vec<f64>> = self.springs.iter().map(|of| read_singles(of)).collect::<Result<_, _>>()?;
+        let springs: Vec<Vec<f64>> =
+            self.springs.iter().map(|singles_of| read_singles(singles_of)).collect::<Result<_, _>>()?;
         let contacts = firsts.len() + at_walls.len();
         let fits = lengths.into_iter().all(|length| length == kinds.len())
             && kinds.iter().all(|&kind| (kind as usize) < self.kinds.len())
@@ -202,11 +204,11 @@ impl Packed {
             && names.len() == at_walls.len()
             && names.iter().all(|&name| (name as usize) < self.names.len())
             && springs.len() == self.numbers as usize
-            && springs.iter().all(|of| of.len() == contacts);
+            && springs.iter().all(|singles_of| singles_of.len() == contacts);
         if !fits {
             return Err("columns that do not fit one another".to_owned());
         }
-        let vector = |of: &dyn Fn(usize) -> f64| Vector3::new(of(0), of(1), of(2));
+        let vector = |component: &dyn Fn(usize) -> f64| Vector3::new(component(0), component(1), component(2));
         let grain = |(at, &kind): (usize, &u32)| {
             let (material, size) = self.kinds[kind as usize];
             StateGrain {
@@ -217,7 +219,7 @@ impl Packed {
                 spin: vector(&|axis| singles[3 + axis][at]),
             }
         };
-        let memory = |contact: usize| springs.iter().map(|of| of[contact]).collect::<Vec<f64>>();
+        let memory = |contact: usize| springs.iter().map(|singles_of| singles_of[contact]).collect::<Vec<f64>>();
         let pair = |(at, (&first, &second)): (usize, (&u32, &u32))| (first, first.wrapping_add(second), memory(at));
         let wall = |(at, (&grain, &name)): (usize, (&u32, &u32))| {
             (grain, self.names[name as usize].clone(), memory(firsts.len() + at))

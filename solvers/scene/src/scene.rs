@@ -414,7 +414,7 @@ impl Scene {
     /// ξ = η_L/(ρ c h).
     #[must_use]
     pub fn crossing_time(&self, cell: f64) -> f64 {
-        let of = |material: u16, density: f64| {
+        let material_time = |material: u16, density: f64| {
             let deformable = self.deformable.get(usize::from(material)).copied().flatten();
             deformable.map_or(f64::INFINITY, |deformable| {
                 let speed = (deformable.longitudinal_modulus() / density).sqrt();
@@ -423,8 +423,8 @@ impl Scene {
             })
         };
         let volume = |radius: f64| self.grain_shape.mass(radius, 1.0);
-        let grains = self.grains.iter().map(|grain| of(grain.material, grain.mass / volume(grain.radius)));
-        let bodies = self.bodies.iter().map(|body| of(body.material, body.density));
+        let grains = self.grains.iter().map(|grain| material_time(grain.material, grain.mass / volume(grain.radius)));
+        let bodies = self.bodies.iter().map(|body| material_time(body.material, body.density));
         grains.chain(bodies).fold(f64::INFINITY, f64::min)
     }
 

@@ -108,11 +108,11 @@ pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String
     let above = names.next();
     // A group with the name of a key is still a table of its kind.
     let kind = above.filter(|above| names.next().is_none() && OF_NAMES.contains(above));
-    let of = |key: &str| SHAPES.iter().find(|(name, _)| *name == key).map(|(_, shape)| *shape);
+    let shape_of = |key: &str| SHAPES.iter().find(|(name, _)| *name == key).map(|(_, shape)| *shape);
     let shape = match (kind, above) {
-        (Some(kind), _) => of(kind),
-        (None, Some(above)) => of(&format!("{above}.{last}")).or_else(|| of(last)),
-        (None, None) => of(last),
+        (Some(kind), _) => shape_of(kind),
+        (None, Some(above)) => shape_of(&format!("{above}.{last}")).or_else(|| shape_of(last)),
+        (None, None) => shape_of(last),
     }?;
     let vector = vector(dimension);
     Some((

@@ -24,8 +24,8 @@ fn axes_are_named_or_told_one_by_one() {
     assert_eq!(by_name, read("[true, false]", LATTICE).unwrap());
     assert_eq!(read("[]", LATTICE).unwrap().domain.unwrap().periodic, [false; 3]);
     for (wrong, found) in [("['z']", "`z`"), ("[true]", "[true]"), ("['w']", "[\"w\"]"), ("'x'", "x")] {
-        let said = read(wrong, LATTICE).unwrap_err();
-        assert!(said.contains("domain.periodic") && said.contains(found), "{wrong}: {said}");
+        let message = read(wrong, LATTICE).unwrap_err();
+        assert!(message.contains("domain.periodic") && message.contains(found), "{wrong}: {message}");
     }
 }
 
@@ -44,8 +44,8 @@ fn a_lattice_is_along_the_axes_or_close_packed() {
         ("spacing = [1.0, 1.0], perturbation = -0.1", "lattice.perturbation"),
         ("spacing = [1.0, 1.0], perturbation = 0.1, seed = -1", "lattice"),
     ] {
-        let said = lattice(words).unwrap_err();
-        assert!(said.contains(key), "{words}: {said}");
+        let message = lattice(words).unwrap_err();
+        assert!(message.contains(key), "{words}: {message}");
     }
     let moved = |seed: u32| lattice(&format!("spacing = [2.0, 2.0], perturbation = 0.1, seed = {seed}")).unwrap();
     assert!(moved(1) == moved(1) && moved(1) != moved(2), "a seed gives the same grains");
@@ -78,8 +78,8 @@ fn grains_at_random_have_their_radii_and_their_region() {
         ("radius_range = [0.1, 0.2], region = { low = [5.0, 5.0], high = [45.0, 20.0] }".to_owned(), "region"),
         ("radius_range = [0.1, 0.2], region = { low = [5.0, 5.0], high = [4.0, 20.0] }".to_owned(), "region"),
     ] {
-        let said = random(&words).unwrap_err();
-        assert!(said.contains(key), "{words}: {said}");
+        let message = random(&words).unwrap_err();
+        assert!(message.contains(key), "{words}: {message}");
     }
 }
 
@@ -95,6 +95,6 @@ fn a_variant_takes_keys_away() {
     assert_eq!((plain.walls.len(), open.walls.len()), (1, 0));
     assert_eq!((plain.domain.unwrap().periodic[0], open.domain.unwrap().periodic[0]), (true, false));
     assert_eq!(open, resolve(source().set("walls.floor", "").set("domain.periodic", "")).unwrap());
-    let said = resolve(source().variant("nothing")).unwrap_err().to_string();
-    assert!(said.contains("walls.roof"), "{said}");
+    let message = resolve(source().variant("nothing")).unwrap_err().to_string();
+    assert!(message.contains("walls.roof"), "{message}");
 }

@@ -51,7 +51,7 @@ fn moduli_of_two_materials() {
 /// deep, has m = 785.398163 kg and I = m R²/2. A sphere has m = 523.598776 kg and I = 2 m R²/5.
 #[test]
 fn slopes_masses_and_inertia() {
-    let of = |dimension: u8, position: &str| {
+    let sloped_scene = |dimension: u8, position: &str| {
         scene(&format!(
             "title = 't'\ndimension = {dimension}\nduration = 1.0\ngravity = {{ magnitude = 9.8, slope_deg = 60.0 }}\n\
              materials.m.density = 1000.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 4.0e6, \
@@ -59,7 +59,7 @@ fn slopes_masses_and_inertia() {
              [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = {position}\n"
         ))
     };
-    let disc = of(2, "[0.0, 0.0]");
+    let disc = sloped_scene(2, "[0.0, 0.0]");
     close(disc.gravity.x, 8.487_048_957_087_498);
     close(disc.gravity.y, -4.9);
     close(disc.grains[0].mass, 785.398_163_397_448_3);
@@ -67,7 +67,7 @@ fn slopes_masses_and_inertia() {
     close(disc.laws[0].unwrap().friction, 0.577_350_269_189_625_8);
     // 2 √(m/k) = 2 √(785.398…/4e6).
     close(disc.critical_time_step(), 2.0 * 0.014_012_478_040_994_82);
-    let sphere = of(3, "[0.0, 0.0, 0.0]");
+    let sphere = sloped_scene(3, "[0.0, 0.0, 0.0]");
     close(sphere.gravity.x, 8.487_048_957_087_498);
     close(sphere.gravity.z, -4.9);
     close(sphere.grains[0].mass, 523.598_775_598_298_9);
@@ -81,12 +81,12 @@ fn overlaps_are_found_across_a_period() {
     for xs in [vec![0.2, 9.9], vec![0.2, 5.0, 9.9], vec![9.9, 0.2], vec![10.2, 9.9], vec![0.2, 0.2 + 9.7]] {
         let grain = |(at, x)| format!("grains.g{at} = {{ material = 'm', radius = 0.5, position = [{x}, 1.0] }}\n");
         let grains: String = xs.iter().enumerate().map(grain).collect();
-        let said = refusal(&format!(
+        let message = refusal(&format!(
             "title = 't'\ndimension = 2\nduration = 1.0\n\
              domain = {{ low = [0.0, 0.0], high = [10.0, 4.0], periodic = [true, false] }}\n\
              materials.m.density = 1.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0 }}\n{grains}"
         ));
-        assert!(said.contains("1.4"), "{xs:?}: {said}");
+        assert!(message.contains("1.4"), "{xs:?}: {message}");
     }
 }
 

@@ -383,7 +383,7 @@ impl Study for OfRun {
         words.extend(how.words.iter().cloned());
         let is_whole = self.is_whole && self.options.solver.is_empty();
         let mut report = run::report(provenance(words, how.seconds), sections, is_whole)?;
-        let is_mute = self.selected.iter().any(|of| of.stranger.is_some()) && run::says_nothing(&report);
+        let is_mute = self.selected.iter().any(|selection| selection.stranger.is_some()) && run::says_nothing(&report);
         report.red_because.extend(how.unfinished.clone());
         run::add_reasons(&mut report, is_mute, how.strict);
         let write = if how.parquet { write_report_and_parquet } else { write_report };

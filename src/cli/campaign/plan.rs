@@ -99,8 +99,8 @@ impl Arguments {
         ];
         match given.iter().find(|(name, is_given)| *is_given && !heeded.contains(name)) {
             Some((name, _)) => {
-                let of = if heeded.is_empty() { "a sweep" } else { self.what.as_str() };
-                Err(Fault::input(format!("{name}: expected none with {of}, found one")))
+                let study_name = if heeded.is_empty() { "a sweep" } else { self.what.as_str() };
+                Err(Fault::input(format!("{name}: expected none with {study_name}, found one")))
             }
             None => Ok(()),
         }

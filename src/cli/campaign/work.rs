@@ -64,14 +64,14 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
         (Some(jobs), false) => usize::from(jobs),
         (None, false) => cores(),
     };
-    let told = Arc::new(Told { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
+    let observer = Arc::new(Told { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
     let asked = Asked { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.retry_failed };
     let worker = worker();
-    let watch = Arc::<Told>::clone(&told);
+    let watch = Arc::<Told>::clone(&observer);
     let done = do_chunk(&plan, &asked, &worker, watch, &|tasks, desk| {
         study.work(&plan, tasks, jobs, desk).map_err(|fault| grainbench::campaign::Fault::Input(fault.to_string()))
     });
-    *told.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    *observer.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
     let summary = done?;
     print(&words(&summary))?;
     if summary.left > 0 {
@@ -103,9 +103,11 @@ fn worker() -> Worker {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let (host, process) = (machine::name(), std::process::id());
     let about = provenance(Vec::new(), 0.0);
-    let of = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
-    let array = of("SLURM_ARRAY_JOB_ID").zip(of("SLURM_ARRAY_TASK_ID")).map(|(job, index)| format!("{job}_{index}"));
-    let job = array.or_else(|| of("SLURM_JOB_ID")).or_else(|| of("HQ_JOB_ID"));
+    let variable = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
+    let array = variable("SLURM_ARRAY_JOB_ID")
+        .zip(variable("SLURM_ARRAY_TASK_ID"))
+        .map(|(job, index)| format!("{job}_{index}"));
+    let job = array.or_else(|| variable("SLURM_JOB_ID")).or_else(|| variable("HQ_JOB_ID"));
     Worker {
         name: format!("{:013}-{host}-{process}", now.as_millis()),
         host,
@@ -113,7 +115,7 @@ fn worker() -> Worker {
         machine: about.machine,
         cores: cores(),
         job,
-        granted: of("SLURM_CPUS_ON_NODE").and_then(|cores| cores.parse().ok()),
+        granted: variable("SLURM_CPUS_ON_NODE").and_then(|cores| cores.parse().ok()),
         began: about.date,
     }
 }

@@ -302,7 +302,7 @@ fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     let lasting = (SHARE * whole).min(LONG_ENOUGH);
     let timings: Option<Vec<Timing>> = (0..runs).map(|_| timed(task, lasting).0).collect();
     let timings = timings?;
-    let mean = |of: fn(&Timing) -> f64| timings.iter().map(of).sum::<f64>() / runs as f64;
+    let mean = |value: fn(&Timing) -> f64| timings.iter().map(value).sum::<f64>() / runs as f64;
     Some(Timing {
         wall: mean(|t| t.wall),
         cpu: mean(|t| t.cpu),
@@ -368,8 +368,8 @@ fn first(subject: &Subject, task: &Task) -> Point {
 
 /// Fills in medians and spread of the repetitions.
 fn summarise(point: &mut Point) {
-    let range_of = |of: fn(&Timing) -> f64| range(&point.repetitions.iter().map(of).collect::<Vec<_>>());
-    let median_of = |of: fn(&Timing) -> f64| range_of(of).map(|[_, median, _]| median);
+    let range_of = |value: fn(&Timing) -> f64| range(&point.repetitions.iter().map(value).collect::<Vec<_>>());
+    let median_of = |value: fn(&Timing) -> f64| range_of(value).map(|[_, median, _]| median);
     let (walls, cpu_seconds, start_up) =
         (range_of(|timing| timing.wall), median_of(|timing| timing.cpu), median_of(|timing| timing.start_up));
     // A program that does not report its loop time gets the total time less a run of no steps. The difference may be
@@ -377,8 +377,8 @@ fn summarise(point: &mut Point) {
     point.wall_seconds = walls.map(|[_, median, _]| median).filter(|median| *median > 0.0);
     point.start_up_seconds = start_up;
     // For an external solver this is a difference of two times; it is noise if both are mostly start-up.
-    let told = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
-    point.cpu_seconds = cpu_seconds.filter(told);
+    let is_reliable = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
+    point.cpu_seconds = cpu_seconds.filter(is_reliable);
     point.wall_spread = match walls {
         Some([first, median, last]) if point.repetitions.len() > 1 && median > 0.0 => Some((last - first) / median),
         _ => None,

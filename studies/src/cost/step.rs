@@ -131,7 +131,7 @@ fn solved(mut rows: Vec<(Vec<f64>, f64)>) -> Vec<f64> {
         for (other, (counts, spent)) in rows.iter_mut().enumerate() {
             if other != pivot {
                 let times = counts[pivot] / row[pivot];
-                counts.iter_mut().zip(&row).for_each(|(count, of)| *count -= times * of);
+                counts.iter_mut().zip(&row).for_each(|(count, coefficient)| *count -= times * coefficient);
                 *spent -= times * time;
             }
         }

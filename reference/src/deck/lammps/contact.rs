@@ -50,14 +50,14 @@ pub(crate) fn at_wall(scene: &Scene, material: u16, name: &str) -> Result<Option
     let mut found: Option<String> = None;
     for grains in grain_materials(scene) {
         let Some(law) = scene.law(grains, material) else { continue };
-        let said = if law.rolling_friction != 0.0 {
+        let style = if law.rolling_friction != 0.0 {
             format!("granular {}", rolling(scene, law, grains)?)
         } else if law.is_hertz() && law.damping_ratio != 0.0 {
             format!("granular {}", tsuji(law)?)
         } else {
             history(scene, law, grains, Side::Wall)?
         };
-        same(&mut found, said, &format!("wall/gran has one law for all grains at the wall `{name}`"))?;
+        same(&mut found, style, &format!("wall/gran has one law for all grains at the wall `{name}`"))?;
     }
     Ok(found)
 }

@@ -49,7 +49,10 @@ pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f
             let left = partners().map(|(both, other)| pick(&both) - other.as_ref().map_or(0.0, pick));
             left.fold(f64::INFINITY, f64::min)
         };
-        let share = Shares { normal: least(|of| of.normal), tangential: least(|of| of.tangential) };
+        let share = Shares {
+            normal: least(|compliance| compliance.normal),
+            tangential: least(|compliance| compliance.tangential),
+        };
         shares[a] = share.normal.is_finite().then_some(share);
     }
     let (mut young, mut poisson) = (Vec::new(), Vec::new());
@@ -88,9 +91,9 @@ mod tests {
 
     /// Returns the law of two materials with 1/E* and 1/G* as sums. The second material can be rigid.
     fn law(first: (f64, f64), second: Option<(f64, f64)>) -> Option<ContactLaw> {
-        let of =
+        let compliances =
             |(young, ratio): (f64, f64)| ((1.0 - ratio * ratio) / young, 2.0 * (2.0 - ratio) * (1.0 + ratio) / young);
-        let ((a, b), (c, d)) = (of(first), second.map_or((0.0, 0.0), of));
+        let ((a, b), (c, d)) = (compliances(first), second.map_or((0.0, 0.0), compliances));
         let springs = Springs::Hertz { effective_modulus: 1.0 / (a + c), effective_shear_modulus: 1.0 / (b + d) };
         Some(ContactLaw { springs, ..Default::default() })
     }

@@ -7,8 +7,9 @@ use crate::read::snapshot::Numbering;
 pub(crate) static FORMAT: Format = Format {
     words: "arrays of NumPy's",
     // Other archives are refused when they are read as text.
-    told_by: ToldBy::Beginning(|of| {
-        of.bytes.starts_with(MARK) && of.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
+    told_by: ToldBy::Beginning(|beginning| {
+        beginning.bytes.starts_with(MARK)
+            && beginning.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
     }),
     numbering: Numbering::Steps,
     holds: |_| Ok(Holds::Course(None)),

@@ -7,7 +7,7 @@ use crate::read::vtk::{self, Kind};
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
-    told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Collection)),
+    told_by: ToldBy::Beginning(|beginning| vtk::kind(beginning.unpacked) == Some(Kind::Collection)),
     numbering: Numbering::Files,
     holds: |path| vtk::read_collection(path).map(Holds::List),
     open: |path, _| Err(ReadError::at(&path.to_string_lossy(), 1, "grains", "a list of files that lists another")),

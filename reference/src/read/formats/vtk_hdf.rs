@@ -6,7 +6,7 @@ use crate::read::vtk;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
-    told_by: ToldBy::Beginning(|of| of.bytes.starts_with(vtk::MARK)),
+    told_by: ToldBy::Beginning(|beginning| beginning.bytes.starts_with(vtk::MARK)),
     numbering: Numbering::Files,
     holds: |path| Ok(if vtk::has_steps(path)? { Holds::Course(None) } else { Holds::Moment }),
     open: |path, most_rows| {

@@ -6,7 +6,7 @@ use crate::read::vtk::{self, Kind};
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
-    told_by: ToldBy::Beginning(|of| vtk::kind(of.unpacked) == Some(Kind::Points)),
+    told_by: ToldBy::Beginning(|beginning| vtk::kind(beginning.unpacked) == Some(Kind::Points)),
     numbering: Numbering::Files,
     holds: |_| Ok(Holds::Moment),
     open: |path, most_rows| {

@@ -72,9 +72,9 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
     let positions = file.array(&file.root, "Points", Some(3))?;
     let counts = file.whole(&file.root, "NumberOfPoints")?;
     let mut arrays = Vec::new();
-    if let Some(told) = file.group(&file.root, "PointData")? {
-        for name in file.members(&told)?.1 {
-            arrays.push(file.array(&told, &name, None)?);
+    if let Some(point_data) = file.group(&file.root, "PointData")? {
+        for name in file.members(&point_data)?.1 {
+            arrays.push(file.array(&point_data, &name, None)?);
         }
     }
     let moments = match file.group(&file.root, "Steps")? {
@@ -121,9 +121,10 @@ impl Moments {
             })?;
             Ok(Array { numbers, name: array.name.clone(), ..*array })
         };
-        let told: Result<Vec<Array>, ReadError> =
+        let cut_arrays: Result<Vec<Array>, ReadError> =
             self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
-        let points = Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: told? };
+        let points =
+            Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: cut_arrays? };
         Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
     }
 }
@@ -166,11 +167,11 @@ impl File {
     }
 
     /// Returns a subgroup, or `None` if there is none of that name. A damaged subgroup is an error.
-    fn group(&self, of: &Group, name: &str) -> Result<Option<Group>, ReadError> {
-        if !self.members(of)?.0.iter().any(|member| member == name) {
+    fn group(&self, parent: &Group, name: &str) -> Result<Option<Group>, ReadError> {
+        if !self.members(parent)?.0.iter().any(|member| member == name) {
             return Ok(None);
         }
-        of.group(name).map(Some).map_err(|error| self.fault(&format!("the group `{name}`"), &error.to_string()))
+        parent.group(name).map(Some).map_err(|error| self.fault(&format!("the group `{name}`"), &error.to_string()))
     }
 
     /// Returns true if a group has an array of this name.
@@ -186,11 +187,11 @@ impl File {
             let length = dataset.raw_byte_len()?;
             Ok((dataset, length))
         };
-        let told = |error: Error| self.fault(&expected, &error.to_string());
-        let (dataset, length) = read().map_err(told)?;
+        let read_error = |error: Error| self.fault(&expected, &error.to_string());
+        let (dataset, length) = read().map_err(read_error)?;
         let left = self.left.get().checked_sub(length);
         self.left.set(left.ok_or_else(|| self.fault(&format!("at most {MOST} bytes in all arrays"), "more"))?);
-        let bytes = dataset.read_native_bytes().map_err(told)?;
+        let bytes = dataset.read_native_bytes().map_err(read_error)?;
         let kind = number(dataset.dtype());
         let kind = kind.ok_or_else(|| self.fault(&format!("numbers in `{name}`"), "something else"))?;
         let width = match *dataset.shape() {
@@ -250,8 +251,8 @@ impl File {
             let counts = last.and_then(|last| counts.get(first_part[at]..last)).ok_or_else(|| {
                 self.fault(&format!("{} parts from {} on in `NumberOfPoints`", parts[at], first_part[at]), "fewer")
             })?;
-            let of = first.iter().map(|first| first[at]).collect();
-            Ok(Moment { time: Some(*time), points: counts.iter().sum(), position: first_point[at], of })
+            let offsets = first.iter().map(|first| first[at]).collect();
+            Ok(Moment { time: Some(*time), points: counts.iter().sum(), position: first_point[at], of: offsets })
         };
         let moments: Vec<Moment> = times.iter().enumerate().map(moment).collect::<Result<_, ReadError>>()?;
         if moments.is_empty() { Err(self.fault("at least one step", "none")) } else { Ok(moments) }

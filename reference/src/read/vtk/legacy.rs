@@ -49,13 +49,13 @@ impl<'b> Reader<'b> {
 
     fn body(&mut self) -> Result<Points, ReadError> {
         let (mut positions, mut arrays, mut time) = (None, Vec::new(), None);
-        let (mut of, mut cells) = (Of::All, 0);
+        let (mut entities_of, mut cells) = (Of::All, 0);
         let mut points = 0;
         while let Some(words) = self.bytes.next_words() {
             let here = self.bytes;
             self.words();
             let wrong = |expected: &str| here.error(expected);
-            let entities = if of == Of::Cells { cells } else { points };
+            let entities = if entities_of == Of::Cells { cells } else { points };
             match words[..] {
                 ["DATASET", "POLYDATA" | "UNSTRUCTURED_GRID"] => {}
                 ["DATASET", ..] => return Err(wrong("`DATASET POLYDATA` or `DATASET UNSTRUCTURED_GRID`")),
@@ -71,18 +71,18 @@ impl<'b> Reader<'b> {
                     self.array("types", "int", 1, number(count, &here)?, &here)?;
                 }
                 ["POINT_DATA", count] => {
-                    of = Of::Points;
+                    entities_of = Of::Points;
                     if number(count, &here)? != points {
                         return Err(wrong(&format!("`POINT_DATA {points}`, for there are so many points")));
                     }
                 }
-                ["CELL_DATA", count] => (of, cells) = (Of::Cells, number(count, &here)?),
+                ["CELL_DATA", count] => (entities_of, cells) = (Of::Cells, number(count, &here)?),
                 ["SCALARS", name, kind, ref rest @ ..] => {
                     let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
                     if matches!(self.bytes.next_words().as_deref(), Some(["LOOKUP_TABLE", _])) {
                         self.words();
                     }
-                    keep(&mut arrays, of, self.array(name, kind, components, entities, &here)?);
+                    keep(&mut arrays, entities_of, self.array(name, kind, components, entities, &here)?);
                 }
                 ["LOOKUP_TABLE", _, count] => {
                     let kind = if self.is_binary { "unsigned_char" } else { "float" };
@@ -90,15 +90,23 @@ impl<'b> Reader<'b> {
                 }
                 ["COLOR_SCALARS", name, components] => {
                     let kind = if self.is_binary { "unsigned_char" } else { "float" };
-                    keep(&mut arrays, of, self.array(name, kind, number(components, &here)?, entities, &here)?);
+                    keep(
+                        &mut arrays,
+                        entities_of,
+                        self.array(name, kind, number(components, &here)?, entities, &here)?,
+                    );
                 }
                 ["VECTORS" | "NORMALS", name, kind] => {
-                    keep(&mut arrays, of, self.array(name, kind, 3, entities, &here)?);
+                    keep(&mut arrays, entities_of, self.array(name, kind, 3, entities, &here)?);
                 }
-                ["TENSORS", name, kind] => keep(&mut arrays, of, self.array(name, kind, 9, entities, &here)?),
-                ["TENSORS6", name, kind] => keep(&mut arrays, of, self.array(name, kind, 6, entities, &here)?),
+                ["TENSORS", name, kind] => keep(&mut arrays, entities_of, self.array(name, kind, 9, entities, &here)?),
+                ["TENSORS6", name, kind] => keep(&mut arrays, entities_of, self.array(name, kind, 6, entities, &here)?),
                 ["TEXTURE_COORDINATES", name, components, kind] => {
-                    keep(&mut arrays, of, self.array(name, kind, number(components, &here)?, entities, &here)?);
+                    keep(
+                        &mut arrays,
+                        entities_of,
+                        self.array(name, kind, number(components, &here)?, entities, &here)?,
+                    );
                 }
                 ["FIELD", _, count] => {
                     for _ in 0..number(count, &here)? {
@@ -111,10 +119,10 @@ impl<'b> Reader<'b> {
                         self.words();
                         let (components, tuples) = (number(components, &here)?, number(tuples, &here)?);
                         let array = self.array(name, kind, components, tuples, &here)?;
-                        if of == Of::All && ["time", "timevalue"].contains(&name.to_lowercase().as_str()) {
+                        if entities_of == Of::All && ["time", "timevalue"].contains(&name.to_lowercase().as_str()) {
                             time = array.numbers.first().copied();
                         }
-                        keep(&mut arrays, of, array);
+                        keep(&mut arrays, entities_of, array);
                     }
                 }
                 _ => return Err(wrong("a section of points and of what is told of them")),
@@ -169,8 +177,8 @@ impl<'b> Reader<'b> {
 }
 
 /// Stores an array if it belongs to points.
-fn keep(arrays: &mut Vec<Array>, of: Of, array: Array) {
-    if of == Of::Points {
+fn keep(arrays: &mut Vec<Array>, entities_of: Of, array: Array) {
+    if entities_of == Of::Points {
         arrays.push(array);
     }
 }

@@ -93,8 +93,8 @@ impl File<'_> {
                 Event::Empty(tag) => {
                     self.open(&tag, &mut array, at)?;
                     if tag.name().as_ref() == b"DataArray" {
-                        let of = path.last().cloned().unwrap_or_default();
-                        self.close(&of, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                        let parent = path.last().cloned().unwrap_or_default();
+                        self.close(&parent, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
                     }
                 }
                 Event::Text(text) if path.last().is_some_and(|name| name == b"DataArray") => {
@@ -116,8 +116,8 @@ impl File<'_> {
                 Event::End(_) => {
                     let name = path.pop().unwrap_or_default();
                     if name == b"DataArray" {
-                        let of = path.last().cloned().unwrap_or_default();
-                        self.close(&of, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                        let parent = path.last().cloned().unwrap_or_default();
+                        self.close(&parent, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
                     }
                 }
                 Event::Eof => break,
@@ -188,7 +188,7 @@ impl File<'_> {
     /// Reads a complete array if it contains data of points, and appends it to the same array of earlier pieces.
     fn close(
         &self,
-        of: &[u8],
+        parent: &[u8],
         pieces: usize,
         array: Option<(Announced, String)>,
         positions: &mut Option<Array>,
@@ -196,19 +196,19 @@ impl File<'_> {
         time: &mut Option<f64>,
     ) -> Result<(), ReadError> {
         let Some((announced, text)) = array else { return Ok(()) };
-        let is_time = of == b"FieldData" && pieces == 0 && announced.name.eq_ignore_ascii_case("TimeValue");
-        if !(of == b"Points" || of == b"PointData" || is_time) {
+        let is_time = parent == b"FieldData" && pieces == 0 && announced.name.eq_ignore_ascii_case("TimeValue");
+        if !(parent == b"Points" || parent == b"PointData" || is_time) {
             return Ok(());
         }
         let (at, name) = (announced.at, announced.name.clone());
         let read = self.numbers(&announced, &text)?;
-        let components = if of == b"Points" { 3 } else { announced.components };
+        let components = if parent == b"Points" { 3 } else { announced.components };
         if components == 0 || read.numbers.len() % components != 0 {
             let expected = format!("a whole number of points of {components} numbers in {}", quoted(&name));
             return Err(self.bytes.error_at(at, expected, read.numbers.len().to_string()));
         }
         let read = Array { components, ..read };
-        let known = if of == b"Points" {
+        let known = if parent == b"Points" {
             positions.as_mut()
         } else if is_time {
             *time = read.numbers.first().copied();
@@ -228,7 +228,7 @@ impl File<'_> {
                     components.to_string(),
                 ));
             }
-            None if of == b"Points" => *positions = Some(read),
+            None if parent == b"Points" => *positions = Some(read),
             None => arrays.push(read),
         }
         Ok(())

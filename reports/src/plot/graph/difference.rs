@@ -19,9 +19,9 @@ pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
     if graph.x.logarithmic || graph.y.logarithmic {
         return None;
     }
-    let of = |stroke: Stroke| graph.curves.iter().enumerate().filter(move |(_, curve)| curve.stroke == stroke);
+    let curves_with = |stroke: Stroke| graph.curves.iter().enumerate().filter(move |(_, curve)| curve.stroke == stroke);
     let (lines, exact): (Vec<_>, Vec<_>) =
-        (of(Stroke::Line).collect(), of(Stroke::Dashed).map(|(_, curve)| curve).collect());
+        (curves_with(Stroke::Line).collect(), curves_with(Stroke::Dashed).map(|(_, curve)| curve).collect());
     let is_all = lines.len() + exact.len() == graph.curves.len() && !lines.is_empty();
     // There is one exact curve for all lines, or one for each line.
     if !is_all || exact.is_empty() || (exact.len() != 1 && exact.len() != lines.len()) {

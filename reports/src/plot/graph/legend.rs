@@ -22,9 +22,9 @@ fn is_told(curve: &Curve) -> bool {
 
 /// Draws the legend to the right of a panel.
 pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel) -> Markup {
-    let told: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
+    let labelled: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
     let left = panel.frame.right + 18.0;
-    let entries = tops(graph, legend, panel, &told);
+    let entries = tops(graph, legend, panel, &labelled);
     html! {
         g font-size=(TICK) fill="#222" {
             @for (at, top) in entries {
@@ -39,20 +39,20 @@ pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel:
 }
 
 /// Returns the position of the first line of each entry.
-fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, told: &[usize]) -> Vec<(usize, f64)> {
+fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, labelled: &[usize]) -> Vec<(usize, f64)> {
     let frame = panel.frame;
     let (first, last) = (frame.top + 6.0, frame.bottom + 40.0);
     let height = |at: usize| LEGEND_LINE * legend[at].len() as f64;
-    let whole: f64 = told.iter().map(|&at| height(at)).sum();
+    let whole: f64 = labelled.iter().map(|&at| height(at)).sum();
     // The entries of a long legend move closer together before they leave the drawing.
-    let gap = ((last - first - whole) / told.len().max(1) as f64).clamp(0.0, 7.0);
+    let gap = ((last - first - whole) / labelled.len().max(1) as f64).clamp(0.0, 7.0);
     let end = |at: usize| {
         let joined = matches!(graph.curves[at].stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
         let shown = graph.curves[at].points.iter().filter(|point| panel.x().shows(point.0) && panel.y().shows(point.1));
         let last = shown.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| joined)?;
         (panel.x().position(last.0) > 0.75).then(|| panel.up(last.1))
     };
-    let ends: Option<Vec<(usize, f64)>> = told.iter().map(|&at| Some((at, end(at)?))).collect();
+    let ends: Option<Vec<(usize, f64)>> = labelled.iter().map(|&at| Some((at, end(at)?))).collect();
     let stacked = |order: Vec<usize>| {
         let mut top = first;
         order
@@ -64,8 +64,8 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, told: &[usize]) ->
             })
             .collect::<Vec<_>>()
     };
-    let Some(mut ends) = ends.filter(|_| whole + 4.0 * told.len() as f64 <= frame.bottom - first) else {
-        return stacked(told.to_vec());
+    let Some(mut ends) = ends.filter(|_| whole + 4.0 * labelled.len() as f64 <= frame.bottom - first) else {
+        return stacked(labelled.to_vec());
     };
     ends.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Overlapping entries move down, and then up from the lower edge.

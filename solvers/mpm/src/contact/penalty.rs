@@ -90,7 +90,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
     /// Applies springs between bodies and walls.
     #[inline(always)]
     fn at_walls(&mut self) {
-        let Self { rules, bodies, tracers, friction, walls, nodes, most, told, .. } = self;
+        let Self { rules, bodies, tracers, friction, walls, nodes, most, told: outputs, .. } = self;
         let cell = rules.lattice.shortest(S::DIMENSION);
         for (number, wall) in walls.iter_mut().enumerate() {
             let other = Other::Wall(number as u16);
@@ -117,10 +117,10 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                         friction: coefficient,
                     };
                     let place = Place { body: place as u32, other, point: position };
-                    let force = told.force(friction, at, &overlap, place);
+                    let force = outputs.force(friction, at, &overlap, place);
                     grip.push::<B>(&body.part, force, nodes, most);
                     wall.force -= force;
-                    if let Some(tally) = told.ledger.tally() {
+                    if let Some(tally) = outputs.ledger.tally() {
                         let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
                         tally.walls += worked;
                         // The wall's part at the end of the step is known already: its velocity is prescribed.
@@ -134,13 +134,13 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
     /// Applies the spring at a tracer of the first body that penetrates the surface of the second.
     #[inline(always)]
     fn between(&mut self, Gone { pair, tracer, overlap, there, grips: [one, two] }: &Gone<S>) {
-        let Self { bodies, friction, nodes, most, told, .. } = self;
+        let Self { bodies, friction, nodes, most, told: outputs, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
         let place = Place { body: pair.first, other: Other::Body(pair.second), point: *there };
-        let force = told.force(friction, *tracer, overlap, place);
+        let force = outputs.force(friction, *tracer, overlap, place);
         one.push::<B>(&first.part, force, nodes, most);
         two.push::<B>(&second.part, -force, nodes, most);
-        if let Some(tally) = told.ledger.tally() {
+        if let Some(tally) = outputs.ledger.tally() {
             tally.taken -= 0.5 * S::dot(force, overlap.slip);
         }
     }

@@ -132,8 +132,8 @@ pub trait Law: Copy + Send + Sync + 'static {
 ///
 /// The coupled iteration of Denman and Beavers (1976) needs only sums and inverses. Returns `None` if it does not
 /// converge.
-fn symmetric_root(of: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-    let (mut root, mut inverse) = (*of, Matrix3::identity());
+fn symmetric_root(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let (mut root, mut inverse) = (*matrix, Matrix3::identity());
     for _ in 0..50 {
         let next = (root + inverse.try_inverse()?) * 0.5;
         inverse = (inverse + root.try_inverse()?) * 0.5;
@@ -141,7 +141,7 @@ fn symmetric_root(of: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         root = next;
         // Convergence is quadratic: a further step would change only the last digits.
         if way <= 1e-13 * root.norm() {
-            let is_root = (root * root - of).norm() <= 1e-12 * of.norm() && root.determinant() > 0.0;
+            let is_root = (root * root - matrix).norm() <= 1e-12 * matrix.norm() && root.determinant() > 0.0;
             return is_root.then_some(root);
         }
     }

@@ -129,8 +129,8 @@ impl Surface {
     /// Returns the enclosed volume (m³); negative if the normals point into it.
     fn volume(&self) -> f64 {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
-        let of = |[a, b, c]: &[Vector3<f64>; 3]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0;
-        self.triangles.iter().map(of).sum()
+        let tetrahedron = |[a, b, c]: &[Vector3<f64>; 3]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0;
+        self.triangles.iter().map(tetrahedron).sum()
     }
 
     fn refuse_wrong_side(&self, inward: bool) -> Result<(), Flaw> {
@@ -263,7 +263,7 @@ fn normals(
     triangles: &[[Vector3<f64>; 3]],
     name: &dyn Fn(usize) -> String,
 ) -> Result<Vec<Vector3<f64>>, Flaw> {
-    let of = |number: usize| {
+    let triangle_normal = |number: usize| {
         let ([a, b, c], [i, j, k]) = (triangles[number], faces[number]);
         let across = (b - a).cross(&(c - a));
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
@@ -280,7 +280,7 @@ fn normals(
         }
         Ok(normal)
     };
-    (0..facets.len()).map(of).collect()
+    (0..facets.len()).map(triangle_normal).collect()
 }
 
 fn refuse_twice(faces: &[[u32; 3]], name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {

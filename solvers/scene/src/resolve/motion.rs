@@ -14,7 +14,7 @@ impl Resolver<'_> {
         let mut centre_of: Option<Vector3<f64>> = None;
         for (number, spec) in specs.iter().enumerate() {
             let part = format!("{key}[{number}]");
-            let key = |of: &str| format!("{part}.{of}");
+            let key = |key_part: &str| format!("{part}.{key_part}");
             if self.in_other_form(&part, spec, &mut motion)? {
                 continue;
             }
@@ -71,13 +71,13 @@ impl Resolver<'_> {
             motion.phases.extend(self.table(&format!("{key}.table"), rows)?);
             return Ok(true);
         }
-        let seconds = |of: &str, time: Option<f64>, otherwise: f64| match time {
-            Some(time) => check.not_negative(&format!("{key}.{of}"), time, "time (s)"),
+        let seconds = |part: &str, time: Option<f64>, otherwise: f64| match time {
+            Some(time) => check.not_negative(&format!("{key}.{part}"), time, "time (s)"),
             None => Ok(otherwise),
         };
         let (start, stop) = (seconds("start", spec.start, 0.0)?, seconds("stop", spec.stop, f64::INFINITY)?);
         let kind = if let Some(sine) = &spec.sine {
-            let key = |of: &str| format!("{key}.sine.{of}");
+            let key = |part: &str| format!("{key}.sine.{part}");
             FunctionKind::Sine {
                 amplitude: check.vector(&key("amplitude"), &sine.amplitude)?,
                 frequency: check.positive(&key("frequency"), sine.frequency, "frequency (Hz)")?,

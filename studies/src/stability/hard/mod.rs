@@ -262,18 +262,18 @@ fn end(record: &Record) -> &[GrainState] {
 
 /// Returns the kinetic energy of grains, including rotation (J).
 fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
-    let of = |(grain, start): (&GrainState, &grainbench_scene::scene::Grain)| {
+    let grain_energy = |(grain, start): (&GrainState, &grainbench_scene::scene::Grain)| {
         0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * start.inertia * grain.spin.norm_squared()
     };
-    grains.iter().zip(&scene.grains).map(of).sum()
+    grains.iter().zip(&scene.grains).map(grain_energy).sum()
 }
 
 /// Returns the kinetic energy at the start (J).
 fn kinetic_at_start(scene: &Scene) -> f64 {
-    let of = |grain: &grainbench_scene::scene::Grain| {
+    let grain_energy = |grain: &grainbench_scene::scene::Grain| {
         0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
     };
-    scene.grains.iter().map(of).sum()
+    scene.grains.iter().map(grain_energy).sum()
 }
 
 /// Returns an error if a value differs from the expected value by more than `allowed`.
