@@ -65,9 +65,9 @@ fn runs(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
     let scene: Scene = SceneSource::from_text("disc.toml", folder.path(), SCENE).scene(&read_grains).unwrap();
     let step = Resolution::CriticalFraction(0.1);
-    let given = Given::of(&scene, &step).unwrap();
+    let given = Given::new(&scene, &step).unwrap();
     let resolved = folder.path().join("scene.json");
-    fs::write(&resolved, Resolved::of(&given).text(SceneFormat::Json).unwrap()).unwrap();
+    fs::write(&resolved, Resolved::new(&given).text(SceneFormat::Json).unwrap()).unwrap();
 
     let once = solver(folder.path(), "once", r#"run = ["sh", "once.sh", "{scene}", "{out}"]"#, ONCE);
     let stays = solver(folder.path(), "stays", r#"worker = ["sh", "stays.sh"]"#, STAYS);

@@ -16,9 +16,9 @@ pub fn measured() -> Result<Measurements, String> {
     let read = |name: &str, text: &str| -> Result<Study, String> {
         serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))
     };
-    let mut cost = Costs::of(&read("studies/kept/cost.json", COST)?, &sources);
-    cost.add(Costs::of(&read("peers/cost.json", PEERS)?, &sources));
-    let stability = Stability::of(&read("studies/kept/stability.json", STABILITY)?, &sources);
-    let effects = Effects::of(&read("studies/kept/effects.json", EFFECTS)?, &sources);
+    let mut cost = Costs::from_study(&read("studies/kept/cost.json", COST)?, &sources);
+    cost.add(Costs::from_study(&read("peers/cost.json", PEERS)?, &sources));
+    let stability = Stability::from_study(&read("studies/kept/stability.json", STABILITY)?, &sources);
+    let effects = Effects::from_study(&read("studies/kept/effects.json", EFFECTS)?, &sources);
     Ok(Measurements { cost: Some(cost), stability: Some(stability), effects: Some(effects) })
 }

@@ -49,7 +49,11 @@ fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
 /// effect.
 fn same_without(scene: &Scene, resolution: Resolution) {
     let idle = with_idle_friction(scene);
-    assert!(!Effects::of(scene).friction && Effects::of(&idle).friction && Effects::of(&idle).rolling_resistance);
+    assert!(
+        !Effects::from_scene(scene).friction
+            && Effects::from_scene(&idle).friction
+            && Effects::from_scene(&idle).rolling_resistance
+    );
     let (without, with) = (run(scene, resolution), run(&idle, resolution));
     let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
     assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));

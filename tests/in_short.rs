@@ -84,7 +84,7 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
                 assert_eq!(format!("{same:?}"), format!("{series:?}"), "{solver} {probes}");
                 assert!(none.whole.is_empty());
                 let summaries: Vec<&Brief> = none.in_short.iter().map(|(brief, _)| brief).collect();
-                let expected: Vec<Brief> = all.whole.iter().map(Brief::of).collect();
+                let expected: Vec<Brief> = all.whole.iter().map(Brief::from_snapshot).collect();
                 assert_eq!(summaries, expected.iter().collect::<Vec<_>>(), "{solver} {probes}");
                 assert!(expected.iter().any(|brief| brief.contacts > Some(0)), "some touch");
                 for ((_, rows), snapshot) in none.in_short.iter().zip(&all.whole) {

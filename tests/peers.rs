@@ -58,7 +58,7 @@ fn kept_rows_are_earned_and_are_those_of_today() {
             for row in judged.rows.iter().filter(|row| row.case == case) {
                 let is_it = claims.iter().any(|claim| {
                     let is_one = claim.quantity == row.quantity && claim.resolution() == row.resolution;
-                    is_one && claim.scope.is_open() && claim.tolerance.of(&[]) == row.allowed
+                    is_one && claim.scope.is_open() && claim.tolerance.allowed(&[]) == row.allowed
                 });
                 assert!(is_it, "{name}: {case} has no row `{}` any more: run it with --update-stored", row.quantity);
             }

@@ -74,14 +74,14 @@ fn a_state_is_the_one_whose_origin_is_told() {
         }
         assert!(bytes.len() <= 10_000_000, "{} is too large to be kept", path.display());
         let state = EndState::from_bytes(&bytes).unwrap();
-        let scene = of(path, &origin_of_state).scene(&read_grains).unwrap();
+        let scene = scene_source(path, &origin_of_state).scene(&read_grains).unwrap();
         assert_eq!(
             (state.of[0].as_str(), state.grains.len()),
             (&*scene.title, origin_of_state.grains),
             "{}",
             path.display()
         );
-        let stepping = Stepping::of(&scene, &Resolution::TimeStep(origin_of_state.time_step)).unwrap();
+        let stepping = Stepping::new(&scene, &Resolution::TimeStep(origin_of_state.time_step)).unwrap();
         let hash = scene_hash(&scene, &stepping);
         if hash != origin_of_state.scene_blake3 {
             wrong.push(format!("{}: of another scene: {hash}", path.display()));
@@ -112,7 +112,7 @@ fn a_state_is_the_one_whose_origin_is_told() {
 }
 
 /// Returns the scene whose final state a state is.
-fn of(state: &Path, origin: &Origin) -> SceneSource {
+fn scene_source(state: &Path, origin: &Origin) -> SceneSource {
     let source = SceneSource::read(&state.with_file_name(&origin.scene)).unwrap();
     let source = origin.variant.iter().fold(source, |source, variant| source.variant(variant));
     origin.set.iter().fold(source, |source, [key, value]| source.set(key, value))

@@ -363,7 +363,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
                 words.iter().all(|text| !text.trim().is_empty()),
                 "{place}: quantity, unit, source, because, control"
             );
-            let allowed = claim.tolerance.of(&[]);
+            let allowed = claim.tolerance.allowed(&[]);
             assert!(allowed.is_finite() && allowed >= 0.0, "{place}: allowed {allowed}");
             assert!(!claim.runs.is_empty(), "{place} reads no run");
             if let Some(work) = claim.source.work() {

@@ -75,7 +75,7 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
 
 /// Returns the range of task indices of a chunk.
 #[must_use]
-pub fn of(tasks: &[Task], chunk: Chunk) -> Range<usize> {
+pub fn task_range(tasks: &[Task], chunk: Chunk) -> Range<usize> {
     all(tasks, chunk.count).swap_remove(chunk.index as usize - 1)
 }
 

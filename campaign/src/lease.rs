@@ -74,7 +74,7 @@ impl Lease {
     ) -> Result<(Option<Self>, Vec<Said>), Fault> {
         let folder = plan.join(RUNNING);
         fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
-        let _lock = Lock::of(&folder)?;
+        let _lock = Lock::acquire(&folder)?;
         let others: Vec<Said> =
             held(plan, seconds)?.into_iter().filter(|other| other.worker != contents.worker).collect();
         let mut tasks: Vec<[usize; 2]> = Vec::new();
@@ -172,7 +172,7 @@ struct Lock {
 }
 
 impl Lock {
-    fn of(folder: &Path) -> Result<Self, Fault> {
+    fn acquire(folder: &Path) -> Result<Self, Fault> {
         let path = folder.join(LOCK);
         let turn = File::create(folder.join(format!("{LOCK}-{}", machine::name()))).ok();
         let turn = turn.filter(|file| file.lock().is_ok());
@@ -225,7 +225,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    fn said(worker: &str, process: u32) -> Said {
+    fn lease_contents(worker: &str, process: u32) -> Said {
         Said { worker: worker.to_owned(), host: machine::name(), process, job: None, tasks: Vec::new(), done: 0 }
     }
 
@@ -233,16 +233,19 @@ mod tests {
     fn no_task_has_two_owners() {
         let plan = tempfile::tempdir().unwrap();
         let own = std::process::id();
-        let (first, others) = Lease::take(plan.path(), 2..6, &said("a", own), 60.0).unwrap();
+        let (first, others) = Lease::take(plan.path(), 2..6, &lease_contents("a", own), 60.0).unwrap();
         assert!(others.is_empty());
-        let (second, others) = Lease::take(plan.path(), 0..10, &said("b", own), 60.0).unwrap();
+        let (second, others) = Lease::take(plan.path(), 0..10, &lease_contents("b", own), 60.0).unwrap();
         let (first, second) = (first.unwrap(), second.unwrap());
         assert_eq!((others.len(), &others[0].tasks), (1, &vec![[2, 6]]));
         assert_eq!(second.said.tasks, [[0, 2], [6, 10]]);
         assert!((0..10).all(|place| first.has(place) != second.has(place)));
-        assert!(Lease::take(plan.path(), 3..8, &said("c", own), 60.0).unwrap().0.is_none());
+        assert!(Lease::take(plan.path(), 3..8, &lease_contents("c", own), 60.0).unwrap().0.is_none());
         drop(first);
-        assert_eq!(Lease::take(plan.path(), 3..8, &said("c", own), 60.0).unwrap().0.unwrap().said.tasks, [[3, 6]]);
+        assert_eq!(
+            Lease::take(plan.path(), 3..8, &lease_contents("c", own), 60.0).unwrap().0.unwrap().said.tasks,
+            [[3, 6]]
+        );
     }
 
     #[test]
@@ -251,7 +254,8 @@ mod tests {
         let mut child = std::process::Command::new("true").spawn().unwrap();
         child.wait().unwrap();
         for (process, host, seconds) in [(child.id(), machine::name(), 60.0), (1, "elsewhere".to_owned(), 0.02)] {
-            let (lease, _) = Lease::take(plan.path(), 0..4, &Said { host, ..said("a", process) }, 60.0).unwrap();
+            let (lease, _) =
+                Lease::take(plan.path(), 0..4, &Said { host, ..lease_contents("a", process) }, 60.0).unwrap();
             sleep(Duration::from_millis(100));
             assert_eq!(held(plan.path(), seconds).unwrap(), []);
             drop(lease);

@@ -63,7 +63,7 @@ impl State {
         }
     }
 
-    fn of(word: &str) -> Option<Self> {
+    fn from_word(word: &str) -> Option<Self> {
         [Self::Done, Self::Failed, Self::Crashed].into_iter().find(|state| state.word() == word)
     }
 }
@@ -101,7 +101,7 @@ impl<'a> Line<'a> {
             return None;
         }
         let mut words = head.split(' ');
-        let (id, state) = (words.next()?.parse().ok()?, State::of(words.next()?)?);
+        let (id, state) = (words.next()?.parse().ok()?, State::from_word(words.next()?)?);
         let (seconds, load) = (words.next()?.parse().ok()?, words.next()?.parse().ok());
         Some(Self { id, state, seconds, load, json })
     }

@@ -41,7 +41,7 @@ impl Status {
     ///
     /// # Errors
     /// When a file of the plan cannot be read.
-    pub fn of(plan: &Plan) -> Result<Self, Fault> {
+    pub fn from_plan(plan: &Plan) -> Result<Self, Fault> {
         let workers = lease::held(&plan.path, plan.head.lease_seconds)?;
         let finished = Finished::read(&plan.path, false)?;
         let mut status = Self { tasks: plan.tasks.len(), damaged: finished.damaged, ..Self::default() };

@@ -150,7 +150,7 @@ pub fn work(
     watch: Arc<dyn Watch>,
     does: Does<'_>,
 ) -> Result<Summary, Fault> {
-    let range = chunk::of(&plan.tasks, asked.chunk);
+    let range = chunk::task_range(&plan.tasks, asked.chunk);
     let seconds = plan.head.lease_seconds;
     let contents = Said {
         worker: worker.name.clone(),

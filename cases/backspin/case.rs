@@ -50,7 +50,7 @@ fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
 fn soft(variant: &str) -> Option<(OneGrain, f64)> {
     let mut scene = CASE.variant(variant).ok()?;
     rest_at_overlap(&mut scene, 1e-3, DAMPING);
-    Some((OneGrain::of(&scene), STEP.steps(&scene).ok()?.0))
+    Some((OneGrain::from_scene(&scene), STEP.steps(&scene).ok()?.0))
 }
 
 /// Returns the tolerance for friction that the first step may lack, halfway through the slide.
@@ -75,7 +75,7 @@ fn fallen_behind(variant: &str) -> Tolerance {
 
 fn rigid(variant: &'static str) -> Vec<Claim> {
     let quantity_claim =
-        |quantity: &str, unit| claim(quantity, unit).of(at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP));
+        |quantity: &str, unit| claim(quantity, unit).run(at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP));
     vec![
         quantity_claim("displacement at 1 s", "m")
             .equals(SOURCE, |done| end(&done[0], |state| state.x))
@@ -98,7 +98,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type Pick = fn(&Done) -> Result<Measured, Missing>;
     let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
-            .of(nearly_rigid(variant, tangential_dashpot))
+            .run(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
             .within(tolerance)
             .refuses(control)
@@ -149,25 +149,25 @@ fn sliding(grain: &OneGrain) -> f64 {
 
 /// Returns the largest relative error of the velocity halfway through the slide, for any parameters.
 fn halfway(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     2.0 * grain.onset() / sliding(&grain)
 }
 
 /// Returns the largest relative error of final velocity and spin, for any parameters.
 fn rolling(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     grain.overlap_ratio + grain.ringing(grain.friction * grain.onto) / grain.backspin_velocity(grain.radius)
 }
 
 /// Returns the largest relative error of the displacement, for any parameters.
 fn displaced(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);
     rolling(scene) + grain.backspin_velocity(grain.radius) * grain.onset() / grain.rigid_backspin(end).x
 }
 
 fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
-    let grain = OneGrain::of(&done.scene);
+    let grain = OneGrain::from_scene(&done.scene);
     let halfway = 0.5 * sliding(&grain);
     let (t, state) = nearest(done, halfway)?;
     let exact = grain.rigid_backspin(t).v;
@@ -178,10 +178,10 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
-            .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
+            .run(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
             .equals(Source::Derived("v = iR²Ω₀a/(a² + iR²) with arm a (derivation)"), move |done| {
                 let (_, state) = last(&done[0])?;
-                let grain = OneGrain::of(&done[0].scene);
+                let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.backspin_velocity(arm);
                 Ok(Measured::new(state.v, exact, exact))
@@ -199,7 +199,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in VARIANTS {
         let done = runner.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
-        let grain = OneGrain::of(&done.scene);
+        let grain = OneGrain::from_scene(&done.scene);
         let states = course(&done).unwrap_or_default();
         let surface = |state: &State| state.omega * grain.radius;
         let thin =

@@ -57,7 +57,7 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.extend(stiff_discs());
     claims.push(
         claim("mean ΩR over mean v of rolling, R/8", "1")
-            .of(run("disc", "mpm", 8.0))
+            .run(run("disc", "mpm", 8.0))
             .equals(Source::Derived("rolling without slip"), |done| {
                 let (v, surface) = rolling(&done[0])?;
                 Ok(Measured::new(surface / v, 1.0, 1.0))
@@ -71,7 +71,7 @@ pub(super) fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("displacement at .8 s over the rigid one, less 1, R/16", "1")
-            .of(run("disc", "mpm", 16.0).slow().known(
+            .run(run("disc", "mpm", 16.0).slow().known(
                 "a disc that slides fast on springs becomes noisy at twelve and more cells per radius: its centre rises from \
                  0.494 to 0.504 m, and its displacement is too small. A disc that rotates without contact has no noise",
             )
@@ -86,7 +86,7 @@ pub(super) fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("displacement at .8 s over the rigid one, less 1, R/4", "1")
-            .of(run("disc", "mpm:2000", 4.0).known(
+            .run(run("disc", "mpm:2000", 4.0).known(
                 "nodal contact supports the disc over a region of about √(2Rh): as the disc rotates, it presses new material \
                  into the region, and normal force and friction are several times those of the weight",
             )
@@ -103,7 +103,7 @@ fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);
         claim(format!("displacement at .8 s over the rigid one, less 1, moduli × {factor}, R/8"), "1")
-            .of(if factor > 10.0 { run.long() } else { run.slow() })
+            .run(if factor > 10.0 { run.long() } else { run.slow() })
             .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(
                 allowed,
@@ -143,7 +143,7 @@ mod tests {
     fn both_variants_roll_by_then() {
         for variant in ["disc", "sphere"] {
             let scene = super::super::CASE.variant(variant).unwrap_or_else(|error| panic!("{error}"));
-            let grain = OneGrain::of(&scene);
+            let grain = OneGrain::from_scene(&scene);
             assert_eq!(grain.rigid_backspin(ROLLS).v, grain.rigid_backspin(1.0).v);
         }
     }

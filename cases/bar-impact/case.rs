@@ -40,7 +40,7 @@ struct Impact {
 }
 
 impl Impact {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let body = &scene.bodies[0];
         let length = match body.shape {
             BlockShape::Box { low, high } => high.x - low.x,
@@ -71,7 +71,7 @@ const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
 /// Returns the mean stress in the middle of the right bar from 0.7 to 1.3 transits L/c.
 fn plateau(done: &Done) -> Result<f64, Missing> {
-    let impact = Impact::of(&done.scene);
+    let impact = Impact::from_scene(&done.scene);
     let transit = impact.length / impact.wave;
     let stress = done.column("middle.sigma_xx")?;
     let within = |time: f64| (0.7 * transit..=1.3 * transit).contains(&time);
@@ -95,12 +95,12 @@ fn claims() -> Vec<Claim> {
         let width = width(level.resolution);
         claims.push(
             claim(format!("velocity of the right bar, worst, {} cells", level.name), "m/s")
-                .of(run())
+                .run(run())
                 .series(|done| samples(done, "right.vx"))
                 .follows(
                     SOURCE,
-                    |done, time| Impact::of(&done.scene).velocity(time),
-                    |done| Impact::of(&done.scene).speed,
+                    |done, time| Impact::from_scene(&done.scene).velocity(time),
+                    |done| Impact::from_scene(&done.scene).speed,
                 )
                 .within(computed(
                     2.0 * AHEAD * width,
@@ -113,9 +113,9 @@ fn claims() -> Vec<Claim> {
         );
         claims.push(
             claim(format!("velocity of the left bar in the end, {} cells", level.name), "m/s")
-                .of(run())
+                .run(run())
                 .equals(SOURCE, |done| {
-                    Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::of(&done[0].scene).speed))
+                    Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::from_scene(&done[0].scene).speed))
                 })
                 .within(computed(
                     LEFT_BEHIND * width,
@@ -128,9 +128,9 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
-            .of(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
+            .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
             .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
-                let exact = -Impact::of(&done[0].scene).stress();
+                let exact = -Impact::from_scene(&done[0].scene).stress();
                 Ok(Measured::new(plateau(&done[0])?, exact, -exact))
             })
             .within(estimated(0.015, "ringing behind a front that is a jump"))
@@ -144,7 +144,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut stresses = Vec::new();
     for (solver, level) in [("mpm", LEVELS[0]), ("mpm", LEVELS[1]), ("mpm:gap", LEVELS[1])] {
         let done = runner.run(&Run::new(PLAIN, solver, level.resolution))?;
-        let unit = Impact::of(&done.scene).stress();
+        let unit = Impact::from_scene(&done.scene).stress();
         let stress = samples(&done, "middle.sigma_xx").unwrap_or_default();
         let points = stress.into_iter().map(|(time, stress)| (time, stress / unit)).collect();
         stresses.push(Curve::new(format!("{solver}, {}", level.name), Stroke::Line, points));

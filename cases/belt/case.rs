@@ -45,10 +45,10 @@ struct Belt {
 }
 
 impl Belt {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let phase = scene.walls[0].motion.phases.first();
         Self {
-            grain: OneGrain::of(scene),
+            grain: OneGrain::from_scene(scene),
             speed: phase.map_or(f64::NAN, |phase| phase.velocity.x),
             stop: phase.map_or(f64::NAN, |phase| match phase.stop {
                 Moment::Seconds(time) => time,
@@ -133,13 +133,13 @@ fn claims() -> Vec<Claim> {
 /// Compares a quantity of the last state with the rigid solution.
 fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
-    let exact = pick(Belt::of(&done.scene).rigid(t));
+    let exact = pick(Belt::from_scene(&done.scene).rigid(t));
     Ok(Measured::new(pick(state), exact, exact))
 }
 
 /// Compares the velocity at half the time of sliding with the rigid solution.
 fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
-    let belt = Belt::of(&done.scene);
+    let belt = Belt::from_scene(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
     let exact = belt.rigid(t).v;
     Ok(Measured::new(state.v, exact, exact))
@@ -151,7 +151,7 @@ fn stiff(variant: &'static str) -> (Belt, f64) {
         return (Belt { grain: NO_GRAIN, speed: f64::NAN, stop: f64::NAN }, f64::NAN);
     };
     rest_at_overlap(&mut scene, NEARLY_RIGID, DAMPING);
-    let belt = Belt::of(&scene);
+    let belt = Belt::from_scene(&scene);
     let Resolution::CriticalFraction(fraction) = STEP else { return (belt, f64::NAN) };
     let step = fraction * 2.0 * (belt.grain.mass / belt.grain.normal_stiffness).sqrt();
     (belt, step)
@@ -178,7 +178,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     let (belt, step) = stiff(variant);
     let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
-            .of(nearly_rigid(variant, tangential_dashpot))
+            .run(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
             .within(tolerance)
             .refuses(control)
@@ -231,10 +231,10 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
-            .of(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
+            .run(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
             .equals(Source::Derived("v = V iR²/(iR² + a²) with arm a (derivation)"), move |done| {
                 let (_, state) = last(&done[0])?;
-                let belt = Belt::of(&done[0].scene);
+                let belt = Belt::from_scene(&done[0].scene);
                 let grain = belt.grain;
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = belt.rolling_at(arm);
@@ -262,7 +262,7 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
             grain.position[axis] = grain.radius;
         });
         claim(format!("{quantity} at 1 s"), unit)
-            .of(run)
+            .run(run)
             .equals(SOURCE, move |done| end(&done[0], pick))
             .within(tolerance)
             .refuses(control)
@@ -295,10 +295,10 @@ fn stopped() -> Vec<Claim> {
     let stopped_claim =
         |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: fn(State, &Belt) -> [f64; 3]| {
             claim(format!("{quantity} after the belt has stopped, nearly rigid contact"), unit)
-                .of(nearly_rigid(STOPS, tangential_dashpot))
+                .run(nearly_rigid(STOPS, tangential_dashpot))
                 .equals(STOPPED, move |done| {
                     let (_, state) = last(&done[0])?;
-                    let [value, exact, scale] = pick(state, &Belt::of(&done[0].scene));
+                    let [value, exact, scale] = pick(state, &Belt::from_scene(&done[0].scene));
                     Ok(Measured::new(value, exact, scale))
                 })
                 .within(tolerance)
@@ -345,10 +345,10 @@ fn kick() -> Claim {
         })
     });
     claim("velocity after the first step, LIGGGHTS' less ours", "m/s")
-        .of_all(runs)
+        .runs(runs)
         .equals(Source::Derived("a dashpot that friction does not limit, from step 0 or 1 on (derivation)"), |done| {
             let [ours, program] = [last(&done[0])?.1.v, last(&done[1])?.1.v];
-            let kicked = Belt::of(&done[0].scene).kicked(&done[0].scene, done[0].record.provenance.time_step);
+            let kicked = Belt::from_scene(&done[0].scene).kicked(&done[0].scene, done[0].record.provenance.time_step);
             Ok(Measured::new(program - ours, kicked[1] - kicked[0], kicked[1]))
         })
         .within(computed(1e-3, "overlap/R, for a torque arm between R and R − overlap; in units of LIGGGHTS' velocity"))
@@ -361,7 +361,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (variant, shown) in [("disc", "disc"), ("sphere", "sphere"), (STOPS, "disc, belt stops")] {
         let done = runner.run(&at_overlap(variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
-        let belt = Belt::of(&done.scene);
+        let belt = Belt::from_scene(&done.scene);
         let states = course(&done).unwrap_or_default();
         let thin = states.iter().step_by(4).map(|(t, state)| (*t, state.v)).collect();
         curves.push(Curve::new(format!("{shown}: v"), Stroke::Markers, thin));
@@ -388,7 +388,7 @@ mod tests {
     /// V.
     #[test]
     fn is_backspin_seen_from_the_belt() {
-        let belt = Belt::of(&CASE.variant("disc").unwrap());
+        let belt = Belt::from_scene(&CASE.variant("disc").unwrap());
         let grain = OneGrain { spin: belt.speed / belt.grain.radius, ..belt.grain };
         for t in [0.1, 0.3, 0.4, 1.0] {
             let (here, there) = (belt.rigid(t), grain.rigid_backspin(t));
@@ -399,7 +399,7 @@ mod tests {
     /// The disc is at rest after f V T. It slides on the stopped belt as long as on the moving belt.
     #[test]
     fn a_belt_that_stops_brings_it_to_rest() {
-        let belt = Belt::of(&CASE.variant(STOPS).unwrap());
+        let belt = Belt::from_scene(&CASE.variant(STOPS).unwrap());
         let end = belt.rigid(1.0);
         assert!(end.v.abs() < 1e-14 && end.omega.abs() < 1e-13);
         assert!((end.x - 0.5).abs() < 1e-14, "{}", end.x);

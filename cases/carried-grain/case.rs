@@ -38,7 +38,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let carried = &scene.grains[0];
         let stiffness = scene.laws[0].map_or(f64::NAN, |law| law.normal_stiffness());
         let distance = |other: &grainbench_scene::scene::Grain| (other.position - carried.position).norm();
@@ -68,7 +68,7 @@ impl Motion {
 }
 
 fn motion(variant: &str) -> Option<Motion> {
-    CASE.variant(variant).ok().map(|scene| Motion::of(&scene))
+    CASE.variant(variant).ok().map(|scene| Motion::from_scene(&scene))
 }
 
 /// Returns the final position of the carried grain (m).
@@ -89,9 +89,9 @@ fn claims() -> Vec<Claim> {
 fn after_a_turn(variant: &'static str) -> Claim {
     let allowed = motion(variant).map_or(f64::NAN, |motion| motion.off(variant == "across") / motion.start.norm());
     claim(format!("place after a turn, axis {variant} the normals, off"), "m")
-        .of(Run::new(variant, "dem", STEP.resolution))
+        .run(Run::new(variant, "dem", STEP.resolution))
         .holds("a mass on springs alike in all directions, whose rest place turns (derivation)", |done| {
-            let motion = Motion::of(&done[0].scene);
+            let motion = Motion::from_scene(&done[0].scene);
             let exact = sprung(motion.start, motion.spin, motion.frequency, motion.time);
             Ok(Measured::new((place(&done[0])? - exact).norm(), 0.0, motion.start.norm()))
         })
@@ -112,9 +112,9 @@ fn spin() -> Claim {
         2.0 * motion.overlap / motion.radius + (rate * step * (1.0 + rate * motion.time)).powi(2)
     });
     claim("spin after a turn, axis across the normals", "rad/s")
-        .of(Run::new("across", "dem", STEP.resolution))
+        .run(Run::new("across", "dem", STEP.resolution))
         .equals(Source::Derived("the torques of both contacts are opposite (derivation)"), |done| {
-            let rate = Motion::of(&done[0].scene).spin.norm();
+            let rate = Motion::from_scene(&done[0].scene).spin.norm();
             Ok(Measured::new(done[0].last("carried.omega")?, rate, rate))
         })
         .within(computed(allowed, "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + θ)²"))

@@ -63,21 +63,21 @@ fn claims() -> Vec<Claim> {
     };
     let at_bead = |(n, column): (usize, &'static str)| {
         claim(format!("velocity of bead {n} at 20/ω₀"), "m/s")
-            .of(run(FINEST))
+            .run(run(FINEST))
             .equals(BESSEL, move |done| bead(&done[0], n, column))
             .within(estimated(4e-4, "numerical dispersion of central differences at this step, in units of V"))
             .refuses(heavier())
             .fair_to_any()
     };
     let order = claim("order in Δt, rms over the six beads", "1")
-        .of_all(LEVELS.iter().map(|&level| run(level)))
+        .runs(LEVELS.iter().map(|&level| run(level)))
         .sweep(|done| Ok((done.record.provenance.time_step, rms(done)?)))
         .converges(2.0, Source::Derived("central differences are of second order"))
         .within(asymptotic(2.0))
         .refuses(heavier())
         .drawn(&CONVERGENCE, "dem");
     let force = claim("mean force on the driver over the last half", "N")
-        .of(run(FINEST))
+        .run(run(FINEST))
         .equals(Source::Derived("impedance of the chain, V√(km)"), |done| {
             let (speed, _, impedance) = chain(&done[0].scene);
             let force = done[0].column("driver.force_x")?;
@@ -96,7 +96,7 @@ fn claims() -> Vec<Claim> {
         .fair_to_any();
     // Rigid beads have no dispersion, and no unique solution when many beads are in contact at once.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
-        .of(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
+        .run(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and its distribution over beads in contact \
              depends on the solution order of the engine",
         )

@@ -112,7 +112,7 @@ fn elastic() -> Vec<Claim> {
                           exact: fn(&Scene) -> f64,
                           read: fn(&Done) -> Result<f64, Missing>| {
         claim(quantity, unit)
-            .of(Run::new(variant, "dem", STEP.resolution))
+            .run(Run::new(variant, "dem", STEP.resolution))
             .equals(HERTZ, move |done| {
                 let exact = exact(&done[0].scene);
                 Ok(Measured::new(read(&done[0])?, exact, exact))
@@ -188,7 +188,7 @@ fn restitution() -> Vec<Claim> {
             (late(variant, restitution), more)
         };
         claim(format!("rebound velocity over impact velocity, e = {restitution}"), "1")
-            .of(with_restitution(variant, restitution))
+            .run(with_restitution(variant, restitution))
             .equals(RESTITUTION, move |done| Ok(Measured::new(rebound(&done[0])?, restitution, 1.0)))
             .within(tolerance)
             .refuses(control)
@@ -213,7 +213,7 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
 /// half a step earlier, which moved the sphere from the previous position to this one.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
-        .of(Run::new(DAMPED[0], "dem", STEP.resolution))
+        .run(Run::new(DAMPED[0], "dem", STEP.resolution))
         .equals(
             Source::Derived("k δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇, in numbers by hand (derivation)"),
             |done| {
@@ -248,7 +248,7 @@ fn tangential(done: &Done) -> Result<f64, Missing> {
 
 /// Returns tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
-    let meeting = Meeting::of(scene);
+    let meeting = Meeting::from_scene(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);
     (along / scene.grains[0].velocity.x, spin)
 }
@@ -261,14 +261,14 @@ fn oblique() -> Vec<Claim> {
         for degrees in ANGLES {
             claims.push(
                 claim(format!("tangential restitution at {degrees}°"), "1")
-                    .of(at_angle(variant, degrees))
+                    .run(at_angle(variant, degrees))
                     .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
                     .within(estimated(5e-5, ENDS))
                     .refuses(more_friction()),
             );
             claims.push(
                 claim(format!("spin after impact at {degrees}°"), "rad/s")
-                    .of(at_angle(variant, degrees))
+                    .run(at_angle(variant, degrees))
                     .equals(SLIDING, |done| {
                         let exact = sliding(&done[0].scene).1;
                         Ok(Measured::new(done[0].last("a.omega_y")?, exact, exact))
@@ -300,14 +300,14 @@ fn rigid() -> Vec<Claim> {
     };
     vec![
         claim("rebound velocity over impact velocity, e = 0.8", "1")
-            .of(rigid(with_restitution(DAMPED[0], 0.8)))
+            .run(rigid(with_restitution(DAMPED[0], 0.8)))
             .equals(RESTITUTION, |done| Ok(Measured::new(rebound(&done[0])?, 0.8, 1.0)))
             .within(rounding())
             .refuses(Control::scene("e = .79", |scene| {
                 scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))
             })),
         claim("tangential restitution at 60° with friction μ m v_n", "1")
-            .of(oblique())
+            .run(oblique())
             .equals(
                 Source::Derived("1 − μ v_n/v_t: friction limited by the impulse that stops the approach"),
                 |done| {
@@ -319,7 +319,7 @@ fn rigid() -> Vec<Claim> {
             .within(rounding())
             .refuses(more_friction()),
         claim("tangential restitution at 60°", "1")
-            .of(oblique()
+            .run(oblique()
                 .known(
                     "the friction limit uses the impulse that stops the approach, without the impulse of restitution",
                 )

@@ -100,7 +100,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
     let stiffer = || Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01)));
     [
         claim("deepest overlap, from places", "m")
-            .of(run())
+            .run(run())
             .equals(HERTZ, |done| {
                 let exact = hertz(&done[0].scene).0;
                 Ok(Measured::new(peak(&overlap(&done[0])?), exact, exact))
@@ -108,7 +108,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
         claim("duration of contact, from places", "s")
-            .of(run())
+            .run(run())
             .equals(HERTZ, |done| {
                 let exact = hertz(&done[0].scene).2;
                 Ok(Measured::new(parted(&done[0])?, exact, exact))
@@ -116,7 +116,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
         claim("rebound velocity over impact velocity", "1")
-            .of(run())
+            .run(run())
             .equals(HERTZ, |done| Ok(Measured::new(rebound(&done[0])?, 1.0, 1.0)))
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(Control::scene("e = .99", |scene| {
@@ -130,7 +130,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
 fn given_back(run: Run) -> Claim {
     let words = run.adjustment.as_ref().map_or("of the scene", |(name, _)| name);
     claim(format!("rebound velocity over impact velocity, {words}, or of a release at zero force"), "1")
-        .of(run)
+        .run(run)
         .equals(RESTITUTION, |done| {
             let (found, ratio) = (rebound(&done[0])?, super::law(&done[0].scene).damping_ratio);
             let [late, early] = [restitution(ratio), no_tension_restitution(ratio)];
@@ -156,10 +156,10 @@ fn sliding(run: &Run) -> [Claim; 2] {
         |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
             let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
             claim(format!("{quantity} after sliding, {words}"), unit)
-                .of(run.clone())
+                .run(run.clone())
                 .equals(SLIDING, move |done| {
                     let scene = &done[0].scene;
-                    let meeting = Meeting::of(scene);
+                    let meeting = Meeting::from_scene(scene);
                     let after = meeting.after(scene, normal_impulse(&done[0])? / meeting.stopping)[at];
                     let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
                     Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
@@ -199,15 +199,15 @@ fn wrong_inertia() -> Control {
 /// Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if the dashpot is made
 /// for a release at zero force and the spring is incremental.
 fn coulomb(run: Run) -> Claim {
-    let given = scene(&run).as_ref().map(Meeting::of);
+    let given = scene(&run).as_ref().map(Meeting::from_scene);
     let [low, high] = given.map_or([0.0; 2], |meeting| {
         [1.0 + meeting.restitution - meeting.latest_start(), 1.0 + 2.0 * meeting.early - meeting.restitution]
     });
     claim("friction's impulse while sliding, over μ times the impulse that stops the approach", "1")
-        .of(run)
+        .run(run)
         .between([low, high], SLIDING, |done| {
             let scene = &done[0].scene;
-            let (grain, meeting) = (&scene.grains[0], Meeting::of(scene));
+            let (grain, meeting) = (&scene.grains[0], Meeting::from_scene(scene));
             Ok(grain.mass * (done[0].last("a.vx")? - grain.velocity.x) / meeting.impulse(1.0))
         })
         .within(computed(
@@ -230,7 +230,7 @@ fn lever(run: Run, times: f64) -> Claim {
     );
     let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
     claim(format!("arm of friction over R, −IΔω/(m R Δv), {words}"), "1")
-        .of(run)
+        .run(run)
         .holds("angular momentum about the contact", |done| {
             let grain = &done[0].scene.grains[0];
             let turned = grain.inertia * (done[0].last("a.omega_y")? - grain.spin.y);
@@ -245,7 +245,7 @@ fn lever(run: Run, times: f64) -> Claim {
 fn momentum(run: &Run) -> [Claim; 2] {
     let momentum_claim = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")
-            .of(run.clone())
+            .run(run.clone())
             .holds("Newton's third law", move |done| {
                 let grains = &done[0].scene.grains;
                 let gained = |at: usize| Ok(grains[at].mass * (done[0].last(columns[at])? - grains[at].velocity[axis]));
@@ -268,7 +268,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
 fn gears(variant: &'static str) -> [Claim; 3] {
     let gear_claim = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)
-            .of(Run::new(variant, "dem", STEP.resolution))
+            .run(Run::new(variant, "dem", STEP.resolution))
             .holds("surfaces that do not slip against each other exert no friction", move |done| {
                 let grain = &done[0].scene.grains[0];
                 let (before, scale) =

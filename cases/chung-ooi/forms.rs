@@ -30,7 +30,7 @@ pub(super) fn restitution(ratio: f64) -> f64 {
 
 impl Meeting {
     /// Reads a scene.
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(super) fn from_scene(scene: &Scene) -> Self {
         let first = &scene.grains[0];
         let own = first.velocity.x - first.spin.y * first.radius;
         let other = scene.grains.get(1).map_or(0.0, |second| second.velocity.x + second.spin.y * second.radius);

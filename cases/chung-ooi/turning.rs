@@ -53,10 +53,10 @@ fn sharp(run: &Run) -> Vec<Claim> {
                 Control::solver("the limit of the other convention", other)
             };
             claim(format!("{quantity} after sliding, {words}"), unit)
-                .of(Run { solver, ..run.clone() })
+                .run(Run { solver, ..run.clone() })
                 .equals(SLIDING, move |done| {
                     let scene = &done[0].scene;
-                    let meeting = Meeting::of(scene);
+                    let meeting = Meeting::from_scene(scene);
                     let after = meeting.after(scene, factor(&meeting))[at];
                     let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
                     Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
@@ -81,7 +81,7 @@ fn sharp(run: &Run) -> Vec<Claim> {
 /// normal velocity.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slides = |done: &Done, friction: f64| -> Option<(f64, f64)> {
-        let (grain, before) = (&done.scene.grains[0], Meeting::of(&done.scene));
+        let (grain, before) = (&done.scene.grains[0], Meeting::from_scene(&done.scene));
         let onto = friction * grain.velocity.z.abs();
         let other = match done.scene.grains.get(1) {
             Some(second) => done.last("b.vx").ok()? + done.last("b.omega_y").ok()? * second.radius,

@@ -28,7 +28,7 @@ pub(crate) static CASE: Case = Case {
 
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     let share = grain.inertia_factor / (1.0 + grain.inertia_factor);
     grain.mass * (grain.along * share - grain.friction * grain.onto)
 }
@@ -46,7 +46,7 @@ fn with_cohesion(factor: f64) -> Run {
 /// that of the second half of the run.
 fn slip(done: &Done) -> Result<Measured, Missing> {
     let scene = &done.scene;
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     let cohesion = scene.laws.iter().flatten().map(|law| law.cohesion).fold(0.0, f64::max);
     let course = course(done)?;
     let (half, end) = (&course[course.len() / 2], &course[course.len() - 1]);
@@ -61,7 +61,7 @@ fn claims() -> Vec<Claim> {
     let rounding = 4.0 * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64);
     let strength_claim = |quantity: &str, factor: f64, wrong, by: f64| {
         claim(quantity, "m/s²")
-            .of(with_cohesion(factor))
+            .run(with_cohesion(factor))
             .equals(STRENGTH, |done| slip(&done[0]))
             .within(computed(
                 rounding,
@@ -70,7 +70,7 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.cohesion *= by)))
     };
-    let refusal = |solver, step| claim("refusal of cohesion", "1").of(Run::new(PLAIN, solver, step));
+    let refusal = |solver, step| claim("refusal of cohesion", "1").run(Run::new(PLAIN, solver, step));
     let programs = ["lammps", "liggghts"].map(|program| {
         refusal(program, STEP.resolution).refused(
             "its cohesion attracts along the normal; shear strength that needs no load it has none",

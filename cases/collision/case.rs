@@ -109,7 +109,7 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
 /// half a step earlier, which changed the overlap from its previous value to this one.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
-        .of(Run::new(FELT, "dem", LEVELS[1].resolution))
+        .run(Run::new(FELT, "dem", LEVELS[1].resolution))
         .equals(Source::Derived("kδ + c (δ(n) − δ(n−1))/Δt where that pushes, in numbers by hand (derivation)"), |done| {
             let (a, b, time) = (done[0].column("a.x")?, done[0].column("b.x")?, &done[0].series().time);
             let overlap = |at: usize| 2.0 - (b[at] - a[at]);
@@ -156,7 +156,7 @@ fn other(solver: &'static str) -> Control {
 
 fn restitution(variant: &'static str, solver: &'static str) -> Claim {
     claim("coefficient of restitution", "1")
-        .of(Run::new(variant, solver, FINEST.resolution))
+        .run(Run::new(variant, solver, FINEST.resolution))
         .equals(Source::Derived("damped oscillator with this release (derivation)"), move |done| {
             // The exact value follows the convention of the claim, even if the control replaces the solver.
             let exact = exact_restitution(pair(&done[0].scene).2, solver != "dem");
@@ -187,7 +187,7 @@ fn step(at: i32) -> Resolution {
 /// error of a single run depends on the position of the release within a step.
 fn steps(variant: &'static str, solver: &'static str) -> Claim {
     claim("restitution's error over what is of first order in Δt, worst of 16 steps", "1")
-        .of_all((0..16).map(|at| Run::new(variant, solver, step(at))))
+        .runs((0..16).map(|at| Run::new(variant, solver, step(at))))
         .equals(Source::Derived("touch, release and dashpot within a step (derivation)"), move |done| {
             let found = done.iter().zip(0..).map(|(done, at)| {
                 let exact = exact_restitution(pair(&done.scene).2, solver != "dem");
@@ -210,7 +210,7 @@ fn rounding(count: f64, because: &str) -> Tolerance {
 fn momentum() -> Vec<Claim> {
     let momentum_claim = |axis: (&'static str, usize)| {
         claim(along(axis), "kg m/s")
-            .of(Run::new("oblique", "dem", LEVELS[1].resolution))
+            .run(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
             .within(rounding(2.0, "two velocities round by ε in every step; in units of one grain's momentum"))
             // All solvers have gravity.
@@ -232,7 +232,7 @@ fn initial_angular_momentum(scene: &Scene) -> f64 {
 fn angular_momentum() -> Vec<Claim> {
     const ROUNDING: &str = "two positions, two velocities and two spins round by ε in every step; in units of m v R";
     let momentum_claim =
-        |quantity: &str, solver| claim(quantity, "kg m²/s").of(Run::new("oblique", solver, LEVELS[1].resolution));
+        |quantity: &str, solver| claim(quantity, "kg m²/s").run(Run::new("oblique", solver, LEVELS[1].resolution));
     vec![
         momentum_claim("angular momentum, arm R − overlap/2, worst", "dem:liggghts")
             .holds("tangential forces act at one point (derivation)", |done| worst_angular_momentum(&done[0]))
@@ -262,7 +262,7 @@ fn angular_momentum() -> Vec<Claim> {
 /// paper's limit applies to the spring.
 fn at_the_limit() -> Claim {
     claim("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s")
-        .of(Run::new("oblique", "dem:1979", LEVELS[1].resolution))
+        .run(Run::new("oblique", "dem:1979", LEVELS[1].resolution))
         .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
             let grain = &done[0].scene.grains[0];
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
@@ -280,7 +280,7 @@ fn at_the_limit() -> Claim {
 /// pulls.
 fn coulomb() -> Vec<Claim> {
     let oblique_claim =
-        |quantity: &str, unit, solver| claim(quantity, unit).of(Run::new("oblique", solver, LEVELS[1].resolution));
+        |quantity: &str, unit, solver| claim(quantity, unit).run(Run::new("oblique", solver, LEVELS[1].resolution));
     let within = |solver: &'static str| {
         oblique_claim("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", solver)
             .at_most(0.0, Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0) (derivation)"), |done| {

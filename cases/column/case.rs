@@ -40,7 +40,7 @@ struct Column {
 }
 
 impl Column {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let body = &scene.bodies[0];
         let height = match body.shape {
             BlockShape::Box { low, high } => high.y - low.y,
@@ -82,10 +82,10 @@ fn claims() -> Vec<Claim> {
     let at_rest = || Run::new("static", "mpm", LEVELS[1].resolution);
     claims.push(
         claim("sinking of the centre of mass at rest", "m")
-            .of(at_rest())
+            .run(at_rest())
             .equals(SOURCE, |done| {
                 let y = done[0].column("column.y")?;
-                let exact = Column::of(&done[0].scene).sag();
+                let exact = Column::from_scene(&done[0].scene).sag();
                 Ok(Measured::new(y[0] - y[y.len() - 1], exact, exact))
             })
             .within(estimated(2e-3, "strain of .0005, and discretisation"))
@@ -94,9 +94,9 @@ fn claims() -> Vec<Claim> {
     for (probe, share) in [("quarter", 0.25), ("middle", 0.5)] {
         claims.push(
             claim(format!("vertical stress at rest, {share} of the height"), "Pa")
-                .of(at_rest())
+                .run(at_rest())
                 .equals(Source::Derived("σ = −ρ g (H − y): the weight above"), move |done| {
-                    let column = Column::of(&done[0].scene);
+                    let column = Column::from_scene(&done[0].scene);
                     let weight = column.density * column.gravity * column.height;
                     let stress = done[0].last(&format!("{probe}.sigma_yy"))?;
                     Ok(Measured::new(stress, -weight * (1.0 - share), weight))
@@ -108,7 +108,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("total energy over three periods, worst", "J")
-            .of(Run::new("swinging", "mpm", LEVELS[1].resolution))
+            .run(Run::new("swinging", "mpm", LEVELS[1].resolution))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
                 let kinetic = done[0].column("all.kinetic_energy")?.iter().copied().fold(0.0, f64::max);
@@ -126,9 +126,13 @@ fn claims() -> Vec<Claim> {
 
 fn swinging(level: Level, allowed: f64) -> Claim {
     claim(format!("displacement of the centre of mass over three periods, worst, {} cells", level.name), "m")
-        .of(Run::new("swinging", "mpm", level.resolution))
+        .run(Run::new("swinging", "mpm", level.resolution))
         .series(|done| from_start(done, "column.y"))
-        .follows(SOURCE, |done, time| Column::of(&done.scene).swing(time), |done| 2.0 * Column::of(&done.scene).sag())
+        .follows(
+            SOURCE,
+            |done, time| Column::from_scene(&done.scene).swing(time),
+            |done| 2.0 * Column::from_scene(&done.scene).sag(),
+        )
         .within(
             estimated(allowed, "dispersion of the grid, and the strain of .0005; in units of the largest displacement")
                 .up_to(2.0 * allowed),

@@ -92,7 +92,7 @@ fn interval() -> f64 {
 /// Claims the cooling rate of hard discs, for a stiffness k (N/m).
 fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
-        .of(run)
+        .run(run)
         .equals(COOLING_RATE.source(), |done| {
             Ok(Measured::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
         })
@@ -122,7 +122,7 @@ fn claims() -> Vec<Claim> {
         as_hard_discs(run(PLAIN, "dem"), 2e4),
         as_hard_discs(run("stiff", "dem").slow(), 2e5),
         claim("cooling rate over that of Enskog's theory", "1")
-            .of(run(PLAIN, "dem"))
+            .run(run(PLAIN, "dem"))
             .at_most(
                 1.0,
                 Source::Derived(

@@ -41,7 +41,7 @@ fn energy(done: &Done) -> Result<Measured, Missing> {
 
 fn claims() -> Vec<Claim> {
     let conserved = claim("total energy over 10⁵ steps, worst", "J")
-        .of(run(FINEST))
+        .run(run(FINEST))
         .holds("conservation of energy", |done| energy(&done[0]))
         .within(estimated(
             1e-4,
@@ -54,7 +54,7 @@ fn claims() -> Vec<Claim> {
         }))
         .fair_to_any();
     let kept_in = claim("number of discs in the box in the end", "1")
-        .of(run(FINEST))
+        .run(run(FINEST))
         .holds("walls keep the discs in", |done| {
             let snapshot = done[0].record.snapshots.last().ok_or_else(|| Missing("snapshot".to_owned()))?;
             let inside = |x: f64| (0.0..=40.0).contains(&x);

@@ -104,10 +104,10 @@ fn claims() -> Vec<Claim> {
 /// Claims the arrival at a contact against the modal solution.
 fn exact(variant: &'static str, first: usize) -> Claim {
     claim(format!("arrival of force between discs {first} and {}", first + 1), "s")
-        .of(gentle(variant))
+        .run(gentle(variant))
         .equals(Source::Derived("modes of the assembly (derivation)"), move |done| {
             let scene = &done[0].scene;
-            let modes = Modes::of(scene);
+            let modes = Modes::from_scene(scene);
             let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
             Ok(Measured::new(arrival(&done[0], first)?, exact, exact))
         })
@@ -124,11 +124,11 @@ fn exact(variant: &'static str, first: usize) -> Claim {
 /// Claims the force between the first two discs of the sticking chain, as long as no contact of the assembly opens.
 fn glued() -> Claim {
     claim("force between discs 1 and 2 until a contact opens, worst", "N")
-        .of(gentle(GLUED))
+        .run(gentle(GLUED))
         .equals(Source::Derived("modes of the assembly with sticking contacts (derivation)"), |done| {
             let done = &done[0];
             let scene = &done.scene;
-            let modes = Modes::of(scene);
+            let modes = Modes::from_scene(scene);
             let opens = modes.first_opening(duration(scene));
             let (time, force) = (&done.series().time, done.column("1-2.normal_force")?);
             let count = time.iter().take_while(|&&time| time < opens).count();
@@ -148,8 +148,8 @@ fn glued() -> Claim {
 /// Claims the paper's order: force arrives at the fourth disc of a variant sooner than in the slipping zig-zag.
 fn sooner(variant: &'static str, chain: &str) -> Claim {
     claim(format!("arrival at disc 4 of the {chain}"), "1")
-        .of(Run::new(variant, "dem", STEP.resolution))
-        .of(Run::new("zig-zag", "dem", STEP.resolution))
+        .run(Run::new(variant, "dem", STEP.resolution))
+        .run(Run::new("zig-zag", "dem", STEP.resolution))
         .at_most(SOONER, FASTER, |done| Ok(arrival(&done[0], 3)? / arrival(&done[1], 3)?))
         .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
         .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
@@ -161,14 +161,14 @@ fn sooner(variant: &'static str, chain: &str) -> Claim {
 /// Claims the arrival for rigid contacts, through which an impulse passes the whole chain in one step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
-        .of(Run::new("line", "rigid", rigid::DEFAULT)
+        .run(Run::new("line", "rigid", rigid::DEFAULT)
             .known("contacts are rigid: an impulse passes through all discs in one step, like a wave of infinite speed")
             // No arrival is earlier than the impact: −1.
             .up_to(1.0))
         .equals(Source::Derived("modes of the assembly (derivation)"), |done| {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
-            let exact = Modes::of(scene).moving(pair(scene, 3)[1], speed, duration(scene));
+            let exact = Modes::from_scene(scene).moving(pair(scene, 3)[1], speed, duration(scene));
             Ok(Measured::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
         })
         .within(judged(1e-3, "what a solver with springs reaches"))

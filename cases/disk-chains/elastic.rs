@@ -108,7 +108,7 @@ pub(super) fn claims() -> Vec<Claim> {
         };
         claims.push(
             claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
-                .of(if cells > 20.0 { run.long() } else { run.slow() })
+                .run(if cells > 20.0 { run.long() } else { run.slow() })
                 .equals_cited(expected, 1.0, |done| arrival(&done[0], 4))
                 .within(judged(allowed, because))
                 .refuses(Control::scene("discs a fifth softer", |scene| crate::rows::elastic::stiffen(scene, 0.8))),
@@ -120,7 +120,7 @@ pub(super) fn claims() -> Vec<Claim> {
                     refinement";
     claims.push(
         claim("arrival of stress in disc 4, 80 cells a diameter", "d/c")
-            .of(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).up_to(5.0).long())
+            .run(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).up_to(5.0).long())
             .equals_cited(ARRIVAL_IN_DISC_4, 1.0, |done| arrival(&done[0], 4))
             .within(judged(0.2, "what springs at the surface reach at this resolution"))
             .refuses(Control::without_the_error("springs at the surface", BEST, grid(40.0, 2))),
@@ -128,8 +128,8 @@ pub(super) fn claims() -> Vec<Claim> {
     for (solver, points) in [(BEST, 2), (PAPER, 1)] {
         claims.push(
             claim("delay per disc at ν = .48 over that at ν = .22", "1")
-                .of(slower(solver, grid(10.0, points)).slow())
-                .of(run("line", solver, grid(10.0, points), 8.0))
+                .run(slower(solver, grid(10.0, points)).slow())
+                .run(run("line", solver, grid(10.0, points), 8.0))
                 .at_least(FRINGES_SLOWER.value, FRINGES_SLOWER.source(), |done| Ok(delay(&done[0])? / delay(&done[1])?))
                 .within(exactly("the paper states a bound"))
                 .refuses(Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3))),
@@ -138,8 +138,8 @@ pub(super) fn claims() -> Vec<Claim> {
     for (variant, words, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
         claims.push(
             claim(format!("arrival of stress in disc {disc} of the {words} over that of the slipping zig-zag"), "1")
-                .of(run(variant, "mpm", grid(8.0, 2), 15.0))
-                .of(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
+                .run(run(variant, "mpm", grid(8.0, 2), 15.0))
+                .run(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
                 .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))
                 .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
                 .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {

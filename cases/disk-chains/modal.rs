@@ -44,7 +44,7 @@ pub(super) struct Modes {
 
 impl Modes {
     /// Computes the modes with the contacts at the start of a scene. All contacts stick if their law has friction.
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(super) fn from_scene(scene: &Scene) -> Self {
         let count = scene.grains.len();
         let springs = springs(scene);
         let mut stiffness = DMatrix::zeros(3 * count, 3 * count);

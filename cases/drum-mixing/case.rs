@@ -125,7 +125,7 @@ fn of_paper() -> Run {
 /// difference.
 fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> Tolerated {
     claim(quantity, "1")
-        .of(of_paper())
+        .run(of_paper())
         .equals(Source::Printed(&dosta::WORK, "derived: LIGGGHTS and MUSEN, run again"), move |done| {
             let rows = course(DRUM).into_iter().filter(|[time, ..]| (from - 1e-9..=to + 1e-9).contains(time));
             let found: Result<Vec<Measured>, Missing> = rows

@@ -32,7 +32,7 @@ pub(super) fn claims() -> Vec<Claim> {
 
 fn worst(step: &str, run: Run) -> Tolerated {
     claim(format!("M1 in zone 2 to .5 s with {step}, worst"), "1")
-        .of_all([run, of_paper().aside()])
+        .runs([run, of_paper().aside()])
         .agrees(Source::Ourselves("the same with the step of the case"), |done| {
             let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
             let found: Result<Vec<Measured>, Missing> = times

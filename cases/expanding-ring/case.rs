@@ -52,7 +52,7 @@ struct Mode {
 }
 
 impl Mode {
-    fn of(scene: &Scene) -> Option<Self> {
+    fn from_scene(scene: &Scene) -> Option<Self> {
         let ring = scene.bodies.first()?;
         let BlockShape::Annulus { inner, outer, .. } = ring.shape else { return None };
         let material = scene.deformable.first().copied().flatten()?;
@@ -150,7 +150,7 @@ fn period(done: &Done) -> Result<f64, Missing> {
 }
 
 fn mode(done: &Done) -> Result<Mode, Missing> {
-    Mode::of(&done.scene).ok_or_else(|| Missing("a ring".to_owned()))
+    Mode::from_scene(&done.scene).ok_or_else(|| Missing("a ring".to_owned()))
 }
 
 fn softer() -> Control {
@@ -173,7 +173,7 @@ fn claims() -> Vec<Claim> {
     let run = |variant, resolution| Run::new(variant, "mpm", resolution);
     let row = |name: String, run: Run, tolerance, control| {
         claim(name, "s")
-            .of(run)
+            .run(run)
             .equals(SOURCE, |done| {
                 // The expected value belongs to the ring of the claim, also under a control.
                 let exact = 2.0 * PI / mode(&done[0])?.frequency();
@@ -204,7 +204,7 @@ fn claims() -> Vec<Claim> {
     ));
     claims.push(
         claim("radial displacement over two periods, worst, cells of t/4", "m")
-            .of(run(THIN, LEVELS[1].resolution))
+            .run(run(THIN, LEVELS[1].resolution))
             .series(|done| Ok(done.series().time.iter().copied().zip(radial(done)?).collect()))
             .follows(
                 SOURCE,
@@ -222,7 +222,7 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("total energy over two periods, worst", "J")
-            .of(run(THIN, LEVELS[1].resolution))
+            .run(run(THIN, LEVELS[1].resolution))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
                 Ok(Measured::drift(&done[0].series().time, energy, energy[0]))
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn the_root_leaves_both_sides_free() {
         for (variant, frequency) in [(THIN, THIN_RING), (THICK, THICK_RING)] {
-            let mode = Mode::of(&CASE.variant(variant).unwrap()).unwrap();
+            let mode = Mode::from_scene(&CASE.variant(variant).unwrap()).unwrap();
             assert!((mode.frequency() - frequency).abs() < 0.01, "{variant}: {}", mode.frequency());
             assert!(left_over(&mode, mode.frequency()).abs() < 1e-9, "{variant}");
             assert!(left_over(&mode, 1.001 * mode.frequency()).abs() > 1e-5, "{variant}");
@@ -291,7 +291,7 @@ mod tests {
             let mut scene = CASE.variant(THIN).unwrap();
             scene.bodies[0].shape =
                 BlockShape::Annulus { centre: nalgebra::Vector3::zeros(), inner: 0.1 - half, outer: 0.1 + half };
-            Mode::of(&scene).unwrap().frequency() / thin - 1.0
+            Mode::from_scene(&scene).unwrap().frequency() / thin - 1.0
         };
         assert!(off(1e-3).abs() < 1e-3 && (off(2e-3) / off(1e-3) - 4.0).abs() < 0.05, "{} {}", off(1e-3), off(2e-3));
     }

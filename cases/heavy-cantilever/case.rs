@@ -101,7 +101,7 @@ fn claims() -> Vec<Claim> {
             let run = Run::new(PLAIN, "mpm", level.resolution);
             let run = if level.name == LEVELS[0].name { run } else { run.slow() };
             claim(format!("displacement of the tip at rest, cells of {}", level.name), "m")
-                .of(run)
+                .run(run)
                 .equals(SOURCE, |done| {
                     let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| Missing("a strip".to_owned()))?;
                     let exact = -length * Elastica::under(weight).sinking;

@@ -77,7 +77,7 @@ fn coefficient(done: &Done) -> Result<f64, Missing> {
 
 fn claims() -> Vec<Claim> {
     let exponent = claim("exponent of the speed in the force", "1")
-        .of_all(SPEEDS.map(strike))
+        .runs(SPEEDS.map(strike))
         .sweep(|done| wave(done).map(|(speed, force)| (force, speed)))
         .scales(1.0 / 6.0, 1.0 / 6.0, Source::Derived("scaling of F = kδ^{3/2} (derivation)"))
         .within(rounding(
@@ -88,13 +88,13 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.normal_damping = 2000.0);
         }));
     let of_speed = claim("coefficient of the speed", "1")
-        .of(strike(1.0))
+        .run(strike(1.0))
         .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
             Ok(Measured::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
         })
         .within(estimated(2e-5, "discretisation of the pulse; the long-wave limit is 1.2 % off"))
         .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))));
-    let rigid = claim("refusal of forces over time", "1").of(Run::new(PLAIN, "rigid", rigid::DEFAULT)).refused(
+    let rigid = claim("refusal of forces over time", "1").run(Run::new(PLAIN, "rigid", rigid::DEFAULT)).refused(
         "momentum passes through rigid beads in one step: there is no wave whose force could peak",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );

@@ -44,7 +44,7 @@ struct Hertz {
 }
 
 impl Hertz {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let compliance =
             |material: &Option<Deformable>| material.map_or(f64::NAN, |deformable| 1.0 / deformable.plane_modulus());
         let modulus = 1.0 / scene.deformable.iter().map(compliance).sum::<f64>();
@@ -86,7 +86,7 @@ fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
     };
     let undeformed = points(snapshots.first()).first().map(|point| point.volume.sqrt());
     let cell = undeformed.ok_or_else(|| Missing("points of the block".to_owned()))? * f64::from(POINTS);
-    let reach = 1.5 * Hertz::of(&done.scene).half_width;
+    let reach = 1.5 * Hertz::from_scene(&done.scene).half_width;
     let chosen = points(snapshots.last()).into_iter().filter_map(|point| {
         // The surface is y = 0 at the start.
         let start = (point.displacement.y - point.position.y) / cell;
@@ -100,7 +100,7 @@ fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
 /// material points in two layers of cells below the uppermost. Least squares over both by Gauss–Newton.
 fn measured(done: &Done) -> Result<Hertz, Missing> {
     let points = pressed(done, 1.0, 3.0)?;
-    let mut found = Hertz::of(&done.scene);
+    let mut found = Hertz::from_scene(&done.scene);
     for _ in 0..20 {
         let (mut curvature, mut slope) = (Matrix2::zeros(), Vector2::zeros());
         for point in &points {
@@ -163,9 +163,9 @@ fn claims() -> Vec<Claim> {
         };
         claims.push(
             claim(format!("half-width of the contact, cells of {}", level.name), "m")
-                .of(run.clone())
+                .run(run.clone())
                 .equals(SOURCE, |done| {
-                    let exact = Hertz::of(&done[0].scene).half_width;
+                    let exact = Hertz::from_scene(&done[0].scene).half_width;
                     Ok(Measured::new(measured(&done[0])?.half_width, exact, exact))
                 })
                 .within(tolerance(COARSEST[0], cells))
@@ -173,9 +173,9 @@ fn claims() -> Vec<Claim> {
         );
         claims.push(
             claim(format!("peak pressure, cells of {}", level.name), "Pa")
-                .of(run)
+                .run(run)
                 .equals(SOURCE, |done| {
-                    let exact = Hertz::of(&done[0].scene).peak;
+                    let exact = Hertz::from_scene(&done[0].scene).peak;
                     Ok(Measured::new(measured(&done[0])?.peak, exact, exact))
                 })
                 .within(tolerance(COARSEST[1], cells))
@@ -184,10 +184,10 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("order in the cell of the error of the half-width, 1 and 2 cells a half-width", "1")
-            .of_all(LEVELS[..2].iter().map(|level| Run::new(PLAIN, SOLVER, level.resolution).slow()))
+            .runs(LEVELS[..2].iter().map(|level| Run::new(PLAIN, SOLVER, level.resolution).slow()))
             .converges_at_least(1.0, SOURCE, |done| {
                 let error = |done: &Done| -> Result<f64, Missing> {
-                    Ok((measured(done)?.half_width / Hertz::of(&done.scene).half_width - 1.0).abs())
+                    Ok((measured(done)?.half_width / Hertz::from_scene(&done.scene).half_width - 1.0).abs())
                 };
                 Ok((error(&done[0])? / error(&done[1])?).log2())
             })
@@ -196,7 +196,7 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("contact force at rest", "N/m")
-            .of(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow().known(
+            .run(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow().known(
                 "with APIC the cylinder comes to rest more slowly than a rigid one on the springs of both bodies: .07 % of its \
                  weight is left where .05 % is asked for",
             )
@@ -226,7 +226,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for level in &LEVELS[..if runner.is_thorough() { 2 } else { 1 }] {
         let done = runner.run(&Run::new(PLAIN, SOLVER, level.resolution))?;
-        let exact = Hertz::of(&done.scene);
+        let exact = Hertz::from_scene(&done.scene);
         let cell = done.scene.reference_length / if *level == LEVELS[0] { 1.0 } else { 2.0 };
         let mut points = pressed(&done, 1.0, 1.5).unwrap_or_default();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn hertz_is_as_printed() {
         let scene = CASE.variant(PLAIN).unwrap_or_else(|error| panic!("{error}"));
-        let exact = Hertz::of(&scene);
+        let exact = Hertz::from_scene(&scene);
         assert!((exact.half_width / 6.2146e-3 - 1.0).abs() < 1e-5, "{exact:?}");
         assert!((exact.peak / 3585.4e6 - 1.0).abs() < 2e-5, "{exact:?}");
         let on_axis = exact.pressure_below(0.0, exact.half_width);

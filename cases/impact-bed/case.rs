@@ -119,9 +119,9 @@ fn farthest(values: &[f64], expected: f64) -> f64 {
 }
 
 fn claims() -> Vec<Claim> {
-    let depth = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
-    let lowest = Spread::of(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
-    let speed = Spread::of(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
+    let depth = Spread::new(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
+    let lowest = Spread::new(dosta::DEEPEST, dosta::DEEPEST_CODE, dosta::DEEPEST_BED);
+    let speed = Spread::new(dosta::REBOUND, dosta::REBOUND_CODE, dosta::REBOUND_BED);
     let known = on_all().map(|run| run.known(SLOW).up_to(0.5));
     let mut all_claims = vec![
         of_beds(
@@ -134,7 +134,7 @@ fn claims() -> Vec<Claim> {
         )
         .refuses(pair_of_m1()),
         claim("beds of five on which it is within the spread of one bed at 30 ms", "1")
-            .of_all(on_all())
+            .runs(on_all())
             .at_least(4.0, dosta::HEIGHT_30.source(), move |done| {
                 let heights = all(done, |done| height(done, DEEP))?;
                 Ok(heights.iter().filter(|height| (*height - depth.mean).abs() <= depth.allowed(1)).count() as f64)
@@ -162,7 +162,7 @@ fn claims() -> Vec<Claim> {
         )
         .refuses(smooth()),
         claim("deviations that the mean of five beds is off the codes' mean, largest from 25 to 50 ms", "1")
-            .of_all(on_all())
+            .runs(on_all())
             .at_most(2.0, dosta::HEIGHT_30.source(), |done| {
                 let within = |(time, _): &(f64, f64)| (SURE.0..SURE.1).contains(time);
                 let scores = published::scores(done, &BEDS)?;
@@ -204,7 +204,7 @@ fn of_beds(
     read: fn(&Done) -> Result<f64, Missing>,
 ) -> Tolerated {
     claim(quantity, unit)
-        .of_all(runs)
+        .runs(runs)
         .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, read)?, cited.value)))
         .within(tolerance(spread))
 }
@@ -215,9 +215,9 @@ const MET: f64 = 0.020;
 /// Claims one bed from 20 ms on: the default part of the case. It ends at 50 ms in the convention of LIGGGHTS, and at
 /// 30 ms in ours and for external solvers.
 fn early(variant: &'static str, solver: &'static str) -> Claim {
-    let spread = Spread::of(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
+    let spread = Spread::new(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
     claim("height of the ball at 30 ms, one bed, from 20 ms on", "mm")
-        .of(Run::new(variant, solver, STEP).slow())
+        .run(Run::new(variant, solver, STEP).slow())
         .equals_cited(dosta::HEIGHT_30, 1.0, |done| height(&done[0], DEEP - MET))
         .within(computed(spread.allowed(1), BECAUSE))
         .refuses(half_the_density())

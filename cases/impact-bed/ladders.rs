@@ -37,7 +37,7 @@ pub(super) fn claims() -> Vec<Claim> {
 fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::Tolerated {
     let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
-        .of_all(runs)
+        .runs(runs)
         .agrees(Source::Ourselves("the same with the step of the paper, or with steel"), |done| {
             let pairs: Result<Vec<Measured>, Missing> = done
                 .chunks_exact(2)

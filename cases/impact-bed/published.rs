@@ -23,7 +23,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    pub(super) fn of(mean: Cited, code: Cited, bed: Cited) -> Self {
+    pub(super) fn new(mean: Cited, code: Cited, bed: Cited) -> Self {
         let spread = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
         Self { mean: mean.value, of: spread }
     }

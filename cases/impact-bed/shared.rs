@@ -49,7 +49,7 @@ fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (Cited, Ci
     let code = half.value * std::f64::consts::SQRT_2;
     let allowed = Spread { mean: cited.value, code, bed: 0.0 }.allowed(1, 1);
     claim(quantity, "mm")
-        .of(Run::new(PLAIN, "dem:liggghts", super::STEP).from_data(data).long())
+        .run(Run::new(PLAIN, "dem:liggghts", super::STEP).from_data(data).long())
         .equals_cited(cited, 1.0, move |done| height(&done[0], time))
         .within(computed(allowed, "one more code on the same bed: 2 s_code, s_code = |a − b|/√2 of the two codes"))
         .refuses(half_the_density())

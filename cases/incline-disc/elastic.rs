@@ -131,7 +131,7 @@ fn telling(slope: Elastic) -> Control {
 
 fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Claim {
     claim(excess_words(slope, cells), "1")
-        .of(run(slope, "mpm", cells))
+        .run(run(slope, "mpm", cells))
         .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
         .within(asked(slope, allowed))
         .refuses(telling(slope))
@@ -152,7 +152,7 @@ fn asked(slope: Elastic, allowed: f64) -> Tolerance {
 fn to_a_hundredth(slope: Elastic) -> Claim {
     const PART: f64 = 0.3;
     claim(format!("{}, to a hundredth", excess_words(slope, 8.0)), "1")
-        .of(run(slope, "mpm", 8.0))
+        .run(run(slope, "mpm", 8.0))
         .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
         .within(required(
             0.01 + slope.reference.uncertainty,
@@ -169,7 +169,7 @@ fn excess_words(slope: Elastic, cells: f64) -> String {
 /// Claims the order at which the deviation from the elastic disc decreases with the cell.
 fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
-        .of_all(LEVELS.map(|cells| run(slope, "mpm", cells)))
+        .runs(LEVELS.map(|cells| run(slope, "mpm", cells)))
         .converges_at_least(1.5, slope.reference.source(), move |done| {
             let off = |(done, cells): (&Done, f64)| Ok((1.0 / cells, excess(done)? - slope.reference.value));
             let points: Result<Vec<(f64, f64)>, Missing> = done.iter().zip(LEVELS).map(off).collect();
@@ -195,7 +195,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
         format!("displacement at {} s over the rigid one, less 1, moduli × {factor}, 8 cells a radius", slope.time),
         "1",
     )
-    .of(run)
+    .run(run)
     .equals(Source::Derived("a rigid disc rolls or slips (derivation; MPM 2000 eq. 25)"), |done| {
         Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))
     })
@@ -211,7 +211,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
 fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
     let control = if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling(slope) };
     claim(excess_words(slope, cells), "1")
-        .of(run(slope, "mpm:2000", cells))
+        .run(run(slope, "mpm:2000", cells))
         .equals_cited(cited, 1.0, |done| excess(&done[0]))
         .within(judged(
             0.022,
@@ -232,7 +232,7 @@ fn known(slope: Elastic) -> Claim {
     // At −1 the disc does not move.
     .up_to(1.0);
     claim(format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time), "1")
-        .of(run)
+        .run(run)
         .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
         .within(asked(slope, allowed))
         .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(cells, POINTS)))
@@ -241,7 +241,7 @@ fn known(slope: Elastic) -> Claim {
 /// Claims that at two cells a radius a disc in nodal contact does not roll, as the 2001 paper found for the sphere.
 fn does_not_roll() -> Claim {
     claim("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1")
-        .of(run(SLOPES[3], "mpm:2000", 2.0))
+        .run(run(SLOPES[3], "mpm:2000", 2.0))
         .equals_cited(bardenhagen_2001::ROLLING_AT_HALF_RADIUS, 1.0, |done| rolling(&done[0]))
         .within(judged(0.05, "the paper says it of a sphere; the disc turns by no more than its flat side rocks"))
         .refuses(Control::solver("springs at the surface", "mpm"))
@@ -256,7 +256,7 @@ fn extrapolated(slope: Elastic) -> Claim {
         ),
         "1",
     )
-    .of_all([4.0, 8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
+    .runs([4.0, 8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
     .equals_cited(slope.reference, 1.0, |done| {
         let [coarse, middle, fine] = [excess(&done[0])?, excess(&done[1])?, excess(&done[2])?];
         let ratio = (middle - coarse) / (fine - middle);
@@ -273,7 +273,7 @@ fn extrapolated(slope: Elastic) -> Claim {
 /// Claims ΩR/v at 8 cells a radius against the finest level.
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
-        .of_all([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
+        .runs([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
         .agrees(Source::Ourselves("the same disc at 16 cells a radius"), |done| {
             Ok(Measured::new(rolling(&done[0])?, rolling(&done[1])?, 1.0))
         })

@@ -43,7 +43,7 @@ pub(super) fn claims() -> Vec<Claim> {
             claims.push(
                 claim(format!("displacement at 1 s over the rigid one, less 1, R/{cells}"), "1")
                     // R/8 takes half a minute.
-                    .of(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
+                    .run(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
                         (true, _) => run.long(),
                         (false, true) => run,
                         (false, false) => run.slow(),
@@ -57,7 +57,7 @@ pub(super) fn claims() -> Vec<Claim> {
     let rolls = SLOPES[0];
     claims.push(
         claim("ΩR/v at 1 s, where a rigid sphere has 1, R/2", "1")
-            .of(run(rolls, "mpm:2000", 2.0))
+            .run(run(rolls, "mpm:2000", 2.0))
             .equals_cited(bardenhagen_2001::ROLLING_AT_HALF_RADIUS, 1.0, |done| {
                 let (_, state) = last(&done[0])?;
                 Ok(state.omega * done[0].scene.grains[0].radius / state.v)
@@ -67,7 +67,7 @@ pub(super) fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1")
-            .of(run(rolls, "mpm:2000", 4.0).known(
+            .run(run(rolls, "mpm:2000", 4.0).known(
                 "nodal contact supports the sphere over a region of about √(2Rh), like a flat side: it rolls 25 % too slowly",
             )
             .up_to(0.5))

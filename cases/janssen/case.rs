@@ -108,7 +108,7 @@ struct Middle {
 
 impl Middle {
     /// Averages over the slices between a quarter and three quarters of the height of the filling.
-    fn of(done: &Done) -> Result<Self, Missing> {
+    fn from_run(done: &Done) -> Result<Self, Missing> {
         let table = done.table("slices")?;
         let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}` of the slices")));
         let (heights, weights) = (column("height")?, column("weight")?);
@@ -171,7 +171,7 @@ fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
 /// Claims that floor and side carry the weight.
 fn balance() -> Claim {
     claim("weight that floor and side bear, over the weight", "1")
-        .of(run(PLAIN, "dem"))
+        .run(run(PLAIN, "dem"))
         .holds("momentum of the column, which descends at one speed", |done| {
             all_borne(&done[0], &["floor.force_z", "side.force_z"])
         })
@@ -182,7 +182,7 @@ fn balance() -> Claim {
 /// Claims that without friction the floor carries the whole weight.
 fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
-        .of(run("smooth", "dem"))
+        .run(run("smooth", "dem"))
         .equals(Source::Derived("a side without friction bears nothing"), |done| {
             all_borne(&done[0], &["floor.force_z"])
         })
@@ -193,12 +193,12 @@ fn smooth() -> Claim {
 /// Claims that the shear stress on the side does not exceed the Coulomb limit.
 fn mobilised() -> Claim {
     claim("part of the friction of the side that is at work half-way up, friction .25", "1")
-        .of(run("half", "dem"))
+        .run(run("half", "dem"))
         .at_most(
             1.0,
             Source::Derived("Coulomb: grains that slide bear μ of the normal force, those that roll less"),
             |done| {
-                let middle = Middle::of(&done[0])?;
+                let middle = Middle::from_run(&done[0])?;
                 Ok(middle.shear / (friction(&done[0].scene) * middle.normal))
             },
         )
@@ -219,9 +219,9 @@ fn twice(tables: &mut [Table]) {
 /// Claims Janssen's law with the measured mobilised friction, because grains roll along a side as well as slide.
 fn law(variant: &'static str, about: &str) -> Claim {
     claim(format!("part of the weight on the floor, friction {about} at the side"), "1")
-        .of(run(variant, "dem"))
+        .run(run(variant, "dem"))
         .equals(JANSSEN, |done| {
-            let middle = Middle::of(&done[0])?;
+            let middle = Middle::from_run(&done[0])?;
             let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
             Ok(Measured::new(on_floor(&done[0])?, expected, expected))
         })
@@ -232,7 +232,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
 /// Claims that the stress saturates with depth.
 fn saturates() -> Claim {
     claim("vertical stress a quarter up over that half-way up", "1")
-        .of(run(PLAIN, "dem"))
+        .run(run(PLAIN, "dem"))
         .at_most(
             1.35,
             Source::Derived("(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 where it rises as depth does"),
@@ -276,7 +276,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 fn profile(done: &Done) -> Option<Figure> {
-    let (table, middle) = (done.table("slices").ok()?, Middle::of(done).ok()?);
+    let (table, middle) = (done.table("slices").ok()?, Middle::from_run(done).ok()?);
     let (heights, vertical) = (table.column("height")?, table.column("vertical")?);
     let (_, _, radius) = side(&done.scene);
     let (area, height) = (PI * radius * radius, weight(&done.scene) / middle.weight);

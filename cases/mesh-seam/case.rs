@@ -47,7 +47,7 @@ fn level(floor: &'static str) -> Claim {
         _ => Control::scene("a step of 1e-3 R at the seams along a line", floors::with_a_step),
     };
     claim(format!("height over the seams, {floor}, worst, over the overlap at rest"), "m")
-        .of(Run::new(floor, "dem:lammps", STEP))
+        .run(Run::new(floor, "dem:lammps", STEP))
         .holds("a plane has no seams (derivation)", |done| {
             let (scene, height) = (&done[0].scene, done[0].column("ball.z")?);
             let grain = &scene.grains[0];
@@ -61,7 +61,7 @@ fn level(floor: &'static str) -> Claim {
 /// Claims that the final velocity is 5/7 of the initial velocity.
 fn rolls(floor: &'static str) -> Claim {
     claim(format!("velocity at 1 s, {floor}"), "m/s")
-        .of(Run::new(floor, "dem:lammps", STEP))
+        .run(Run::new(floor, "dem:lammps", STEP))
         .equals(Source::Derived("5/7 of the velocity that it is set down with (derivation)"), |done| {
             let start = done[0].scene.grains[0].velocity.norm();
             let exact = 5.0 / 7.0 * start;
@@ -77,7 +77,7 @@ fn rolls(floor: &'static str) -> Claim {
 fn as_plane(floor: &'static str) -> Claim {
     let turned_run = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
-        .of_all([turned_run(floor), turned_run("plane").aside()])
+        .runs([turned_run(floor), turned_run("plane").aside()])
         .agrees(Source::Ourselves("the same on a plane"), |done| worst(done, &AXES, done[0].scene.grains[0].radius))
         .within(required(1e-9, "a mesh of a plane is the plane"))
         .refuses(Control::scene("a step of 1e-3 R in the mesh", floors::with_a_step))
@@ -108,7 +108,7 @@ const PLACES: [At; 5] = [
 fn held(at: &'static At) -> Claim {
     let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
-        .of(Run::new("cube", "dem", STEP).adjusted(at.words, place))
+        .run(Run::new("cube", "dem", STEP).adjusted(at.words, place))
         .holds("k (R − d) from every point that is touched (derivation)", |done| {
             let (scene, done) = (&done[0].scene, &done[0]);
             let grain = &scene.grains[0];

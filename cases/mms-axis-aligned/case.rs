@@ -55,7 +55,7 @@ fn claims() -> Vec<Claim> {
     // Wrong moduli would have no effect, because the body force follows them and the motion is the same.
     let wrong = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
     let second = |quantity, runs: Vec<Run>| {
-        claim(quantity, "1").of_all(runs).converges(2.0, SOURCE, order).within(asymptotic(2.0)).refuses(wrong())
+        claim(quantity, "1").runs(runs).converges(2.0, SOURCE, order).within(asymptotic(2.0)).refuses(wrong())
     };
     vec![
         second("order in the cell, uGIMP", in_small_steps(GIMP, POINTS_OF_GIMP).into_iter().map(Run::slow).collect()),
@@ -64,7 +64,7 @@ fn claims() -> Vec<Claim> {
             in_small_steps(SPLINES, POINTS_OF_SPLINES).into_iter().map(Run::long).collect(),
         ),
         claim("order in the cell, hat functions", "1")
-            .of_all(runs(HATS, 2))
+            .runs(runs(HATS, 2))
             .converges_at_most(
                 0.5,
                 Source::Derived("who crosses a cell meets a jump of the gradient (derivation)"),
@@ -73,7 +73,7 @@ fn claims() -> Vec<Claim> {
             .within(exactly("less than half an order, or the error grows"))
             .refuses(Control::solver("uGIMP in their place", GIMP)),
         claim("root mean square error of the displacement, 64 cells, uGIMP", "m")
-            .of(Run::new(PLAIN, GIMP, LEVELS[2].resolution))
+            .run(Run::new(PLAIN, GIMP, LEVELS[2].resolution))
             .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05)))
             .within(estimated(2e-3, "discretisation; in units of the amplitude"))
             .refuses(wrong()),

@@ -56,14 +56,14 @@ fn claims() -> Vec<Claim> {
     let damped = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
     let off = |quantity: String, run: Run, tolerance, control| {
         claim(quantity, "m")
-            .of(run)
+            .run(run)
             .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 1.0)))
             .within(tolerance)
             .refuses(control)
     };
     let converges = |quantity: &'static str, runs: Vec<Run>| {
         claim(quantity, "1")
-            .of_all(runs)
+            .runs(runs)
             .converges_at_least(1.0, SOURCE, order)
             .within(exactly("the force jumps at the edges, which a grid sees as of first order there (derivation)"))
             .refuses(damped())

@@ -88,12 +88,12 @@ fn static_forces() -> Vec<Claim> {
         let frictionless = variant == "static-0";
         for (contact, kind, force) in contacts.into_iter().filter(|contact| !frictionless || contact.1 == "normal") {
             let row = claim(format!("{kind} force at rest, {contact}"), "N")
-                .of(Run::new(variant, "dem", LEVELS[0].resolution))
+                .run(Run::new(variant, "dem", LEVELS[0].resolution))
                 .equals(MODES, move |done| {
                     let scene = &done[0].scene;
                     let unit = law(scene).normal_stiffness() * travel(&done[0]);
                     let value = done[0].last(&format!("{contact}.{kind}_force"))?.abs();
-                    Ok(Measured::new(value, force(&Modal::of(scene)) * unit, unit))
+                    Ok(Measured::new(value, force(&Modal::from_scene(scene)) * unit, unit))
                 })
                 .within(computed(
                     left_out(variant),
@@ -123,7 +123,7 @@ fn static_forces() -> Vec<Claim> {
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let over_radius = over_radius(variant);
-    let rest = Modal::of(&scene).at_rest();
+    let rest = Modal::from_scene(&scene).at_rest();
     let cycles = scene.walls[0].motion.phases[0].stop.seconds(1.0);
     let rounding = cycles * f64::EPSILON * 3.0 / over_radius;
     0.5 * rest.corner * (rest.edge - rest.corner) * over_radius + rounding
@@ -169,7 +169,7 @@ fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Result<Measured, 
 }
 
 fn exact_cycles(done: &Done) -> Vec<Inward> {
-    let modal = Modal::of(&done.scene);
+    let modal = Modal::from_scene(&done.scene);
     let time_step = done.record.provenance.time_step;
     done.series().step.iter().map(|&cycle| modal.discrete(cycle, RAMP, time_step)).collect()
 }
@@ -213,7 +213,7 @@ fn discrete() -> Vec<Claim> {
             (SPEEDS.map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
         };
         claim("displacement over 400 cycles, δ → 0, against the cycle's own answer, worst", "wall travel")
-            .of_all(runs)
+            .runs(runs)
             .equals(Source::Derived("exact solution of the central-difference cycle (derivation)"), |done| {
                 worst(&done[0].series().time, &without_geometry(done)?, &exact_cycles(&done[0]))
             })
@@ -226,7 +226,7 @@ fn discrete() -> Vec<Claim> {
 /// Claims that the deviation from the linear solution is geometric: it is of first order in the overlap.
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
-        .of_all(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
+        .runs(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
         .sweep(|done| {
             let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done))?;
             Ok((travel(done), worst.error()))
@@ -244,7 +244,7 @@ fn geometry() -> Claim {
 /// Sets a ramp that lasts 40 steps of 0.1 of the critical step, for any step of the run. The run lasts ten periods of
 /// the slow mode after it.
 fn fixed_ramp(scene: &mut Scene) {
-    let modal = Modal::of(scene);
+    let modal = Modal::from_scene(scene);
     let ramp = RAMP_TIME / modal.rate.sqrt();
     scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].stop = Moment::Seconds(ramp));
     scene.duration = Duration::Seconds(ramp + 10.0 * TAU / modal.frequencies()[0]);
@@ -260,7 +260,7 @@ fn modal_run(variant: &'static str, level: Level, speed: f64) -> Run {
 
 /// Returns the largest deviation from the continuous solution over ten periods, for runs at one speed or at all three.
 fn modal_error(done: &[Done]) -> Result<Measured, Missing> {
-    let modal = Modal::of(&done[0].scene);
+    let modal = Modal::from_scene(&done[0].scene);
     let ramp = done[0].scene.walls[0].motion.phases[0].stop.seconds(0.0);
     let exact: Vec<Inward> = done[0].series().time.iter().map(|&t| modal.continuous(t, ramp)).collect();
     worst(&done[0].series().time, &without_geometry(done)?, &exact)
@@ -281,7 +281,7 @@ fn continuous() -> Vec<Claim> {
     for variant in MODAL {
         for (level, allowed) in LEVELS.iter().copied().zip(PHASE_ERRORS) {
             let row = claim("displacement over ten periods against the continuous answer, worst", "wall travel")
-                .of(modal_run(variant, level, 1.0))
+                .run(modal_run(variant, level, 1.0))
                 .equals(MODES, modal_error)
                 .within(computed(
                     allowed,
@@ -295,7 +295,7 @@ fn continuous() -> Vec<Claim> {
         }
         claims.push(
             claim("order in Δt of that deviation, δ → 0", "1")
-                .of_all(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
+                .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
                 .converges(2.0, Source::Derived("central differences are of second order"), |done| {
                     let error = |done: &[Done]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
                     Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
@@ -328,7 +328,7 @@ fn residual(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
 }
 
 fn frequency(done: &Done) -> Result<f64, Missing> {
-    let [slow, fast] = Modal::of(&done.scene).frequencies();
+    let [slow, fast] = Modal::from_scene(&done.scene).frequencies();
     let values = done.column("centre-edge.normal_force")?;
     Ok(dominant_frequency(&done.series().time[120..], &values[120..], 0.5 * slow, 1.2 * fast))
 }
@@ -349,7 +349,7 @@ fn speed_of_loading() -> Vec<Claim> {
     for (fast, slow, figure) in [("fast", "slow", "Fig. 7(a)"), ("soft-fast", "soft-slow", "Fig. 7(b)")] {
         claims.push(
             claim(format!("residual amplitude, slow over fast loading, {figure}"), "1")
-                .of_all(pair(fast, slow))
+                .runs(pair(fast, slow))
                 .at_most(
                     1.0,
                     printed(
@@ -372,7 +372,7 @@ fn speed_of_loading() -> Vec<Claim> {
         );
         claims.push(
             claim(format!("frequency, slow over fast loading, {figure}"), "1")
-                .of_all(pair(fast, slow))
+                .runs(pair(fast, slow))
                 .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
                     Ok(Measured::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
                 })
@@ -385,9 +385,9 @@ fn speed_of_loading() -> Vec<Claim> {
         );
         claims.push(
             claim(format!("frequency of the slow mode, {figure}"), "rad/s")
-                .of(Run::new(fast, "dem", FIGURE_STEP))
+                .run(Run::new(fast, "dem", FIGURE_STEP))
                 .equals(MODES, |done| {
-                    let omega = Modal::of(&done[0].scene).frequencies()[0];
+                    let omega = Modal::from_scene(&done[0].scene).frequencies()[0];
                     let step = done[0].record.provenance.time_step;
                     let seen = 2.0 * (0.5 * omega * step).asin() / step;
                     Ok(Measured::new(frequency(&done[0])?, seen, seen))
@@ -409,7 +409,7 @@ fn damping() -> Vec<Claim> {
     ] {
         claims.push(
             claim("force between centre and edge: mean undamped over final damped", "1")
-                .of_all(pair(undamped, damped))
+                .runs(pair(undamped, damped))
                 .equals(
                     printed("Fig. 6 and the text: damping does not affect the equilibrium value of the force"),
                     |done| {
@@ -429,9 +429,10 @@ fn damping() -> Vec<Claim> {
         );
         claims.push(
             claim("rate at which the slow mode dies away", "1/s")
-                .of(Run::new(damped, "dem", FIGURE_STEP))
+                .run(Run::new(damped, "dem", FIGURE_STEP))
                 .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
-                    let expected = Modal::of(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
+                    let expected =
+                        Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
                     Ok(Measured::new(decay(&done[0])?, expected, expected))
                 })
                 .within(judged(
@@ -450,7 +451,7 @@ fn decay(done: &Done) -> Result<f64, Missing> {
     let scene = &done.scene;
     let time_step = done.record.provenance.time_step;
     let first = (scene.walls[0].motion.phases[0].stop.seconds(time_step) / time_step).round() as usize + 1;
-    let cycles = (2.0 * TAU / (Modal::of(scene).frequencies()[0] * time_step)) as usize;
+    let cycles = (2.0 * TAU / (Modal::from_scene(scene).frequencies()[0] * time_step)) as usize;
     let slow: Vec<f64> = inward(done)?.iter().map(|inward| inward.edge + SQRT_2 * inward.corner).collect();
     let end = *slow.last().ok_or_else(|| Missing("samples".to_owned()))?;
     let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -479,7 +480,7 @@ fn slip_in_compression() -> Vec<Claim> {
             (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
         };
         claim("most contacts slipping at once in slow compression", "1")
-            .of(Run::new(variant, "dem:1979", LEVELS[0].resolution))
+            .run(Run::new(variant, "dem:1979", LEVELS[0].resolution))
             .equals(
                 Source::Derived("tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)"),
                 move |done| {
@@ -515,11 +516,11 @@ fn distortion() -> Vec<Claim> {
     };
     vec![
         claim("30°: F_n after compression, κ = 1 over κ = 2/3", "1")
-            .of_all(runs(&[2, 3]))
+            .runs(runs(&[2, 3]))
             .equals(
                 Source::Derived("static answer 3/7 over .456522 (derivation); the paper says less than 1"),
                 |done| {
-                    let [of_2_3, of_1] = [0, 1].map(|at: usize| Modal::of(&done[at].scene).at_rest().edge);
+                    let [of_2_3, of_1] = [0, 1].map(|at: usize| Modal::from_scene(&done[at].scene).at_rest().edge);
                     Ok(Measured::new(turning(&done[1])?[0] / turning(&done[0])?[0], of_1 / of_2_3, 1.0))
                 },
             )
@@ -529,7 +530,7 @@ fn distortion() -> Vec<Claim> {
             ))
             .refuses(Control::forgets_history()),
         claim("30°: largest F_n in distortion, κ = 2/3 over κ = 1", "1")
-            .of_all(runs(&[2, 3]))
+            .runs(runs(&[2, 3]))
             .at_most(
                 1.0,
                 printed(
@@ -546,7 +547,7 @@ fn distortion() -> Vec<Claim> {
                 });
             })),
         claim("30°: F_n in the end over its largest, κ = 1", "1")
-            .of_all(runs(&[3]))
+            .runs(runs(&[3]))
             .at_most(
                 0.999,
                 printed("Fig. 9(b) and the text: F_n reaches a maximum, after which slip sets in and it falls back"),
@@ -558,7 +559,7 @@ fn distortion() -> Vec<Claim> {
             .within(exactly("only a fall is printed: a thousandth tells it from a force that grows to the end"))
             .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
         claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
-            .of_all(runs(&[0, 1, 2, 3]))
+            .runs(runs(&[0, 1, 2, 3]))
             .at_most(
                 1.0,
                 printed("Fig. 9 and the text: the curves nearly coincide at 15° and deviate significantly at 30°"),
@@ -583,7 +584,7 @@ mod tests {
         let scene = CASE.variant("kappa-0").unwrap();
         for (level, allowed) in LEVELS.iter().zip(PHASE_ERRORS) {
             let Resolution::CriticalFraction(fraction) = level.resolution else { panic!("{}: no step", level.name) };
-            let (modal, step) = (Modal::of(&scene), fraction * scene.critical_time_step());
+            let (modal, step) = (Modal::from_scene(&scene), fraction * scene.critical_time_step());
             let (omega, ramp) = (modal.frequencies()[0], RAMP_TIME / modal.rate.sqrt());
             let amplitude = modal.at_rest().edge * 2.0 * (0.5 * omega * ramp).sin().abs() / (omega * ramp);
             let computed = amplitude * omega.powi(3) * step * step / 24.0 * (0.5 * ramp + 10.0 * TAU / omega);

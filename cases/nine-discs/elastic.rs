@@ -21,7 +21,7 @@ pub(super) const DISCS: Ringing = Ringing {
     cells: 12.0,
     fine: 24.0,
     exact: |scene, squeeze| {
-        let disc = Pressed::of(scene, 4)?;
+        let disc = Pressed::from_scene(scene, 4)?;
         let force = disc.force(2.0 / 3.0 * squeeze);
         let Gives { u, v, w } = disc.gives(force);
         let compliance = 2.0 * u + v - w * w / (2.0 * (u - v));

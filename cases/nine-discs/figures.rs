@@ -53,7 +53,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 fn after_stop(done: &Done, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
-    let rest = Modal::of(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness() * travel;
+    let rest = Modal::from_scene(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness() * travel;
     let force = done.series().column("centre-edge.normal_force").unwrap_or_default();
     force
         .iter()
@@ -103,7 +103,7 @@ fn speed(
 /// Returns the figure of the remaining amplitude after 40 cycles over the step, which the paper does not print.
 fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
     let scene = runner.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
-    let modal = Modal::of(&scene);
+    let modal = Modal::from_scene(&scene);
     let critical = scene.critical_time_step();
     let points =
         (10..=260).map(|at| f64::from(at) * 1e-3).map(|f| (f, modal.residual(40, f * critical))).collect::<Vec<_>>();

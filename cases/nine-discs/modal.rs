@@ -24,7 +24,7 @@ pub(crate) struct Inward {
 }
 
 impl Modal {
-    pub(crate) fn of(scene: &Scene) -> Self {
+    pub(crate) fn from_scene(scene: &Scene) -> Self {
         let law = law(scene);
         Self {
             kappa: if law.has_friction() { law.tangential_stiffness() / law.normal_stiffness() } else { 0.0 },

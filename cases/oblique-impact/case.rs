@@ -151,7 +151,7 @@ fn claims() -> Vec<Claim> {
             let (allowed, read, exact_value) = (*allowed, *read, *exact_value);
             for solver in ["dem:lammps", "dem:liggghts"] {
                 let row = claim(*quantity, unit)
-                    .of(Run::new(variant, solver, LEVELS[2].resolution))
+                    .run(Run::new(variant, solver, LEVELS[2].resolution))
                     .equals(Source::Derived("momentum and Coulomb's limit, by quadrature (derivation)"), move |done| {
                         let expected = exact_value(&exact(&done[0].scene));
                         Ok(Measured::new(read(&done[0])?, expected, expected))

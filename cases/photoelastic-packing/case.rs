@@ -70,7 +70,7 @@ fn run(variant: &'static str) -> Run {
 /// Returns stages A and B.
 fn stages(done: &Done) -> Result<[Stage; 2], Missing> {
     match &done.record.snapshots[..] {
-        [_, a, b] => Ok([Stage::of(a), Stage::of(b)]),
+        [_, a, b] => Ok([Stage::from_snapshot(a), Stage::from_snapshot(b)]),
         _ => Err(Missing("snapshots of stages A and B".to_owned())),
     }
 }
@@ -119,7 +119,7 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     let mut claims = equilibrium(packings, words);
     claims.push(
         claim(format!("growth of F_V from stage A to stage B, {words}"), "1")
-            .of_all(packings.to_vec())
+            .runs(packings.to_vec())
             .holds(IMPOSED, held(experiment::GROWTH.value, 1.0, growth))
             .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
@@ -134,7 +134,7 @@ fn held(expected: f64, scale: f64, read: Read) -> impl Fn(&[Done]) -> Result<Mea
 
 /// Claims on the equilibrium at both stages; the worst of several packings decides.
 fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
-    let quantity = |quantity: &str| claim(format!("{quantity}, {words}"), "1").of_all(packings.to_vec());
+    let quantity = |quantity: &str| claim(format!("{quantity}, {words}"), "1").runs(packings.to_vec());
     let smooth = || Control::without(Effect::Friction);
     let weight = || Control::scene("discs that have weight", |scene| scene.gravity = Vector3::new(0.0, -1.0, 0.0));
     let further = Control::scene("walls that go a tenth further", |scene| {
@@ -186,7 +186,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
 /// Claims that the paper's printed value belongs to the distribution of our packings.
 fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
     claim(format!("F_H/F_V at stage B, mean of {words}"), "1")
-        .of_all(packings)
+        .runs(packings)
         .equals(printed.source(), move |done| {
             let values =
                 done.iter().map(|done| Ok(ratio_at_b(&stages(done)?))).collect::<Result<Vec<f64>, Missing>>()?;
@@ -200,7 +200,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
 /// Claims that half the time step leads to the same stage B.
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
-        .of_all([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
+        .runs([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
         .agrees(Source::Ourselves("the same at half the time step"), |done| {
             Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
         })
@@ -260,7 +260,7 @@ fn programs() -> Vec<Claim> {
             let runs = pair.map(|solver| common("programs", solver, pair[1])).into_iter().chain(perturbed);
             claims.push(
                 claim(format!("F_H/F_V at stage {stage}, against {}", pair[1]), "1")
-                    .of_all(runs)
+                    .runs(runs)
                     .agrees(Source::Program, move |done| {
                         let perturbed =
                             done[2..].iter().map(|perturbed| ratio_in(perturbed, part)).collect::<Result<Vec<f64>, _>>()?;

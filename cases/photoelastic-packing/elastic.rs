@@ -30,7 +30,7 @@ pub(super) fn claims() -> Vec<Claim> {
     let mut claims = equilibrium(&[discs()], "50 elastic discs");
     claims.extend([
         claim("growth of F_V to stage B against that of discs left alone, 50 elastic discs", "1")
-            .of_all([discs(), alone().aside()])
+            .runs([discs(), alone().aside()])
             .holds(IMPOSED, |done| {
                 let ([_, sheared], [_, alone]) = (vertical(&done[0])?, vertical(&done[1])?);
                 Ok(Measured::new(sheared / alone - 1.0, experiment::GROWTH.value, 1.0))
@@ -38,9 +38,11 @@ pub(super) fn claims() -> Vec<Claim> {
             .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
         claim("F_V at stage B over that at stage A, walls at rest, 50 elastic discs", "1")
-            .of(alone()
-                .known("forces decay at rest, more slowly with time and with more points per cell (derivation)")
-                .up_to(0.02))
+            .run(
+                alone()
+                    .known("forces decay at rest, more slowly with time and with more points per cell (derivation)")
+                    .up_to(0.02),
+            )
             .holds("elastic discs at rest go on bearing what they bear", |done| {
                 let [a, b] = vertical(&done[0])?;
                 Ok(Measured::new(b / a, 1.0, 1.0))
@@ -48,7 +50,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .within(judged(1e-4, "discs on springs lose 1e-5"))
             .refuses(Control::without_the_error("discs on springs", "dem:1979", LEVELS[0].resolution)),
         claim("F_H/F_V at stage B, 50 elastic discs against discs on springs", "1")
-            .of_all([discs(), run("fifty").aside()])
+            .runs([discs(), run("fifty").aside()])
             .agrees(
                 Source::Ourselves("discs on springs from the same start, led to the same stage A and growth"),
                 |done| Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0)),

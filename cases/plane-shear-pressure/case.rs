@@ -172,7 +172,7 @@ fn normal(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
     let allowed = apart(PACKINGS, &quantity);
     claim(quantity, "1")
-        .of(ours(variant))
+        .run(ours(variant))
         .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
             Ok(Measured::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
         })
@@ -200,7 +200,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("shear stress of the bulk over that of the walls, I ≈ {about}");
     let allowed = apart(PACKINGS, &quantity);
     claim(quantity, "1")
-        .of(ours(variant))
+        .run(ours(variant))
         .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
             Ok(Measured::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
         })
@@ -215,7 +215,7 @@ fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")
-        .of_all([ours(variant).aside(), pressed(variant)])
+        .runs([ours(variant).aside(), pressed(variant)])
         .agrees(Source::Ourselves(LAW), move |done| Ok(Measured::new(read(&done[0])?, read(&done[1])?, scale)))
         .within(allowed)
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))

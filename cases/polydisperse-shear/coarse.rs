@@ -89,7 +89,7 @@ fn unaccounted(done: &Done) -> Result<Measured, Missing> {
 /// Claims that the energy balance accounts for the work of the walls, in units of the work.
 pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control) -> Claim {
     claim(quantity, "J")
-        .of(run)
+        .run(run)
         .holds("conservation of energy", |done| unaccounted(&done[0]))
         .within(judged(
             allowed,
@@ -101,7 +101,7 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
 /// Claims that the increase of kinetic, elastic and plastic energy does not exceed the work of the walls.
 pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
-        .of(run)
+        .run(run)
         .holds("conservation of energy: no more than comes in", |done| {
             let budget_entry = |name| entry(&done[0], name);
             let kept = (gained(&done[0], "kinetic")? + budget_entry("elastic")? + budget_entry("plastic")?)
@@ -181,7 +181,7 @@ pub(super) fn claims() -> Vec<Claim> {
         makes_none(&percent, slab("mpm"), makes_energy()),
         makes_none(&percent, slab("mpm:2000").known(MAKES_ENERGY).up_to(1.0), springs),
         claim(format!("momentum less the impulse of the driven grains, {percent}, worst"), "N s")
-            .of(slab("mpm"))
+            .run(slab("mpm"))
             .holds("equal and opposite impulses", |done| momentum(&done[0]))
             .within(judged(1e-10, "rounding; of the largest impulse"))
             .refuses(Control::solver("each body against its own normal (2000)", "mpm:2000")),
@@ -192,7 +192,7 @@ pub(super) fn claims() -> Vec<Claim> {
             ),
             "1",
         )
-        .of(slab("mpm"))
+        .run(slab("mpm"))
         .holds("the method's own energy budget", |done| {
             let budget_entry = |name| entry(&done[0], name);
             Ok(Measured::new((budget_entry("transfer")? + budget_entry("contact")?) / budget_entry("work")?, 0.0, 1.0))
@@ -200,12 +200,12 @@ pub(super) fn claims() -> Vec<Claim> {
         .within(judged(0.02, "springs between surfaces and a transfer that keeps spin lose next to nothing"))
         .refuses(makes_energy()),
         claim(format!("plastic strain without slip over that with friction, {percent}"), "1")
-            .of_all([slab("mpm:no-slip"), slab("mpm")])
+            .runs([slab("mpm:no-slip"), slab("mpm")])
             .at_least(5.0, FIGURE_6, |done| Ok(yielded(&done[0])? / yielded(&done[1])?))
             .within(exactly("extensive against fairly little is read as five times"))
             .refuses(Control::solver("contacts glued", "mpm:no-slip")),
         claim(format!("largest shear over normal force of a contact, {percent}"), "1")
-            .of(slab("mpm"))
+            .run(slab("mpm"))
             .holds("Coulomb's law: friction of the scene", |done| {
                 let friction = done[0].scene.laws[0].unwrap_or_default().friction;
                 Ok(Measured::new(steepest(&done[0])?, friction, friction))
@@ -213,7 +213,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .within(judged(0.02, "forces of a patch are summed, whose normals differ a little"))
             .refuses(Control::scene(Effect::Friction.absence(), early(|scene| Effect::Friction.switch_off(scene)))),
         claim(format!("stress of von Mises over the flow stress where it has flowed, {percent}, largest"), "1")
-            .of(slab("mpm"))
+            .run(slab("mpm"))
             .holds("radial return ends on the yield surface", |done| {
                 Ok(Measured::new(on_the_yield_surface(&done[0])?, 1.0, 1.0))
             })
@@ -223,7 +223,7 @@ pub(super) fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene("hardening off", early(with_yield(|_, hardening| *hardening = 0.0)))),
         claim(format!("change of volume that pressure does not account for, {percent}, mean"), "1")
-            .of(slab("mpm"))
+            .run(slab("mpm"))
             .holds("plastic flow keeps volume: σ_m = K ln J", |done| Ok(Measured::new(volume(&done[0])?, 0.0, 1.0)))
             .within(computed(
                 1.0 / STEPS,
@@ -232,8 +232,8 @@ pub(super) fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene("bulk modulus of a tenth", early(made_of(|grains| grains.bulk_modulus *= 0.1)))),
         claim(format!("plastic strain of a slab moved along its period, {:.0} % shear", 100.0 * BEGINNING), "1")
-            .of(to_shear(Run::new("seed-1", "mpm", grid(CELLS)), BEGINNING, 0).slow())
-            .of(Run::new("seed-1", "mpm", grid(CELLS)).slow().adjusted("moved", |scene| {
+            .run(to_shear(Run::new("seed-1", "mpm", grid(CELLS)), BEGINNING, 0).slow())
+            .run(Run::new("seed-1", "mpm", grid(CELLS)).slow().adjusted("moved", |scene| {
                 sheared(scene, BEGINNING, 0);
                 moved(scene);
             }))
@@ -255,7 +255,7 @@ pub(super) fn claims() -> Vec<Claim> {
         let overlap_measurement = move |done: &[Done]| Ok(Measured::new(overlaps(&done[0])?[which], 0.0, 1.0));
         claims.push(
             claim(format!("{words} overlap of surfaces, {percent}"), "cell")
-                .of(slab("mpm"))
+                .run(slab("mpm"))
                 .holds("surfaces do not go through each other", overlap_measurement)
                 .within(required(
                     allowed,

@@ -113,7 +113,7 @@ fn over_packings(
 ) -> Claim {
     let each = runs.len() / PACKINGS.len();
     claim(format!("{quantity}, 5 packings"), "1")
-        .of_all(runs)
+        .runs(runs)
         .at_least(bound, source, move |done| {
             held(&done.chunks_exact(each).map(&read).collect::<Result<Vec<f64>, Missing>>()?)
         })
@@ -157,7 +157,7 @@ fn on_springs() -> Vec<Claim> {
         chains_go_on(runs(), ", grains on springs", staying()),
         chains_of_the_paper(runs(), ", grains on springs", staying()),
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
-            .of_all([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
+            .runs([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measured::new(bands(done)?, slower, slower)))
             .within(judged(0.4, "packings, and contacts of another kind: the prototype's grains deform"))
             .refuses(Control::scene("grains of three hundredths of the mass", |scene| {

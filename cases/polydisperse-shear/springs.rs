@@ -42,14 +42,14 @@ pub(super) fn claims() -> Vec<Claim> {
             "energy that is neither stored nor rubbed away, over the work of the walls, 80 % shear, grains on springs",
             "1",
         )
-        .of(slab())
+        .run(slab())
         .holds("conservation of energy", |done| {
             Ok(Measured::new(gained(&done[0], "unbalanced")? / entry(&done[0], "work")?, 0.0, 1.0))
         })
         .within(judged(1e-3, "second order in the step"))
         .refuses(Control::run("steps four times as long", "dem", Resolution::CriticalFraction(0.2))),
         claim("momentum gained along the slab, 80 % shear", "N s")
-            .of(slab())
+            .run(slab())
             .holds("equal and opposite forces", |done| momentum(&done[0]))
             .within(rounding(1.0, "of the largest impulse"))
             .refuses(Control::scene("grains heavier by a thousandth", |scene| {

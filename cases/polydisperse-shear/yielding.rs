@@ -59,7 +59,7 @@ fn shrunk(scene: &mut Scene) {
 fn pores() -> Claim {
     claim("large voids without slip over those with friction, or one, 80 % shear", "1")
         // At −1 there is no void.
-        .of_all([whole("seed-1", "mpm:no-slip").known(NO_VOIDS).up_to(1.0), whole("seed-1", "mpm").aside()])
+        .runs([whole("seed-1", "mpm:no-slip").known(NO_VOIDS).up_to(1.0), whole("seed-1", "mpm").aside()])
         .at_least(5.0, FIGURE_6, |done| Ok(voids(&done[0], end(&done[0])?) / voids(&done[1], end(&done[1])?).max(1.0)))
         .within(exactly(
             "large voids are read as five times as many, which was asked for before the solver was written",
@@ -73,12 +73,12 @@ fn other_contacts() -> Vec<Claim> {
     vec![
         claim("plastic strain without slip over that with friction, 80 % shear", "1")
             // At −1 there is no plastic strain without slip.
-            .of_all([whole("seed-1", "mpm:2001").known(REACHES).up_to(1.0), whole("seed-1", "mpm:no-slip").aside()])
+            .runs([whole("seed-1", "mpm:2001").known(REACHES).up_to(1.0), whole("seed-1", "mpm:no-slip").aside()])
             .at_least(5.0, FIGURE_6, |done| Ok(1.0 / over(done, 0.8, plastic_strain)?))
             .within(exactly("extensive against fairly little is read as five times, as with springs between surfaces"))
             .refuses(Control::without_the_error("springs between surfaces", "mpm", grid(75.0))),
         claim("plastic strain over that with springs between surfaces, 80 % shear", "1")
-            .of_all([whole("seed-1", "mpm:2001"), whole("seed-1", "mpm").aside()])
+            .runs([whole("seed-1", "mpm:2001"), whole("seed-1", "mpm").aside()])
             .at_least(1.0 + excess, prototype::PLASTIC_STRAIN_RATIO_OF_2001.source(), |done| {
                 over(done, 0.8, plastic_strain)
             })
@@ -116,7 +116,7 @@ fn motion() -> Vec<Claim> {
     let band_at = |variant| to_shear(Run::new(variant, "mpm", grid(75.0)), 0.25, 0).long();
     vec![
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear", "1")
-            .of_all([band_at("slow"), band_at("seed-1").aside()])
+            .runs([band_at("slow"), band_at("seed-1").aside()])
             .at_least(1.25, prototype::BAND_AT_25.source(), bands)
             .within(exactly(
                 "the band is wider, and the bound is ours: packings differ, and whole grains that are driven reach \
@@ -128,7 +128,7 @@ fn motion() -> Vec<Claim> {
                 }
             })),
         claim("part of the grains that carry more than the mean, 63 % shear", "1")
-            .of(whole("seed-1", "mpm"))
+            .run(whole("seed-1", "mpm"))
             .at_most(
                 0.5,
                 Source::Printed(
@@ -163,7 +163,7 @@ fn refined() -> Vec<Claim> {
             None => (run, Control::run("contacts glued on the coarser grid", "mpm:no-slip", grid(coarse))),
         };
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
-            .of_all([run, finer.aside()])
+            .runs([run, finer.aside()])
             .agrees(Source::Ourselves("the same packing on a grid twice as fine"), move |done| {
                 Ok(Measured::new(over(done, shear, read)?, 1.0, 1.0))
             })

@@ -42,7 +42,7 @@ struct Middle {
 }
 
 impl Middle {
-    fn of(done: &Done) -> Result<Self, Missing> {
+    fn from_run(done: &Done) -> Result<Self, Missing> {
         let missing = || Missing("points in the middle of the block in the end".to_owned());
         let snapshot = done.record.snapshots.last().ok_or_else(missing)?;
         // All points of the block, 1 m², have the same initial volume.
@@ -90,9 +90,9 @@ fn claims() -> Vec<Claim> {
     let mut claims = LEVELS.iter().map(follows_the_ram).collect::<Vec<_>>();
     claims.extend([
         claim("equivalent plastic strain of the middle", "1")
-            .of(run())
+            .run(run())
             .equals(Source::Derived("ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)"), |done| {
-                let middle = Middle::of(&done[0])?;
+                let middle = Middle::from_run(&done[0])?;
                 Ok(Measured::new(middle.plastic, middle.flowed(), middle.flowed()))
             })
             .within(computed(
@@ -101,9 +101,9 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene("a yield stress a twentieth higher", metal(1.05 * YIELD, HARDENING))),
         claim("yield stress of the middle", "Pa")
-            .of(run())
+            .run(run())
             .equals(Source::Derived("σ_xx − σ_yy = Y + H ε_p (derivation)"), |done| {
-                let middle = Middle::of(&done[0])?;
+                let middle = Middle::from_run(&done[0])?;
                 let [across, along, _] = middle.stress;
                 Ok(Measured::new(across - along, middle.yielded(), middle.yielded()))
             })
@@ -113,11 +113,11 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(Control::scene("no hardening", metal(YIELD, 0.0))),
         claim("pressure of the middle", "Pa")
-            .of(run())
+            .run(run())
             .equals(
                 Source::Derived("(σ_xx + σ_yy + σ_zz)/3 = −K e, e of its own volumes: flow keeps them (derivation)"),
                 |done| {
-                    let middle = Middle::of(&done[0])?;
+                    let middle = Middle::from_run(&done[0])?;
                     let expected = BULK * middle.strain;
                     Ok(Measured::new(-middle.stress.iter().sum::<f64>() / 3.0, expected, expected))
                 },
@@ -132,13 +132,13 @@ fn claims() -> Vec<Claim> {
                 material(|deformable| deformable.bulk_modulus *= 1.001),
             )),
         claim("force on the ram", "N")
-            .of(run())
+            .run(run())
             .equals(
                 Source::Derived(
                     "F = K e + ⅔ (Y + H ε_p), ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)",
                 ),
                 |done| {
-                    let middle = Middle::of(&done[0])?;
+                    let middle = Middle::from_run(&done[0])?;
                     let yielded = YIELD + HARDENING * middle.flowed();
                     let expected = BULK * middle.strain + 2.0 / 3.0 * yielded;
                     Ok(Measured::new(done[0].last("ram.force_y")?, expected, expected))
@@ -158,10 +158,10 @@ fn follows_the_ram(level: &Level) -> Claim {
     const LAG: &str = "springs yield at the face, and its tracers sink into the block if the face moves a quarter of a cell \
                        from its initial nodes: by 0.008 of a cell with eight cells, and by 0.05 with sixteen";
     claim(format!("strain of the middle over the way of the ram, {} cells", level.name), "1")
-        .of(Run::new(PLAIN, "mpm", level.resolution).known(LAG).up_to(0.2))
+        .run(Run::new(PLAIN, "mpm", level.resolution).known(LAG).up_to(0.2))
         .equals(Source::Derived("e = −ln(1 − V t/L): the block is as high as the ram stands (derivation)"), |done| {
             let expected = -(1.0 - SPEED * TIME).ln();
-            Ok(Measured::new(Middle::of(&done[0])?.strain, expected, expected))
+            Ok(Measured::new(Middle::from_run(&done[0])?.strain, expected, expected))
         })
         .within(judged(
             0.03,

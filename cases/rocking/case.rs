@@ -32,7 +32,7 @@ struct ToRest {
 }
 
 impl ToRest {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
         let (radius, gravity, speed) = (grain.radius, scene.gravity.norm(), grain.velocity.norm());
         let arm = law.rolling_friction * radius;
@@ -66,15 +66,15 @@ fn claims() -> Vec<Claim> {
 
 fn back() -> Claim {
     claim("way back from where the sphere came to rest", "m")
-        .of(Run::new("to-rest", "dem", STEP.resolution))
+        .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("2Rθ_y, θ_y = μ_r R F_n/k_r (derivation)"), |done| {
             let [stop, back] = turning_points(&done[0])?;
-            let rest = ToRest::of(&done[0].scene);
+            let rest = ToRest::from_scene(&done[0].scene);
             let exact = 2.0 * rest.radius * rest.yields;
             Ok(Measured::new(stop - back, exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| ToRest::of(scene).off[0]),
+            number("to-rest", |scene| ToRest::from_scene(scene).off[0]),
             "the tangential spring gives way, k_r/k_tR²; its swing at the start; a turning point between samples, (ω_rΔt)²/8",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {
@@ -85,13 +85,13 @@ fn back() -> Claim {
 
 fn way() -> Claim {
     claim("way to rest", "m")
-        .of(Run::new("to-rest", "dem", STEP.resolution))
+        .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("(7/10) m v₀² = μ_r m g (x_s/R − θ_y/2) R (derivation)"), |done| {
-            let exact = ToRest::of(&done[0].scene).way;
+            let exact = ToRest::from_scene(&done[0].scene).way;
             Ok(Measured::new(turning_points(&done[0])?[0], exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| ToRest::of(scene).off[1]),
+            number("to-rest", |scene| ToRest::from_scene(scene).off[1]),
             "the tangential spring's swing at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {
@@ -122,7 +122,7 @@ fn rocks(scene: &Scene) -> [f64; 2] {
 fn between(variant: &'static str) -> Claim {
     let forth = if variant == "between" { "forth" } else { "back" };
     claim(format!("spin of the disc between two that run {forth}, worst"), "rad/s")
-        .of(Run::new(variant, "dem", STEP.resolution))
+        .run(Run::new(variant, "dem", STEP.resolution))
         .series(|done| samples(done, "grain.omega"))
         .follows(
             Source::Derived("ω₀ cos ω_s t, ω_s² = Σ (k_t R² + k_r)/I (derivation)"),

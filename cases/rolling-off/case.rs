@@ -36,7 +36,7 @@ struct Balls {
 type State = [f64; 3];
 
 impl Balls {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let [fixed, ball] = [&scene.grains[0], &scene.grains[1]];
         let law = scene.laws[0].unwrap_or_default();
         let (gravity, distance) = (scene.gravity.norm(), ball.radius + fixed.radius);
@@ -97,7 +97,7 @@ fn claims() -> Vec<Claim> {
 
 fn off(variant: &str, times: f64) -> Tolerance {
     computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::of(&scene).off),
+        CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::from_scene(&scene).off),
         "the spring's swing at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, of the velocity; the overlap over the \
          distance and over the radius",
     )
@@ -106,9 +106,9 @@ fn off(variant: &str, times: f64) -> Tolerance {
 /// Claims that the rough ball leaves at cos θ = (10/17) cos θ₀: ω²R² = g d cos θ.
 fn angle() -> Claim {
     claim("cosine of the angle at which the rough ball leaves, from its spin", "1")
-        .of(Run::new("rough", "dem", STEP.resolution))
+        .run(Run::new("rough", "dem", STEP.resolution))
         .equals(Source::Derived("energy and v = ωR: cos θ = (10/17) cos θ₀ (derivation)"), |done| {
-            let balls = Balls::of(&done[0].scene);
+            let balls = Balls::from_scene(&done[0].scene);
             let surface = done[0].last("ball.omega_y")? * balls.radius;
             let exact = 10.0 / 17.0 * balls.angle.cos();
             Ok(Measured::new(surface * surface / (balls.gravity * balls.distance), exact, exact))
@@ -131,9 +131,9 @@ fn kept(
         Control::scene("friction × 1.05", |scene| scene.change_laws(|law| law.friction *= 1.05))
     };
     claim(format!("{quantity}, {variant}"), unit)
-        .of(Run::new(variant, "dem", STEP.resolution))
+        .run(Run::new(variant, "dem", STEP.resolution))
         .equals(Source::Derived("Newton's law with Coulomb's, by Runge and Kutta's method (derivation)"), move |done| {
-            let exact = exact(&Balls::of(&done[0].scene));
+            let exact = exact(&Balls::from_scene(&done[0].scene));
             Ok(Measured::new(done[0].last(column)?, exact, exact))
         })
         .within(off(variant, 1.0))
@@ -154,9 +154,9 @@ mod tests {
     /// The integration reproduces the closed form of the rough ball.
     #[test]
     fn the_rough_ball_leaves_at_ten_seventeenths() {
-        let balls = Balls::of(&CASE.variant("rough").unwrap());
+        let balls = Balls::from_scene(&CASE.variant("rough").unwrap());
         let [angle, speed, surface] = Balls { friction: 1e9, ..balls }.leaves();
-        let exact = 10.0 / 17.0 * CASE.variant("rough").map(|scene| Balls::of(&scene).angle.cos()).unwrap();
+        let exact = 10.0 / 17.0 * CASE.variant("rough").map(|scene| Balls::from_scene(&scene).angle.cos()).unwrap();
         assert!((angle.cos() - exact).abs() < 1e-4 && (speed - surface).abs() < 1e-9, "{} {exact}", angle.cos());
     }
 }

@@ -51,7 +51,7 @@ fn claims() -> Vec<Claim> {
             let run = Run::new(slope.variant, "mpm", level.resolution);
             claims.push(
                 claim(format!("displacement over the rigid one, less 1, {}", level.name), "1")
-                    .of(if *level == LEVELS[2] { run.long() } else { run })
+                    .run(if *level == LEVELS[2] { run.long() } else { run })
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(required(allowed + slope.reference.uncertainty, ASKED))
                     .refuses(Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")),
@@ -59,7 +59,7 @@ fn claims() -> Vec<Claim> {
         }
         claims.push(
             claim("displacement over the rigid one, less 1", "1")
-                .of(Run::new(slope.variant, "mpm:2000", LEVELS[1].resolution).known(
+                .run(Run::new(slope.variant, "mpm:2000", LEVELS[1].resolution).known(
                     "nodal contact supports the disc over a region of about √(2Rh), like a flat side: it rolls too little",
                 )
                 // At −1 the disc does not move.

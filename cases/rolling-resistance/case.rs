@@ -32,16 +32,16 @@ fn rolling_friction(scene: &Scene) -> f64 {
 
 /// Returns the acceleration of a grain that rolls with rolling resistance (m/s²).
 fn acceleration(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     (grain.along - rolling_friction(scene) * grain.onto) / (1.0 + grain.inertia_factor)
 }
 
 fn claims() -> Vec<Claim> {
     let rigid = claim("refusal of rolling resistance", "1")
-        .of(Run::new(FLAT[0], "rigid", rigid::DEFAULT))
+        .run(Run::new(FLAT[0], "rigid", rigid::DEFAULT))
         .refused("rapier has no resistance against rolling", Control::without(Effect::RollingResistance));
     let lammps =
-        claim("refusal of a damped rolling spring", "1").of(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
+        claim("refusal of a damped rolling spring", "1").run(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
             "LAMMPS limits spring and dashpot together, LIGGGHTS and we the spring alone",
             Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
         );
@@ -55,7 +55,7 @@ fn beside_programs(variant: &'static str) -> Vec<Claim> {
     let time_step: f64 = 2e-5;
     let ahead = computed(
         CASE.variant(variant).map_or(f64::NAN, |scene| {
-            let frequency = OneGrain::of(&scene).rolling_frequency(rolling_friction(&scene));
+            let frequency = OneGrain::from_scene(&scene).rolling_frequency(rolling_friction(&scene));
             frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(&scene)
                 / scene.grains[0].radius
         }),
@@ -73,13 +73,13 @@ fn seconds(scene: &Scene) -> f64 {
 fn flat(variant: &'static str) -> Vec<Claim> {
     let rolling_claim = |quantity: &str, control, of_spin: bool| {
         claim(quantity, "m/s²")
-            .of(Run::new(variant, "dem", STEP.resolution))
+            .run(Run::new(variant, "dem", STEP.resolution))
             .equals(Source::Derived("dv/dt = g (sin θ − μ_r cos θ)/(1 + i) (derivation)"), move |done| {
                 let exact = acceleration(&done[0].scene);
                 Ok(Measured::new(slowing(&done[0], of_spin)?, exact, exact))
             })
             .within(computed(
-                CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::of(&scene).rung(0.5)),
+                CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).rung(0.5)),
                 "once the rolling spring has yielded the moment is constant, and friction comes to its value as exp(−λt): \
                  what is left after half a second (derivation)",
             ))
@@ -121,12 +121,12 @@ fn tilted(variant: &'static str, factor: f64) -> Run {
 fn threshold(variant: &'static str) -> Vec<Claim> {
     let threshold_claim = |quantity: &str, factor: f64, allowed: Tolerance, wrong, by: f64| {
         claim(quantity, "m/s²")
-            .of(tilted(variant, factor))
+            .run(tilted(variant, factor))
             .equals(
                 Source::Derived("at rest iff tan θ ≤ μ_r, else (derivation) dv/dt = g (sin θ − μ_r cos θ)/(1 + i)"),
                 |done| {
                     let scene = &done[0].scene;
-                    let grain = OneGrain::of(scene);
+                    let grain = OneGrain::from_scene(scene);
                     let unit = rolling_friction(scene) * grain.onto / (1.0 + grain.inertia_factor);
                     Ok(Measured::new(slowing(&done[0], false)?, acceleration(scene).max(0.0), unit))
                 },
@@ -135,8 +135,9 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
             .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.rolling_friction *= by)))
     };
     let comes_to_rest = computed(
-        CASE.variant(variant)
-            .map_or(f64::NAN, |scene| OneGrain::of(&scene).rolled(rolling_friction(&scene), 0.5 * seconds(&scene))),
+        CASE.variant(variant).map_or(f64::NAN, |scene| {
+            OneGrain::from_scene(&scene).rolled(rolling_friction(&scene), 0.5 * seconds(&scene))
+        }),
         "what the critically damped rolling spring leaves after half the time (derivation); in units of μ_r g/(1 + i)",
     );
     let yields = rounding(1.0, "once the spring has yielded the moment is constant; in units of μ_r g/(1 + i)");

@@ -72,7 +72,7 @@ type Read = fn(&Done) -> Result<f64, Missing>;
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
         claim("weight carried by floor and walls", "N")
-            .of(run(PAIRS[0][0]))
+            .run(run(PAIRS[0][0]))
             .equals(Source::Derived("balance of forces at rest"), |done| {
                 Ok(Measured::new(carried(&done[0])?, weight(&done[0]), weight(&done[0])))
             })
@@ -87,8 +87,8 @@ fn claims() -> Vec<Claim> {
             claims.push(
                 claim(format!("{quantity}, against {program}"), "1")
                     // Five runs of one to two seconds each.
-                    .of_all([run(ours).slow(), run(program)])
-                    .of_all(columns)
+                    .runs([run(ours).slow(), run(program)])
+                    .runs(columns)
                     .agrees(Source::Program, move |done| {
                         let columns: Vec<f64> = done[2..].iter().map(read).collect::<Result<_, _>>()?;
                         let interval = spread(&columns).ok_or_else(|| Missing("columns that differ".to_owned()))?;

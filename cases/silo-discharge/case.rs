@@ -95,27 +95,27 @@ fn claims() -> Vec<Claim> {
     let other = || Control::variant("the other orifice", SMALL);
     let mut claims = vec![
         near(
-            claim("rate from .5 to 3.5 s, large orifice", "1000/s").of(of_paper(PLAIN)),
+            claim("rate from .5 to 3.5 s, large orifice", "1000/s").run(of_paper(PLAIN)),
             dosta::SILO_LARGE_RATE,
             |done| steady(&done[0]),
         )
         .refuses(other()),
-        near(claim("grains out in 2 s, large orifice", "1000").of(of_paper(PLAIN)), dosta::SILO_LARGE_OUT_2, |done| {
+        near(claim("grains out in 2 s, large orifice", "1000").run(of_paper(PLAIN)), dosta::SILO_LARGE_OUT_2, |done| {
             Ok((done[0].column("grains.present")?[0] - left(&done[0], COUNTED)?) / 1e3)
         })
         .refuses(other()),
         near(
-            claim("rate from .5 to 2 s, small orifice", "1000/s").of(of_paper(SMALL)),
+            claim("rate from .5 to 2 s, small orifice", "1000/s").run(of_paper(SMALL)),
             dosta::SILO_SMALL_RATE,
             |done| steady(&done[0]),
         )
         .refuses(Control::variant("the other orifice", PLAIN)),
         claim("rate of the large orifice over that of the small one, .5 to 2 s", "1")
-            .of_all([of_paper(PLAIN), of_paper(SMALL)])
+            .runs([of_paper(PLAIN), of_paper(SMALL)])
             .equals_cited(dosta::SILO_QUOTED_RATIO, 1.0, |done| Ok(rate(&done[0], BOTH)? / rate(&done[1], BOTH)?))
             .within(required(0.1, "asked for before"))
             .refuses(Control::variant("the large orifice for both", PLAIN)),
-        near(claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").of(low()), dosta::SILO_LARGE_EARLY, |done| {
+        near(claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").run(low()), dosta::SILO_LARGE_EARLY, |done| {
             rate(&done[0], EARLY)
         })
         .refuses(smooth()),
@@ -129,7 +129,7 @@ fn claims() -> Vec<Claim> {
         )
         .refuses(smooth()),
         claim("rate from .2 to .8 s, 40,000 spheres, with a step of 6e-6 s for 3e-6 s", "1000/s")
-            .of_all([low(), half_the_step()])
+            .runs([low(), half_the_step()])
             .agrees(Source::Ourselves("half the time step"), |done| {
                 let fine = rate(&done[1], EARLY)?;
                 Ok(Measured::new(rate(&done[0], EARLY)?, fine, fine))

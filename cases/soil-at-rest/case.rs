@@ -33,7 +33,7 @@ fn claims() -> Vec<Claim> {
     let all = LEVELS.iter().map(|level| ("hypoelastic", *level)).chain([("rubber", LEVELS[1])]);
     all.map(|(law, level)| {
         claim(format!("largest displacement, {law}, cells of {}", level.name), "m")
-            .of(Run::new(law, "mpm", level.resolution))
+            .run(Run::new(law, "mpm", level.resolution))
             .equals(SOURCE, |done| {
                 let [_, sinking] = soil(&done[0].scene).ok_or_else(|| Missing("soil in a box".to_owned()))?;
                 let columns = ["middle.ux", "middle.uy", "top.ux", "top.uy"].map(|name| done[0].column(name));

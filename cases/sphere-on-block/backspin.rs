@@ -16,7 +16,7 @@ pub(super) fn claims() -> Vec<Claim> {
     for solver in ["mpm:2000", "mpm:2001"] {
         claims.push(
             claim("displacement at .8 s over the rigid one, less 1, touching at the start, R/4", "1")
-                .of(set_down(VARIANT, solver).long().known(FLAT).up_to(AT_REST))
+                .run(set_down(VARIANT, solver).long().known(FLAT).up_to(AT_REST))
                 .equals(Source::Derived("a rigid sphere slides, then rolls (derivation of backspin)"), |done| {
                     Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))
                 })

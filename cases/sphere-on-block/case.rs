@@ -60,7 +60,7 @@ const SLOPES: [Slope; 2] = [
 /// Returns the displacement over the displacement of a rigid sphere, minus one.
 fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
+    Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }
 
 /// Returns the run without relaxation: initially in contact and released, as in the paper.
@@ -81,7 +81,7 @@ fn claims() -> Vec<Claim> {
             let run = Run::new(slope.variant, "mpm", level.resolution);
             claims.push(
                 claim(format!("displacement at 1 s over the rigid one, less 1, {}", level.name), "1")
-                    .of(in_set(run, rolls && *level == LEVELS[1]))
+                    .run(in_set(run, rolls && *level == LEVELS[1]))
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         allowed + slope.reference.uncertainty,
@@ -93,7 +93,7 @@ fn claims() -> Vec<Claim> {
         for (solver, cited) in slope.papers {
             claims.push(
                 claim("displacement at 1 s over the rigid one, less 1, touching at the start, R/4", "1")
-                    .of(in_set(set_down(slope.variant, solver), rolls && solver == "mpm:2000"))
+                    .run(in_set(set_down(slope.variant, solver), rolls && solver == "mpm:2000"))
                     .equals_cited(cited, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         0.07,
@@ -103,7 +103,10 @@ fn claims() -> Vec<Claim> {
             );
             claims.push(
                 claim("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1")
-                    .of(in_set(Run::new(slope.variant, solver, LEVELS[1].resolution).known(FLAT).up_to(AT_REST), false))
+                    .run(in_set(
+                        Run::new(slope.variant, solver, LEVELS[1].resolution).known(FLAT).up_to(AT_REST),
+                        false,
+                    ))
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         slope.allowed[0] + slope.reference.uncertainty,
@@ -121,7 +124,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for solver in ["mpm", "mpm:2000"] {
         let done = runner.run(&Run::new(SLOPES[0].variant, solver, LEVELS[0].resolution))?;
-        let rigid = OneGrain::of(&done.scene);
+        let rigid = OneGrain::from_scene(&done.scene);
         let x = done.series().column("grain.x").unwrap_or_default();
         let points = done.series().time.iter().zip(x).map(|(&t, x)| (t, x - rigid.rigid_incline(t).x)).collect();
         curves.push(Curve::new(solver, Stroke::Line, points));

@@ -37,7 +37,7 @@ struct Ring {
 }
 
 impl Ring {
-    fn of(scene: &Scene) -> Option<Self> {
+    fn from_scene(scene: &Scene) -> Option<Self> {
         let ring = scene.bodies.first()?;
         let BlockShape::Annulus { inner, outer, .. } = ring.shape else { return None };
         let material = scene.deformable.first().copied().flatten()?;
@@ -89,7 +89,7 @@ fn mean_growth(done: &Done) -> Result<f64, Missing> {
 }
 
 fn ring(scene: &Scene) -> Result<Ring, Missing> {
-    Ring::of(scene).ok_or_else(|| Missing("a ring".to_owned()))
+    Ring::from_scene(scene).ok_or_else(|| Missing("a ring".to_owned()))
 }
 
 fn claims() -> Vec<Claim> {
@@ -99,7 +99,7 @@ fn claims() -> Vec<Claim> {
         .into_iter()
         .map(|law| {
             claim(format!("growth of the second moment, mean over a turn, {law}"), "1")
-                .of(run(law))
+                .run(run(law))
                 .equals(SOURCE, |done| {
                     let exact = ring(&done[0].scene)?.growth();
                     Ok(Measured::new(mean_growth(&done[0])?, exact, exact))
@@ -116,7 +116,7 @@ fn claims() -> Vec<Claim> {
         .collect();
     claims.push(
         claim("angular momentum over a turn, worst", "kg m²/s")
-            .of(run("hypoelastic"))
+            .run(run("hypoelastic"))
             .holds("conservation of angular momentum", |done| {
                 let momentum = done[0].column("all.angular_momentum")?;
                 Ok(Measured::drift(&done[0].series().time, momentum, momentum[0]))

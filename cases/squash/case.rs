@@ -70,7 +70,7 @@ fn claims() -> Vec<Claim> {
         for (contact, column) in [("A", "A.normal_force"), ("B", "B.normal_force"), ("C", "C.normal_force")] {
             claims.push(
                 claim(format!("normal force at {contact}, cycle {cycle}"), "N")
-                    .of(run())
+                    .run(run())
                     .equals(Source::Derived("Cundall & Strack 1979, eqs. 1-7 (derivation)"), move |done| {
                         let (q, unit) = units(&done[0]);
                         let (side, middle) = first_cycles(cycle, q);
@@ -97,7 +97,7 @@ fn claims() -> Vec<Claim> {
     ] {
         claims.push(
             claim(format!("normal force at {contact} over 200 cycles, worst"), "N")
-                .of(run())
+                .run(run())
                 .series(|done| samples(done, column))
                 .follows(Source::Derived("closed solution of the paper's recurrence (derivation)"), force, |done| {
                     units(done).1

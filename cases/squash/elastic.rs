@@ -23,7 +23,7 @@ pub(super) const DISCS: Ringing = Ringing {
     cells: 8.0,
     fine: 32.0,
     exact: |scene, squeeze| {
-        let disc = Pressed::of(scene, 2)?;
+        let disc = Pressed::from_scene(scene, 2)?;
         let force = disc.force(squeeze);
         let Gives { u, v, .. } = disc.gives(force);
         let restoring = 2.0 * PI * disc.modulus / (u + v);

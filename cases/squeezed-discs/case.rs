@@ -43,7 +43,7 @@ fn squeeze(scene: &Scene) -> f64 {
 
 /// Returns the contact force (N per metre) in closed form: both walls shorten a row of three diameters.
 fn exact(scene: &Scene) -> f64 {
-    Pressed::of(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
+    Pressed::from_scene(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
 /// Returns the mean contact force at the walls (N per metre), with three discs on each. The mean is over the last
@@ -86,7 +86,7 @@ fn over_phases(done: &[Done]) -> Result<f64, Missing> {
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
         claim("largest deviation of the 24 contact forces from their mean", "1")
-            .of(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
+            .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
             .holds("equilibrium and symmetry: all are equal (derivation)", |done| match spread(&done[0])? {
                 (24, spread) => Ok(Measured::new(spread, 0.0, 1.0)),
                 (count, _) => Err(Missing(format!("24 contacts, but {count}"))),
@@ -106,7 +106,7 @@ fn claims() -> Vec<Claim> {
         let runs = phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() });
         claims.push(
             claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
-                .of_all(runs)
+                .runs(runs)
                 .equals(SOURCE, |done| {
                     let exact = exact(&done[0].scene);
                     Ok(Measured::new(over_phases(done)?, exact, exact))
@@ -117,7 +117,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("contact force over the exact one, R/6", "1")
-            .of(Run::new(PLAIN, "mpm:gap", LEVELS[1].resolution).slow())
+            .run(Run::new(PLAIN, "mpm:gap", LEVELS[1].resolution).slow())
             .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
                 Ok(mean_force(&done[0])? / exact(&done[0].scene))
             })
@@ -126,7 +126,7 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("contact force, R/4", "N/m")
-            .of(Run::new(PLAIN, "mpm:gap", LEVELS[0].resolution)
+            .run(Run::new(PLAIN, "mpm:gap", LEVELS[0].resolution)
                 .known("a node in contact stops a whole cell of the surface at once: contacts are about twice as stiff as they \
                         should be")
                 .up_to(2.0))

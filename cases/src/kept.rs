@@ -184,7 +184,7 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
     let text = fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| Unusable::Broken(error.to_string()))?;
     let provenance: Provenance = toml::from_str(&text).map_err(|error| Unusable::Broken(error.to_string()))?;
     let reading = run.reading.map_or("", |reading| reading.name);
-    let stepping = Stepping::of(scene, &run.resolution).map_err(Unusable::Broken)?;
+    let stepping = Stepping::new(scene, &run.resolution).map_err(Unusable::Broken)?;
     if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let reason =
@@ -274,7 +274,7 @@ pub fn files(wanted: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Re
             wanted.run.resolution
         ),
         reading: wanted.run.reading.map_or("", |reading| reading.name).to_owned(),
-        scene: scene_hash_by_bits(given, &Stepping::of(given, &wanted.run.resolution)?),
+        scene: scene_hash_by_bits(given, &Stepping::new(given, &wanted.run.resolution)?),
         sources: sources(wanted.run.solver).filter(|_| !is_program(wanted.run.solver)),
         command: format!("grainbench reference keep {}{paper_size}", wanted.case.name),
         blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),

@@ -30,7 +30,7 @@ pub struct Stage {
 impl Stage {
     /// Evaluates a snapshot.
     #[must_use]
-    pub fn of(snapshot: &Snapshot) -> Self {
+    pub fn from_snapshot(snapshot: &Snapshot) -> Self {
         let (grains, contacts, walls) = (&snapshot.grains, snapshot.told_contacts(), &snapshot.walls);
         let unknown = Vector3::repeat(f64::NAN);
         let on_wall = |wall: &WallState| wall.force.unwrap_or(unknown);

@@ -73,7 +73,7 @@ fn gone_round(done: &Done) -> Result<f64, Missing> {
 fn orbit() -> Claim {
     let exact = number("drum", turned);
     claim("angle that the sphere has gone round in the drum", "rad")
-        .of(Run::new("drum", "dem", STEP.resolution))
+        .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it stays at rest relative to the drum: ΩT (derivation)"), move |done| {
             Ok(Measured::new(gone_round(&done[0])?, exact, exact))
         })
@@ -88,7 +88,7 @@ fn orbit() -> Claim {
 fn spin_in_drum() -> Claim {
     let exact = number("drum", |scene| spin(scene).norm());
     claim("spin of the sphere in the drum", "rad/s")
-        .of(Run::new("drum", "dem", STEP.resolution))
+        .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it turns with the drum: Ω (derivation)"), move |done| {
             Ok(Measured::new(done[0].last("grain.omega_z")?, exact, exact))
         })
@@ -119,7 +119,7 @@ fn tray_off(scene: &Scene) -> f64 {
 
 fn tray() -> Claim {
     claim("way of the disc down the tray", "m")
-        .of(Run::new("tray", "dem", STEP.resolution))
+        .run(Run::new("tray", "dem", STEP.resolution))
         .equals(Source::Derived("m g sin φ (1/k_t + R²/k_r) (derivation)"), |done| {
             let scene = &done[0].scene;
             let (angle, grain) = (turned(scene), &scene.grains[0]);
@@ -153,7 +153,7 @@ fn clamped() -> Claim {
         second_order(1.0, spin(scene).norm(), frequency(scene), [time, step])
     });
     claim("place of the clamped sphere after a turn, off", "m")
-        .of(Run::new("clamped", "dem", STEP.resolution))
+        .run(Run::new("clamped", "dem", STEP.resolution))
         .holds("r̈ = −ω²(r − r₀(t)) (derivation)", |done| {
             let scene = &done[0].scene;
             let start = across(scene.grains[0].position);

@@ -77,14 +77,14 @@ fn claims() -> Vec<Claim> {
         let run = if cells > 8.0 { run.slow() } else { run };
         claims.push(
             claim(format!("energy after over before, {cells} cells a radius"), "1")
-                .of(run.clone())
+                .run(run.clone())
                 .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
                 .within(required(5e-3, "damping by the grid, and half a step between velocities and springs"))
                 .refuses(energetic()),
         );
         claims.push(
             claim(format!("restitution, {cells} cells a radius"), "1")
-                .of(run)
+                .run(run)
                 .equals_cited(RESTITUTION, 1.0, |done| restitution(&done[0]))
                 .within(required(allowed, "discretisation, and what the prototype is certain of"))
                 .refuses(energetic()),
@@ -93,7 +93,7 @@ fn claims() -> Vec<Claim> {
     for variant in ["head-on", "inclined", "oblique"] {
         claims.push(
             claim("momentum in the end", "kg m/s")
-                .of(run(variant, "mpm"))
+                .run(run(variant, "mpm"))
                 .holds("equal and opposite impulses", |done| momentum(&done[0]))
                 .within(computed(
                     1e-14,
@@ -111,7 +111,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.push(
         claim("spurious spin ΩR/v₀, frictionless, 30° to the grid", "1")
-            .of(run("inclined", "mpm"))
+            .run(run("inclined", "mpm"))
             .holds("no torque without friction", |done| Ok(Measured::new(spin(&done[0])?, 0.0, 1.0)))
             .within(estimated(5e-3, "frictionless surfaces of tracers are not quite smooth"))
             .refuses(Control::solver("nodal contact on approach (2000)", "mpm:2000")),
@@ -121,7 +121,7 @@ fn claims() -> Vec<Claim> {
     claims.extend(touching());
     claims.push(
         claim("energy after over before, manufactured by the 2000 criterion", "1")
-            .of(run("head-on", "mpm:2000").known(
+            .run(run("head-on", "mpm:2000").known(
                 "lower than the lowest of six results of the prototype: it depends on the position of the discs on the grid, \
                  which is not reported",
             )
@@ -132,9 +132,11 @@ fn claims() -> Vec<Claim> {
     );
     claims.push(
         claim("energy after over before", "1")
-            .of(run("head-on", "mpm:2000")
-                .known("contact ends on separation, for any traction: each release adds energy")
-                .up_to(0.2))
+            .run(
+                run("head-on", "mpm:2000")
+                    .known("contact ends on separation, for any traction: each release adds energy")
+                    .up_to(0.2),
+            )
             .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
             .within(required(5e-3, "what springs at the surface reach"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
@@ -154,7 +156,7 @@ fn momentum(done: &Done) -> Result<Measured, Missing> {
 fn three() -> Vec<Claim> {
     let momentum_claim = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")
-            .of(run)
+            .run(run)
             .holds("equal and opposite impulses", |done| {
                 let at_start = |axis: &str| Ok(done[0].column(&format!("all.momentum_{axis}"))?[0]);
                 let gained = momentum(&done[0])?;
@@ -179,7 +181,7 @@ fn three() -> Vec<Claim> {
 fn oblique() -> Vec<Claim> {
     let spin_claim = |run: Run, quantity: &str, because, control| {
         claim(quantity, "1")
-            .of(run)
+            .run(run)
             .equals_cited(OBLIQUE_SPIN, 1.0, |done| Ok(spin(&done[0])?.abs()))
             .within(required(0.01, because))
             .refuses(control)
@@ -215,7 +217,7 @@ fn touching() -> Vec<Claim> {
     const CLOSING: f64 = SQRT_2 * 0.2;
     vec![
         claim("gap at first contact", "m")
-            .of(run("sulsky", "mpm"))
+            .run(run("sulsky", "mpm"))
             .equals(SURFACES_MEET, |done| {
                 let cell = done[0].scene.grains[0].radius / 8.0;
                 Ok(Measured::new(first_gap(&done[0])?, 0.0, cell))
@@ -231,7 +233,7 @@ fn touching() -> Vec<Claim> {
                 });
             })),
         claim("time of first contact", "s")
-            .of(run("sulsky", "mpm"))
+            .run(run("sulsky", "mpm"))
             .equals(SURFACES_MEET, |done| {
                 let force = done[0].column("contact.normal_force")?;
                 let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| Missing("contact".to_owned()))?;

@@ -35,7 +35,7 @@ struct Impact {
 }
 
 impl Impact {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let pair = |read: fn(&grainbench_scene::scene::Grain) -> f64| [read(&scene.grains[0]), read(&scene.grains[1])];
         let (masses, radii) = (pair(|grain| grain.mass), pair(|grain| grain.radius));
         let before = [scene.grains[0].velocity.x, scene.grains[0].velocity.y];
@@ -123,15 +123,15 @@ fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
     let spins = quantity.column.ends_with("omega");
     let column = if spins && !flat { format!("{}_z", quantity.column) } else { quantity.column.to_owned() };
     let allowed = CASE.variant(variant).map_or(f64::NAN, |scene| {
-        let impact = Impact::of(&scene);
+        let impact = Impact::from_scene(&scene);
         impact.off * ((quantity.given)(&impact) / (quantity.exact)(&impact)).abs()
     });
     let along = quantity.column.ends_with("vx");
     let heavier = Control::scene("the large grain a hundredth heavier", |scene| scene.grains[1].mass *= 1.01);
     claim(quantity.name, quantity.unit)
-        .of(Run::new(variant, "dem", LEVELS[1].resolution))
+        .run(Run::new(variant, "dem", LEVELS[1].resolution))
         .equals(Source::Derived("momentum, restitution 1 and Coulomb's limit throughout (derivation)"), move |done| {
-            let exact = (quantity.exact)(&Impact::of(&done[0].scene));
+            let exact = (quantity.exact)(&Impact::from_scene(&done[0].scene));
             Ok(Measured::new(done[0].last(&column)?, exact, exact))
         })
         .within(computed(

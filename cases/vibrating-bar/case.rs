@@ -114,7 +114,7 @@ struct Damped {
 }
 
 impl Damped {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let (frequency, amplitude) = mode(scene);
         let bar = &scene.bodies[0];
         let wave_number = bar.wave.map_or(f64::NAN, |wave| wave.wave_number);
@@ -131,7 +131,7 @@ impl Damped {
 
 /// Returns the largest error of the mode over `time` (s), in units of the initial amplitude (derivation).
 fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
-    let ((squared, strain), Damped { frequency, decay, .. }) = (small(resolution), Damped::of(scene));
+    let ((squared, strain), Damped { frequency, decay, .. }) = (small(resolution), Damped::from_scene(scene));
     let step = resolution.steps_on_grid(scene).map_or(f64::NAN, |(step, _)| step);
     let (phase, lost, lag) = (frequency * time, decay * time, decay * step);
     25.0 / 96.0 * squared * (phase + 2.0 * lost) + (0.5 * phase + lost) * lag + 0.355 * strain
@@ -162,12 +162,12 @@ fn of_others() -> Vec<Claim> {
     let off = CASE.variant(VISCOUS).map_or(f64::NAN, |scene| damped_off(at.resolution, &scene, time));
     let mut claims = vec![
         claim(format!("mean velocity of a viscous bar over two periods, worst, {} cells", at.name), "m/s")
-            .of(Run::new(VISCOUS, "mpm", at.resolution))
+            .run(Run::new(VISCOUS, "mpm", at.resolution))
             .series(|done| samples(done, "bar.vx"))
             .follows(
                 Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
-                |done, time| Damped::of(&done.scene).velocity(time),
-                |done| Damped::of(&done.scene).amplitude,
+                |done, time| Damped::from_scene(&done.scene).velocity(time),
+                |done| Damped::from_scene(&done.scene).amplitude,
             )
             .within(computed(
                 off,
@@ -187,7 +187,7 @@ fn of_others() -> Vec<Claim> {
         let Resolution::Grid { cells, .. } = level.resolution else { continue };
         claims.push(
             claim(format!("mean velocity of a stretched bar let go, a period, worst, {} cells", level.name), "m/s")
-                .of(Run::new(STRETCHED, "mpm", level.resolution))
+                .run(Run::new(STRETCHED, "mpm", level.resolution))
                 .series(|done| samples(done, "bar.vx"))
                 .follows(
                     Source::Derived("d'Alembert's waves of a stressed bar, fixed-free (derivation)"),
@@ -218,7 +218,7 @@ fn claims() -> Vec<Claim> {
         .map(|&level| {
             let (squared, strain) = small(level.resolution);
             claim(format!("period, {} cells", level.name), "s")
-                .of(run(level))
+                .run(run(level))
                 .equals(DISPERSED, move |done| {
                     let exact = 2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared));
                     Ok(Measured::new(period(&done[0])?, exact, exact))
@@ -230,7 +230,7 @@ fn claims() -> Vec<Claim> {
     let (squared, strain) = small(LEVELS[1].resolution);
     claims.push(
         claim(format!("period between smooth sides, {} cells", LEVELS[1].name), "s")
-            .of(Run::new(HELD, "mpm", LEVELS[1].resolution))
+            .run(Run::new(HELD, "mpm", LEVELS[1].resolution))
             .equals(
                 Source::Derived("u_tt = ((K + 4G/3)/ρ) u_xx, fixed-free, slowed by the grid's dispersion (derivation)"),
                 move |done| {
@@ -247,7 +247,7 @@ fn claims() -> Vec<Claim> {
         let (squared, strain) = small(level.resolution);
         claims.push(
             claim(format!("mean velocity over two periods, worst, {} cells", level.name), "m/s")
-                .of(run(*level))
+                .run(run(*level))
                 .series(|done| samples(done, "bar.vx"))
                 .follows(
                     SOURCE,
@@ -270,7 +270,7 @@ fn claims() -> Vec<Claim> {
     let (squared, strain) = small(LEVELS[1].resolution);
     claims.push(
         claim("total energy over two periods, worst", "J")
-            .of(run(LEVELS[1]))
+            .run(run(LEVELS[1]))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
                 Ok(Measured::drift(&done[0].series().time, energy, energy[0]))

@@ -54,7 +54,8 @@ pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     let speed = PRESS * size(&scene)[0];
     drive(&mut scene, &[Course { sides: -speed, ends: speed, from: 0.0, to: f64::MAX }]);
     let pressed = watch(&scene, 1000.0, 0.5, |snapshot| {
-        Stage::of(snapshot).overlap < PRESSED || snapshot.told_contacts().len() * 4 < snapshot.grains.len() * 7
+        Stage::from_snapshot(snapshot).overlap < PRESSED
+            || snapshot.told_contacts().len() * 4 < snapshot.grains.len() * 7
     })?;
     go_on_from(&mut scene, &pressed);
     open(scene)
@@ -67,7 +68,7 @@ fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
         stop(&mut scene);
         let rest = run(&scene, 60.0)?;
         go_on_from(&mut scene, &rest);
-        let stage = Stage::of(&rest);
+        let stage = Stage::from_snapshot(&rest);
         if !pressing(&rest) || stage.overlap < TOUCHING {
             stop(&mut scene);
             return Ok(scene);

@@ -105,7 +105,7 @@ impl<'s> Search<'s> {
     fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(Imposed, Stage)>, Box<dyn Error>> {
         let at = |strain: f64| -> Result<(Imposed, Stage), Box<dyn Error>> {
             let imposed = Imposed { strain, ratio, further: 0.0 };
-            Ok((imposed, Stage::of(&(self.manner.run)(&self.driven(&imposed), self.times.a)?)))
+            Ok((imposed, Stage::from_snapshot(&(self.manner.run)(&self.driven(&imposed), self.times.a)?)))
         };
         let off = |(_, stage): &(Imposed, Stage)| stage.overlap - OVERLAP;
         let (mut low, mut of_low, mut high) = (0.0, -OVERLAP, at(guess)?);
@@ -175,8 +175,11 @@ impl<'s> Search<'s> {
 
     /// Finds the strain from stage A at which F_V has the required growth: first while the walls move, then at rest.
     fn to_b(&self, (a, of_a): (Imposed, Stage)) -> Result<Imposed, Box<dyn Error>> {
-        let alone =
-            if self.manner.relaxes { Stage::of(&(self.manner.run)(&self.driven(&a), self.times.b)?) } else { of_a };
+        let alone = if self.manner.relaxes {
+            Stage::from_snapshot(&(self.manner.run)(&self.driven(&a), self.times.b)?)
+        } else {
+            of_a
+        };
         let grown = |stage: &Stage| stage.vertical / alone.vertical - GROWTH;
         let guess = match self.manner.further {
             Some(guess) => guess,
@@ -184,7 +187,7 @@ impl<'s> Search<'s> {
         };
         let at = |further: f64| -> Result<(f64, f64), Box<dyn Error>> {
             let scene = self.driven(&Imposed { further, ..a });
-            Ok((further, grown(&Stage::of(&(self.manner.run)(&scene, self.times.b)?))))
+            Ok((further, grown(&Stage::from_snapshot(&(self.manner.run)(&scene, self.times.b)?))))
         };
         let (mut low, mut high) = ((0.0, 1.0 - GROWTH), at(guess)?);
         for _ in 0..40 {
@@ -218,7 +221,7 @@ impl<'s> Search<'s> {
             let every = 2e-3 * (times.stop_again - times.a);
             watch(&scene, times.stop_again, every, |snapshot| {
                 let part = (snapshot.time - times.a) / (times.stop_again - times.a);
-                if part > 0.0 && grown(&Stage::of(snapshot)) > 0.0 {
+                if part > 0.0 && grown(&Stage::from_snapshot(snapshot)) > 0.0 {
                     found = Some(part * most);
                 }
                 found.is_none()

@@ -92,7 +92,7 @@ pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn 
     scene.snapshots = 1;
     let mut record = Mpm::BEST.run(&scene, &GRID, &mut ())?;
     let last = record.snapshots.pop().ok_or("a run without a last snapshot")?;
-    eprintln!("after {time} s {:?}", Stage::of(&last));
+    eprintln!("after {time} s {:?}", Stage::from_snapshot(&last));
     Ok(last)
 }
 

@@ -95,7 +95,7 @@ impl Course {
         let elements = elements_moving(&snapshot, motion, self.stress.unwrap_or_default(), self.space, &self.grid);
         let inside: usize = elements.iter().map(|element| element.motion.members).sum();
         let all = if snapshot.points.is_empty() { snapshot.grains.len() } else { snapshot.points.len() };
-        let masked = self.masks.of(&elements, &self.grid);
+        let masked = self.masks.apply(&elements, &self.grid);
         let outside = all.saturating_sub(inside);
         if let Some(trails) = &mut self.trails {
             trails.go_on(&self.frames, &snapshot, &self.grid, self.space.count());

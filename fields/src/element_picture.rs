@@ -56,7 +56,7 @@ impl Units {
     pub const SI: Self = Self { length: "m", time: "s" };
 
     /// Converts the SI unit of a kinematic column to these units.
-    fn of(self, si: &str) -> String {
+    fn unit(self, si: &str) -> String {
         match si {
             "m/s" => format!("{}/{}", self.length, self.time),
             "1/s" => format!("1/{}", self.time),
@@ -126,7 +126,7 @@ impl Sheet {
                     level(frame.get(cell).copied().unwrap_or(f64::NAN), range)
                 })
             };
-            let own = Some((range, self.units.of(column.unit)));
+            let own = Some((range, self.units.unit(column.unit)));
             Some(Panel { title: column.words.to_owned(), frames: frames.iter().map(raster_of).collect(), own })
         };
         let panels: Vec<Panel> = self.shown.iter().filter_map(panel).collect();
@@ -160,7 +160,7 @@ fn field(
     panels: Vec<Panel>,
     (clock, times): (String, Vec<f64>),
 ) -> Field {
-    let (label, unit, length) = (column.words.to_owned(), units.of(column.unit), units.length.to_owned());
+    let (label, unit, length) = (column.words.to_owned(), units.unit(column.unit), units.length.to_owned());
     Field { label, unit, range, shades: Shades::Amount, pixel, length, panels, clock, times }
 }
 

@@ -80,7 +80,7 @@ impl Orifice {
 impl Masks {
     /// Returns the masks of all cells of a snapshot.
     #[must_use]
-    pub fn of(&self, elements: &[Element], grid: &Grid) -> Vec<Masked> {
+    pub fn apply(&self, elements: &[Element], grid: &Grid) -> Vec<Masked> {
         let (up, high) = self.up;
         let bulk = |cell: usize| elements[cell].packing_fraction >= self.surface;
         let above = |at: [usize; 3]| {
@@ -146,17 +146,17 @@ mod tests {
             orifice: Some(orifice),
             flowing: None,
         };
-        let masked = masks.of(&elements, &grid);
+        let masked = masks.apply(&elements, &grid);
         let words = |x: usize, z: usize| masked[grid.place([x, 0, z])].words();
         assert_eq!(words(1, 2), "");
         assert_eq!([words(2, 2), words(1, 3), words(0, 2)], ["few", "surface", "wall"]);
         assert_eq!([words(2, 0), words(2, 1), words(2, 4)], ["wall+orifice", "orifice", "surface"]);
         // A cell without shear is at rest, and so is a cell without a known shear rate.
-        let still = Masks { flowing: Some(0.1), ..masks.clone() }.of(&elements, &grid);
+        let still = Masks { flowing: Some(0.1), ..masks.clone() }.apply(&elements, &grid);
         assert_eq!(still[grid.place([1, 0, 2])].words(), "still");
         // With the opposite vertical direction the surface is at the other end.
         let masks = Masks { up: (2, false), orifice: None, ..masks };
-        let masked = masks.of(&elements, &grid);
+        let masked = masks.apply(&elements, &grid);
         assert_eq!(masked[grid.place([2, 0, 0])].words(), "");
         assert_eq!(masked[grid.place([2, 0, 4])].words(), "surface+wall");
     }

@@ -43,7 +43,7 @@ impl View {
     /// Returns a view of a snapshot: its domain along periodic axes, otherwise the bounding box of grains and material
     /// points without a few distant outliers.
     #[must_use]
-    pub fn of(snapshot: &Snapshot, longest: u32) -> Self {
+    pub fn from_snapshot(snapshot: &Snapshot, longest: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
         let points = snapshot.points.iter().map(|point| (point.position, 0.5 * point.volume.sqrt()));
@@ -222,14 +222,14 @@ mod tests {
         let grain = GrainState { radius: 0.05, ..many.grains[0].clone() };
         let place = |at: u32| Vector3::new(0.1 * f64::from(at % 20), 0.1 * f64::from(at / 20), 0.0);
         many.grains = (0..200).map(|at| GrainState { position: place(at), ..grain.clone() }).collect();
-        let all = View::of(&many, 200);
+        let all = View::from_snapshot(&many, 200);
         assert_eq!(all.outside(&many), 0);
         many.grains[7].position.x = 100.0;
-        let view = View::of(&many, 200);
+        let view = View::from_snapshot(&many, 200);
         assert!(view.high()[0] < 3.5 && view.outside(&many) == 1, "{view:?}");
         // A grain at a moderate distance is still visible.
         many.grains[7].position.x = 2.5;
-        assert_eq!(View::of(&many, 200).outside(&many), 0);
+        assert_eq!(View::from_snapshot(&many, 200).outside(&many), 0);
     }
 
     fn snapshot(points: Vec<PointState>) -> Snapshot {

@@ -75,7 +75,7 @@ pub fn film(
 #[must_use]
 pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
     let quantity = Quantity::StressDifference;
-    let high = |snapshot| Painting::new(snapshot, quantity, View::of(snapshot, 200)).quantile(0.98);
+    let high = |snapshot| Painting::new(snapshot, quantity, View::from_snapshot(snapshot, 200)).quantile(0.98);
     snapshots.into_iter().map(high).fold(0.0, f64::max) / (fringes * std::f64::consts::TAU)
 }
 
@@ -101,7 +101,7 @@ fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
 fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
     let mut corners: Option<([f64; 2], [f64; 2])> = None;
     for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
-        let view = View::of(snapshot, longest);
+        let view = View::from_snapshot(snapshot, longest);
         let (low, high) = corners.unwrap_or((view.low, view.high()));
         let both = |extreme: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [extreme(a[0], b[0]), extreme(a[1], b[1])];
         corners = Some((both(f64::min, low, view.low), both(f64::max, high, view.high())));

@@ -124,13 +124,13 @@ pub struct Tolerated {
 
 impl Quantity {
     /// Adds a run that the claim reads.
-    pub fn of(mut self, run: Run) -> Self {
+    pub fn run(mut self, run: Run) -> Self {
         self.runs.push(run);
         self
     }
 
     /// Adds several runs that the claim reads.
-    pub fn of_all(mut self, runs: impl IntoIterator<Item = Run>) -> Self {
+    pub fn runs(mut self, runs: impl IntoIterator<Item = Run>) -> Self {
         self.runs.extend(runs);
         self
     }

@@ -233,7 +233,7 @@ impl Runner {
         let under = || self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
         let row = unless_panicked(under).unwrap_or_else(|reason| self.crashed(claim, reason));
         let (standing, outcome) = (claim.standing(), row.outcome);
-        let control = Control::of(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
+        let control = Control::new(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
         match standing {
             Standing::Known(_) => {
                 Control { turned_red: matches!(outcome, Outcome::Pass | Outcome::Outdated), ..control }
@@ -414,7 +414,7 @@ impl Runner {
     /// Returns the reason why there is no estimate.
     pub fn estimate(&self, claim: &Claim) -> Result<Estimate, String> {
         let [run] = &claim.runs[..] else { return Err("it reads more than one run".to_owned()) };
-        let formal = if Method::of(run.solver) == Some(Method::Rigid) { 1.0 } else { 2.0 };
+        let formal = if Method::from_name(run.solver) == Some(Method::Rigid) { 1.0 } else { 2.0 };
         let value = |factor: f64| -> Result<(String, f64), String> {
             let resolution = run.resolution.coarser(factor).ok_or("there is no coarser level")?;
             let done = self.run(&run.at(resolution)).map_err(|error| error.to_string())?;
@@ -458,7 +458,7 @@ impl Runner {
     /// if it is smaller. Returns none if an estimate is required and not stored.
     #[must_use]
     pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, tolerance::Made)> {
-        let stated = (claim.tolerance.of(done), claim.tolerance.made_without_estimate());
+        let stated = (claim.tolerance.allowed(done), claim.tolerance.made_without_estimate());
         if claim.tolerance.made != tolerance::Made::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
@@ -471,7 +471,7 @@ impl Runner {
     #[must_use]
     pub fn crashed(&self, claim: &Claim, reason: String) -> Verdict {
         let tolerance = &claim.tolerance;
-        self.row(claim, Some((tolerance.of(&[]), tolerance.made))).left(Outcome::Broken, reason)
+        self.row(claim, Some((tolerance.allowed(&[]), tolerance.made))).left(Outcome::Broken, reason)
     }
 
     /// Returns the result of a claim that is not judged yet, with its tolerance and the origin of the tolerance.

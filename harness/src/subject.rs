@@ -73,7 +73,7 @@ pub fn from_claims(case: &'static Case) -> Vec<Subject> {
 /// Adds the quantity of a claim to the target quantities.
 fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
     let [run] = claim.runs.as_slice() else { return };
-    let Some(method) = Method::of(run.solver) else { return };
+    let Some(method) = Method::from_name(run.solver) else { return };
     // Readings of many snapshots need long runs.
     if claim.evidence() != Evidence::Analytic
         || run.standing == Standing::Refused

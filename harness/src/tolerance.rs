@@ -64,7 +64,7 @@ impl Tolerance {
 
     /// Returns the largest |error| that passes for these runs. Without runs, it is the value for one step.
     #[must_use]
-    pub fn of(&self, done: &[Done]) -> f64 {
+    pub fn allowed(&self, done: &[Done]) -> f64 {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 

@@ -268,7 +268,7 @@ pub struct Control {
 impl Control {
     /// Returns the control from a result under wrong physics, which must fail in the way `how`.
     #[must_use]
-    pub fn of(row: Verdict, wrong_physics: &str, how: Red, seconds: f64) -> Self {
+    pub fn new(row: Verdict, wrong_physics: &str, how: Red, seconds: f64) -> Self {
         let turned_red = row.red() == Some(how);
         Self {
             turned_red,

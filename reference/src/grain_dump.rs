@@ -158,11 +158,11 @@ impl GrainDump {
 
     fn columns(&self) -> Result<Columns, ReadError> {
         let Self { rows, beside, file, .. } = self;
-        let column = |name: &str| rows.column(beside.names.of(name));
+        let column = |name: &str| rows.column(beside.names.in_file(name));
         let missing = |what: &str| Self::missing(file, rows, what);
         let coordinate = |axis: usize| {
             let name = ["x", "y", "z"][axis];
-            let found = match beside.names.of(name) {
+            let found = match beside.names.in_file(name) {
                 theirs if theirs == name => rows.coordinate(axis),
                 theirs => rows.coordinate_named(theirs, axis),
             };
@@ -201,7 +201,7 @@ impl GrainDump {
         let shape = if self.beside.plane { GrainShape::Disc } else { GrainShape::Sphere };
         let density = columns.density.map(|at| numbers[at]).or(self.beside.density);
         let mass = columns.mass.map(|at| numbers[at]).or_else(|| density.map(|density| shape.mass(radius, density)));
-        let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.of(numbers)));
+        let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.value(numbers)));
         if self.beside.plane {
             position.z = 0.0;
         }

@@ -28,7 +28,7 @@ pub struct Names(pub Vec<(String, String)>);
 impl Names {
     /// Returns the name of a column in the file.
     #[must_use]
-    pub fn of<'n>(&'n self, name: &'n str) -> &'n str {
+    pub fn in_file<'n>(&'n self, name: &'n str) -> &'n str {
         self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
     }
 }
@@ -202,7 +202,7 @@ impl<'s> Observer<'s> {
                     let open = |at: &Coordinate| -> f64 {
                         at.parts().map(|(column, scale)| value(row, Some(column), scale)).sum()
                     };
-                    coordinate.map_or(0.0, |at| at.of(row) + open(&at))
+                    coordinate.map_or(0.0, |at| at.value(row) + open(&at))
                 });
                 GrainState {
                     position: Vector3::from(position),
@@ -256,7 +256,7 @@ impl<'s> Observer<'s> {
             let found = crate::read::read_error::quoted(&have.join(" "));
             ReadError::at(file, snapshot.first_line.saturating_sub(1), format!("a column {what}"), found)
         };
-        let column = |name: &str| snapshot.column(names.of(name));
+        let column = |name: &str| snapshot.column(names.in_file(name));
         let id = column("id");
         if id.is_none() && self.scene.grains.len() > 1 {
             return Err(missing("`id`, for there are several grains"));
@@ -264,12 +264,12 @@ impl<'s> Observer<'s> {
         let mut position = [None; 3];
         for axis in 0..3 {
             let name = ["x", "y", "z"][axis];
-            position[axis] = match names.of(name) {
+            position[axis] = match names.in_file(name) {
                 theirs if theirs == name => snapshot.coordinate(axis),
                 theirs => snapshot.coordinate_named(theirs, axis),
             };
             if position[axis].is_none() && axis < self.scene.dimension.count() {
-                let theirs = names.of(name);
+                let theirs = names.in_file(name);
                 return Err(missing(&format!("`{theirs}`, `{name}u`, `{name}s` or `{name}su`")));
             }
         }
@@ -310,10 +310,10 @@ impl<'s> Observer<'s> {
                 Err(ReadError::at(file, line, expected, format!("{found:?}")))
             };
             if let Some(at) = columns.position[2] {
-                let height = *self.heights.entry(place).or_insert(at.of(numbers));
+                let height = *self.heights.entry(place).or_insert(at.value(numbers));
                 let printed: f64 = at.parts().map(|(column, scale)| open(column, numbers[column]) * scale.abs()).sum();
-                if (at.of(numbers) - height).abs() > 2.0 * printed + COMPUTED * radius {
-                    return wrong(at.column, height, at.of(numbers));
+                if (at.value(numbers) - height).abs() > 2.0 * printed + COMPUTED * radius {
+                    return wrong(at.column, height, at.value(numbers));
                 }
             }
             let speed = columns.velocity.iter().flatten().map(|&at| numbers[at].abs()).fold(radius / period, f64::max);

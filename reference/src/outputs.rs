@@ -433,7 +433,7 @@ impl Outputs {
 
     /// Returns the forces between the pairs that the scene requests, from dumps of contacts.
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
-        let mut pairs = PairForces::of(scene, &self.ids);
+        let mut pairs = PairForces::new(scene, &self.ids);
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
@@ -454,7 +454,7 @@ impl Outputs {
         let name = shown(&self.sources.files[0]);
         let names = &self.sources.names;
         let time = time_column(table, names);
-        let step = table.column(names.of("step"));
+        let step = table.column(names.in_file("step"));
         let first = self.origin.step;
         let times: Vec<f64> = match (time, step, &self.clock) {
             (Some(time), _, _) => {
@@ -487,8 +487,8 @@ impl Outputs {
             let short = full.rsplit_once('.').map_or(full.as_str(), |(_, short)| short);
             let alone = columns.iter().filter(|other| other.name.ends_with(&format!(".{short}"))).count() == 1;
             let in_si = format!("{full} ({unit})");
-            let found = table.column(names.of(full)).or_else(|| table.column(&in_si));
-            let found = found.or_else(|| table.column(names.of(short)).filter(|_| alone));
+            let found = table.column(names.in_file(full)).or_else(|| table.column(&in_si));
+            let found = found.or_else(|| table.column(names.in_file(short)).filter(|_| alone));
             let Some(at) = found else { continue };
             let digits = table.columns[at].digits;
             let values: Vec<f64> = table.values(at).collect();
@@ -508,7 +508,7 @@ impl Outputs {
 
 /// Returns the column of a table with the times.
 fn time_column(table: &Table, names: &Names) -> Option<usize> {
-    ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.of(name)))
+    ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.in_file(name)))
 }
 
 /// Returns the time step (s) of a table with steps and times.
@@ -517,13 +517,14 @@ fn table_step(table: &Table, names: &Names) -> Option<f64> {
         let mut values = table.values(column);
         values.next().map(|first| values.last().unwrap_or(first) - first)
     };
-    let length = ends(time_column(table, names)?)? / ends(table.column(names.of("step"))?)?;
+    let length = ends(time_column(table, names)?)? / ends(table.column(names.in_file("step"))?)?;
     (length.is_finite() && length > 0.0).then_some(length)
 }
 
 /// Returns the first and the last step of a table.
 fn steps_of(table: &Table, names: &Names) -> [u64; 2] {
-    let step = table.column(names.of("step")).map(|at| table.values(at).map(|step| step as u64).collect::<Vec<_>>());
+    let step =
+        table.column(names.in_file("step")).map(|at| table.values(at).map(|step| step as u64).collect::<Vec<_>>());
     step.and_then(|steps| Some([*steps.first()?, *steps.last()?])).unwrap_or_default()
 }
 
@@ -539,7 +540,7 @@ fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
 
 /// Returns the ids of a snapshot, sorted.
 fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
-    let mut ids: Vec<u64> = match snapshot.column(names.of("id")) {
+    let mut ids: Vec<u64> = match snapshot.column(names.in_file("id")) {
         Some(column) => snapshot.values(column).map(|id| id as u64).collect(),
         None => Vec::new(),
     };

@@ -43,7 +43,7 @@ pub(crate) struct PairColumns {
 
 impl PairColumns {
     pub(crate) fn find(file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Self, ReadError> {
-        let column = |name: &str| snapshot.column(names.of(name));
+        let column = |name: &str| snapshot.column(names.in_file(name));
         let missing = |what: &str| {
             let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
             let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
@@ -62,7 +62,7 @@ impl PairColumns {
 
 impl PairForces {
     /// Returns a collection for a scene whose grains have these ids in the dump, in the order of the scene.
-    pub(crate) fn of(scene: &Scene, ids: &[u64]) -> Self {
+    pub(crate) fn new(scene: &Scene, ids: &[u64]) -> Self {
         let asked = scene.probes.iter().filter_map(|probe| match probe.target {
             ProbeTarget::Pair(a, b) => {
                 let (a, b) = (*ids.get(a)?, *ids.get(b)?);

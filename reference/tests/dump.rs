@@ -42,7 +42,7 @@ fn reads_atoms_of_lammps() {
     assert_eq!(last.row(4)[x], 150.0);
     assert_eq!(last.columns[x].digits.significant(), 17);
     let coordinate = last.coordinate(1).unwrap();
-    assert_eq!((coordinate.column, coordinate.of(last.row(8)) > 249.0), (2, true));
+    assert_eq!((coordinate.column, coordinate.value(last.row(8)) > 249.0), (2, true));
     assert_eq!(last.coordinate(2), None);
 }
 
@@ -63,7 +63,7 @@ fn scaled_coordinates_count_from_the_side_of_the_box() {
     let snapshots = stored("lammps-scaled-six-digits.dump");
     let snapshot = &snapshots[3];
     let y = snapshot.coordinate(1).unwrap();
-    assert!((y.of(snapshot.row(0)) - 0.499_504).abs() < 1e-9, "{}", y.of(snapshot.row(0)));
+    assert!((y.value(snapshot.row(0)) - 0.499_504).abs() < 1e-9, "{}", y.value(snapshot.row(0)));
     assert_eq!((y.scale(), snapshot.columns[y.column].name.as_str()), (12.0, "ys"));
     let column = &snapshot.columns[y.column];
     let uncertainty = y.scale() * column.digits.uncertainty(snapshot.row(0)[y.column], &snapshot.digits());
@@ -77,7 +77,7 @@ fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-0.01 0.13 0.03\n0 0.08 -0.01\n\
                 0 0.06 0.0\nITEM: ATOMS id xs ys zs xu\n1 0.125 0.25 0.5 0.02\n";
     let snapshot = &all(text.as_bytes()).unwrap()[0];
-    let coordinate = |name: &str, axis| snapshot.coordinate_named(name, axis).unwrap().of(snapshot.row(0));
+    let coordinate = |name: &str, axis| snapshot.coordinate_named(name, axis).unwrap().value(snapshot.row(0));
     assert!((coordinate("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", coordinate("xs", 0));
     assert!((coordinate("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (coordinate("zs", 2) - 0.03).abs() < 1e-15);
     assert_eq!(coordinate("xu", 0), 0.02);

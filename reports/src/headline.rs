@@ -53,7 +53,7 @@ pub struct Headline {
 impl Headline {
     /// Counts results and controls.
     #[must_use]
-    pub fn of<'a>(
+    pub fn from_results<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
         controls: impl IntoIterator<Item = &'a Control>,
     ) -> Self {
@@ -74,7 +74,7 @@ impl Headline {
     /// Counts the results and controls of a report.
     #[must_use]
     pub fn of_report(report: &Report) -> Self {
-        Self::of(
+        Self::from_results(
             report.sections.iter().flat_map(|section| &section.verdicts),
             report.sections.iter().flat_map(|section| &section.controls),
         )
@@ -83,7 +83,7 @@ impl Headline {
     /// Counts the results and controls of a case.
     #[must_use]
     pub fn of_section(section: &Section) -> Self {
-        Self::of(&section.verdicts, &section.controls)
+        Self::from_results(&section.verdicts, &section.controls)
     }
 
     /// Returns the number of results with an outcome.

@@ -75,7 +75,7 @@ pub struct Count {
 impl Judged {
     /// Collects the results of a report on this solver alone.
     #[must_use]
-    pub fn of(program: String, version: String, adapter: String, report: &Report) -> Self {
+    pub fn from_report(program: String, version: String, adapter: String, report: &Report) -> Self {
         let controls = || report.sections.iter().flat_map(|section| &section.controls);
         let row = |row: &Verdict| {
             let is_of = |control: &&Control| {
@@ -104,7 +104,7 @@ impl Judged {
     /// outcomes and controls, and lists new results and errors that changed by more than the tolerance.
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
-        let now = Self::of(self.program.clone(), String::new(), String::new(), report);
+        let now = Self::from_report(self.program.clone(), String::new(), String::new(), report);
         let words = |row: &Row| {
             let control = match row.control_red {
                 Some(true) => ", its control red",
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
         let report = sample::report();
-        let judged = Judged::of("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
+        let judged = Judged::from_report("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
         assert_eq!(Judged::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
@@ -212,7 +212,7 @@ mod tests {
         // A solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
-        let kept = Judged::of("other".to_owned(), String::new(), String::new(), &report);
+        let kept = Judged::from_report("other".to_owned(), String::new(), String::new(), &report);
         assert_eq!(kept.otherwise(&report), Vec::<String>::new());
         report.sections[0].verdicts[0].outcome = Outcome::Stale;
         let [line] = &kept.otherwise(&report)[..] else { panic!("one row ends otherwise") };

@@ -131,7 +131,7 @@ impl Hold {
 
 impl Stamp {
     /// Returns the provenance of a study. `today` returns the hash of the present sources of a solver.
-    fn of(study: &Study, solvers: &[&str], today: &dyn Fn(&str) -> Option<String>) -> Self {
+    fn new(study: &Study, solvers: &[&str], today: &dyn Fn(&str) -> Option<String>) -> Self {
         let is_changed = |solver: &&&str| {
             let then = study.sources.get(**solver);
             then.is_none() || then != today(solver).as_ref()
@@ -174,7 +174,7 @@ fn cheapest(diagram: &Diagram, lines: &[&str], target: f64) -> Option<f64> {
 impl Costs {
     /// Summarises a stored study.
     #[must_use]
-    pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let names = cost::lines(&study.diagrams);
         let is_told = |name: &&&str| study.diagrams.iter().any(|diagram| cost::of_line(diagram, name).next().is_some());
         let names: Vec<&str> = names.iter().filter(is_told).copied().collect();
@@ -187,7 +187,7 @@ impl Costs {
         let count = |diagram: &&Diagram| names.iter().filter(|name| time(diagram, name, TARGETS[AT]).is_some()).count();
         // The maximum of the reversed order is the first one.
         let example = study.diagrams.iter().rev().max_by_key(count).cloned();
-        let stamp = Stamp::of(study, &names, today);
+        let stamp = Stamp::new(study, &names, today);
         Self { stamp, quantities: study.diagrams.len(), lines: lines.collect(), example }
     }
 }
@@ -235,7 +235,7 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
 impl Stability {
     /// Summarises a stored study.
     #[must_use]
-    pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut names: Vec<&str> = Vec::new();
         let solvers_with_results =
             study.limits.iter().map(|row| &row.solver).chain(study.hard.iter().map(|row| &row.solver));
@@ -245,7 +245,7 @@ impl Stability {
             }
         }
         let lines = names.iter().map(|name| hold(study, name)).collect();
-        let stamp = Stamp::of(study, &names, today);
+        let stamp = Stamp::new(study, &names, today);
         Self { stamp, lines, limits: study.limits.clone(), hard: study.hard.clone() }
     }
 }
@@ -253,10 +253,10 @@ impl Stability {
 impl Effects {
     /// Summarises a stored study.
     #[must_use]
-    pub fn of(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
+    pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let names: Vec<&str> = study.sources.keys().map(String::as_str).collect();
         let ledger = study.ledger.iter().filter(|entry| entry.on).cloned().collect();
-        Self { stamp: Stamp::of(study, &names, today), ledger }
+        Self { stamp: Stamp::new(study, &names, today), ledger }
     }
 }
 
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn factors_are_over_the_cheapest_of_the_same_quantity() {
         let study = sample::costs();
-        let costs = Costs::of(&study, &|_| Some("as then".to_owned()));
+        let costs = Costs::from_study(&study, &|_| Some("as then".to_owned()));
         let at = |name: &str| costs.lines.iter().find(|line| line.solver == name).unwrap().factors[AT];
         // dem takes 1 ms and 4 ms, mpm 100 ms and 400 ms; rigid takes 2 ms for the first quantity only.
         let (dem, mpm, rigid) = (at("dem").unwrap(), at("mpm").unwrap(), at("rigid").unwrap());
@@ -309,7 +309,7 @@ mod tests {
     /// The example of the first screen is the quantity that most solvers reach within 1 %: not the last one.
     #[test]
     fn the_example_is_what_most_solvers_reach() {
-        let example = Costs::of(&sample::costs(), &|_| None).example.unwrap();
+        let example = Costs::from_study(&sample::costs(), &|_| None).example.unwrap();
         assert_eq!(example.quantity, "velocity");
     }
 
@@ -317,10 +317,10 @@ mod tests {
     fn what_was_measured_of_other_sources_is_old() {
         let study = sample::costs();
         let then = |solver: &str| (solver != "mpm").then(|| "as then".to_owned());
-        let costs = Costs::of(&study, &then);
+        let costs = Costs::from_study(&study, &then);
         assert!(costs.stamp.is_old("mpm") && !costs.stamp.is_old("dem"));
         // Without a stored hash, the sources are not known to be unchanged.
         let without = Study { sources: BTreeMap::new(), ..study };
-        assert!(Costs::of(&without, &then).stamp.is_old("dem"));
+        assert!(Costs::from_study(&without, &then).stamp.is_old("dem"));
     }
 }

@@ -289,13 +289,13 @@ pub(crate) fn report() -> Report {
         judged: Vec::new(),
         shown: Vec::new(),
         measured: Measurements {
-            cost: Some(Costs::of(&costs(), &|_| None)),
-            stability: Some(Stability::of(&stability(), &|_| None)),
-            effects: Some(Effects::of(&effects(), &|_| None)),
+            cost: Some(Costs::from_study(&costs(), &|_| None)),
+            stability: Some(Stability::from_study(&stability(), &|_| None)),
+            effects: Some(Effects::from_study(&effects(), &|_| None)),
         },
         red_because: Vec::new(),
     };
-    report.judged = vec![Judged::of("other".into(), "other 1.0".into(), "0123".into(), &report)];
+    report.judged = vec![Judged::from_report("other".into(), "other 1.0".into(), "0123".into(), &report)];
     report
 }
 

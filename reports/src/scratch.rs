@@ -70,7 +70,7 @@ pub(crate) struct Lock(std::path::PathBuf);
 
 impl Lock {
     /// Locks a directory. It waits up to 10 s for another process to release the lock.
-    pub(crate) fn of(directory: &Path) -> io::Result<Self> {
+    pub(crate) fn acquire(directory: &Path) -> io::Result<Self> {
         const TRIES: u32 = 200;
         let path = directory.join(LOCK);
         for _ in 0..TRIES {
@@ -168,14 +168,14 @@ mod tests {
     #[test]
     fn a_lock_is_held_by_one_and_outlived_by_none() {
         let folder = tempfile::tempdir().unwrap();
-        let held = Lock::of(folder.path()).unwrap();
+        let held = Lock::acquire(folder.path()).unwrap();
         let (path, directory) = (folder.path().join(LOCK), folder.path().to_owned());
         assert!(path.is_file() && !is_left(&path));
-        let waiting = std::thread::spawn(move || Lock::of(&directory).is_ok());
+        let waiting = std::thread::spawn(move || Lock::acquire(&directory).is_ok());
         std::thread::sleep(Duration::from_millis(120));
         drop(held);
         assert!(waiting.join().unwrap() && !path.exists());
         fs::write(&path, format!("process {} on {}\n", gone(), machine())).unwrap();
-        assert!(Lock::of(folder.path()).is_ok());
+        assert!(Lock::acquire(folder.path()).is_ok());
     }
 }

@@ -42,7 +42,7 @@ struct View {
 
 impl View {
     /// Returns a view that contains all grains, material points and finite walls.
-    fn of(shots: &[Shot<'_>]) -> Option<Self> {
+    fn from_shots(shots: &[Shot<'_>]) -> Option<Self> {
         let toward = EYE.normalize();
         let right = Vector3::z().cross(&toward).normalize();
         let up = toward.cross(&right);
@@ -215,7 +215,7 @@ fn speeds(snapshot: &Snapshot) -> impl Iterator<Item = f64> {
 
 /// Returns the grains, lit and coloured by their speed. Several frames make a film.
 pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
-    let view = View::of(shots)?;
+    let view = View::from_shots(shots)?;
     let all = shots.iter().flat_map(|shot| &shot.frames).flat_map(|snapshot| speeds(snapshot));
     let range = (0.0, readable(all.filter(|speed| speed.is_finite()).fold(0.0, f64::max)));
     let frame = |snapshot: &&Snapshot| {
@@ -245,7 +245,7 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
 
 /// Returns the contact forces as bars through the contacts; none if no contacts are reported.
 pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
-    let view = View::of(shots)?;
+    let view = View::from_shots(shots)?;
     let shots_with_contacts: Vec<Shot<'_>> = shots
         .iter()
         .filter(|shot| shot.frames.iter().all(|snapshot| snapshot.contacts.is_some()))

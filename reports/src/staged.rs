@@ -173,7 +173,7 @@ impl StagedDir {
             }
         }
         self.refuse_others()?;
-        let _lock = Lock::of(&self.target).map_err(at_target)?;
+        let _lock = Lock::acquire(&self.target).map_err(at_target)?;
         after();
         let mut moves = Moves { target: &self.target, holder: &holder, done: Vec::new() };
         if !self.manifest {

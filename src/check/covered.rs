@@ -83,7 +83,7 @@ pub(super) struct Covered {
 impl Covered {
     /// Computes the coverage from the time step of the output (s), if it is known. Removes samples after the end of the
     /// scene, because the scene does not define them.
-    pub(super) fn of(candidate: &Candidate, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
+    pub(super) fn new(candidate: &Candidate, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
         let whole = whole(&candidate.scene, step);
         // A wrongly reported time step must not make an early sample count as the end.
         let most = 0.01 * whole.unwrap_or_default();

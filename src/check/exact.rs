@@ -28,7 +28,7 @@ pub(super) fn exact(
     let row = Verdict {
         evidence: claim.evidence(),
         source: claim.source.words(),
-        allowed: claim.tolerance.of(&[done(observed.series.clone())]),
+        allowed: claim.tolerance.allowed(&[done(observed.series.clone())]),
         tolerance: claim.tolerance.made_without_estimate(),
         because: claim.tolerance.because.clone(),
         ..row(claim.quantity.clone(), claim.unit)

@@ -144,7 +144,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
     let distance = |(candidate, observed): &(Candidate, Observed)| distance(&candidate.scene, observed);
     matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     if let Some((candidate, observed)) = matching.first_mut() {
-        let covered = Covered::of(candidate, outputs.time_step(), observed, options.partial);
+        let covered = Covered::new(candidate, outputs.time_step(), observed, options.partial);
         refuse_unstable(&candidate.scene, outputs, options)?;
         let mut section = section(subject, candidate, outputs, observed, &covered, options);
         if let Some(row) = section.verdicts.first_mut().filter(|_| starts > 1) {

@@ -111,7 +111,7 @@ impl Made<'_> {
         for family in families(self.scene) {
             match self.find(&family, &mut left) {
                 Found::NotTried(why) => not_tried.push(format!("{} ({why})", family.name)),
-                found => rows.push(told(
+                found => rows.push(outcome_row(
                     &family,
                     &found,
                     row(format!("{}: smallest change that this output reveals", family.name)),
@@ -192,7 +192,7 @@ impl Made<'_> {
 }
 
 /// Returns the result for an effect that was tried.
-fn told(family: &Family, found: &Found, row: Verdict) -> Verdict {
+fn outcome_row(family: &Family, found: &Found, row: Verdict) -> Verdict {
     let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
     let row = Verdict { because: format!("tried: {}", sizes.join(", ")), ..row };
     let largest = family.sizes.last();

@@ -70,7 +70,7 @@ impl Yours {
     }
 
     fn resolution(&self) -> Resolution {
-        match Method::of(&self.solver) {
+        match Method::from_name(&self.solver) {
             Some(Method::Rigid) => Resolution::substeps(Resolution::SUBSTEPS),
             Some(Method::Grid) => Resolution::grid(Resolution::CELLS, Resolution::POINTS),
             Some(Method::Dem) | None => self.step.resolution(),

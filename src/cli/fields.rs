@@ -154,12 +154,12 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
             "{there}: expected {what} between the times that are asked for, found fewer{hint}"
         )));
     };
-    let summary = Summary::of(&course, there.to_string(), usize::from(arguments.blocks));
+    let summary = Summary::new(&course, there.to_string(), usize::from(arguments.blocks));
     write_elements(&arguments.out, &course, &summary, arguments.parquet).map_err(Fault::writing)?;
     if arguments.json {
         print_json(&summary)?;
     } else {
-        print(&told(&summary, &arguments.out))?;
+        print(&summary_text(&summary, &arguments.out))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -336,7 +336,7 @@ fn orifice(text: &str) -> Result<Orifice, Fault> {
 const PRINTED: usize = 11;
 
 /// Returns the printed summary.
-fn told(summary: &Summary, out: &Path) -> String {
+fn summary_text(summary: &Summary, out: &Path) -> String {
     let [x, y, z] = summary.cell.map(|size| number::significant(size, 4));
     let mut text = format!("{}\ncells of {x} × {y} × {z} m\n\n", summary.words());
     for over in summary.means.iter().filter(|over| COLUMNS[..PRINTED].iter().any(|column| column.name == over.quantity))

@@ -57,6 +57,6 @@ pub(crate) fn keep(program: &Outside, report: &Report) -> Result<(), Fault> {
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
-    let text = Judged::of(name, version, adapter, report).text().map_err(Fault::input)?;
+    let text = Judged::from_report(name, version, adapter, report).text().map_err(Fault::input)?;
     write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
 }

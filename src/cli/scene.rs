@@ -40,11 +40,11 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let resolution = arguments
         .cells
         .map_or_else(|| arguments.step.resolution(), |cells| Resolution::grid(cells, Resolution::POINTS));
-    let given = Given::of(&scene, &resolution).map_err(Fault::input)?;
+    let given = Given::new(&scene, &resolution).map_err(Fault::input)?;
     let format = match arguments.format {
         Format::Json => SceneFormat::Json,
         Format::Toml => SceneFormat::Toml,
     };
-    print(&(Resolved::of(&given).text(format).map_err(Fault::input)? + "\n"))?;
+    print(&(Resolved::new(&given).text(format).map_err(Fault::input)? + "\n"))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -172,7 +172,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let scene = source.scene(&read_grains)?;
     let solver = solver::find(&arguments.solver)?;
     let resolution = resolution(arguments, &scene, solver.as_ref())?;
-    if arguments.state.is_some() && Method::of(&arguments.solver) != Some(Method::Dem) {
+    if arguments.state.is_some() && Method::from_name(&arguments.solver) != Some(Method::Dem) {
         let solver = &arguments.solver;
         return Err(Fault::input(format!(
             "--state: expected `dem`, found `{solver}`, which does not tell its end state"
@@ -182,7 +182,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
     let store = arguments.checkpoint.clone().map(|path| Store { path, every: arguments.checkpoint_every });
-    let (method, critical) = (Method::of(&arguments.solver), scene.critical_time_step());
+    let (method, critical) = (Method::from_name(&arguments.solver), scene.critical_time_step());
     if let Some(store) = &store {
         store.refuse_others()?;
     }
@@ -236,7 +236,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         write_file(path, bytes.unwrap_or_default()).map_err(Fault::writing)?;
     }
     if arguments.json {
-        print_json(&Summary::of(&record, &snapshots, arguments))?;
+        print_json(&Summary::new(&record, &snapshots, arguments))?;
     } else {
         print(&footer(&record, &snapshots, &formats, arguments))?;
     }
@@ -272,7 +272,7 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
 /// Returns the requested resolution. A time step at or above the critical one is rejected unless it is allowed
 /// explicitly.
 fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Result<Resolution, Fault> {
-    if Method::of(&arguments.solver) == Some(Method::Rigid) {
+    if Method::from_name(&arguments.solver) == Some(Method::Rigid) {
         arguments.refuse_others(Method::Rigid)?;
         return Ok(Resolution::Rigid {
             step: Resolution::RIGID_STEP,
@@ -550,7 +550,7 @@ struct Summary<'a> {
 }
 
 impl<'a> Summary<'a> {
-    fn of(record: &'a Record, snapshots: &'a SnapshotStore, arguments: &Arguments) -> Self {
+    fn new(record: &'a Record, snapshots: &'a SnapshotStore, arguments: &Arguments) -> Self {
         Self {
             provenance: &record.provenance,
             cost: &record.cost,

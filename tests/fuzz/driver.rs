@@ -87,7 +87,7 @@ struct Range {
 
 impl Range {
     /// Returns the requested items, or some by default. `None` if items of another kind are requested.
-    fn of(kind: &Kind) -> Option<Self> {
+    fn from_kind(kind: &Kind) -> Option<Self> {
         let Ok(asked) = env::var(ASKED) else {
             let count = if env::var_os("GRAINBENCH_LONG").is_some() { kind.many } else { kind.few };
             return Some(Self { seed: 1, from: 0, count });
@@ -102,7 +102,7 @@ impl Range {
 
 /// Runs the requested items of a kind.
 pub(crate) fn go(kind: &Kind) {
-    let Some(range) = Range::of(kind) else { return };
+    let Some(range) = Range::from_kind(kind) else { return };
     match env::var_os(NOTES) {
         Some(notes) => work(kind, range, Path::new(&notes)),
         None => watch(kind, range),
@@ -118,7 +118,7 @@ struct Notes {
 }
 
 impl Notes {
-    fn of(folder: &Path) -> Self {
+    fn open(folder: &Path) -> Self {
         Self { at: folder.join("at"), found: folder.join("found"), shown: folder.join("shown") }
     }
 }
@@ -131,7 +131,7 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
             *last = panic.to_string();
         }
     }));
-    let notes = Notes::of(folder);
+    let notes = Notes::open(folder);
     let mut at = fs::File::create(&notes.at).expect("notes");
     let mut found = fs::File::create(&notes.found).expect("notes");
     for number in range.from..range.from + range.count {
@@ -185,7 +185,7 @@ fn watch(kind: &Kind, range: Range) {
 fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
     let Range { seed, from, count } = range;
     let folder = tempfile::tempdir().expect("a place for notes");
-    let notes = Notes::of(folder.path());
+    let notes = Notes::open(folder.path());
     let output = folder.path().join("said");
     let mut child = Command::new("sh")
         // On a system without this limit, there is no limit.

@@ -78,7 +78,7 @@ fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Res
     if scene.grains.iter().any(|grain| !(grain.mass > 0.0 && grain.inertia > 0.0)) {
         return Err("a grain has no mass".to_owned());
     }
-    let method = Method::of(&solver.name());
+    let method = Method::from_name(&solver.name());
     let odd = lot.draw(prop_oneof![15 => Just(None), 1 => any::<f64>().prop_map(Some)]);
     let resolution = match method {
         Some(Method::Grid) => Resolution::grid(odd.unwrap_or(CELLS), POINTS),

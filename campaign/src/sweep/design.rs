@@ -149,32 +149,34 @@ mod tests {
 
     const HEAD: &str = "title = 't'\nscene = 'squash'\nsolvers = []\n";
 
-    fn of(text: &str) -> Result<Vec<Vec<Value>>, String> {
+    fn design_points(text: &str) -> Result<Vec<Vec<Value>>, String> {
         let file: File = toml::from_str(&(HEAD.to_owned() + text)).map_err(|error| error.to_string())?;
         points(Path::new("s.toml"), &file).map_err(|fault| fault.to_string())
     }
 
     #[test]
     fn a_grid_has_every_value_with_every_other() {
-        let found = of("factors.a = { values = [1, 2] }\n\
-                        factors.b = { from = 0.1, to = 10.0, count = 3, spacing = 'log' }\n")
+        let found = design_points(
+            "factors.a = { values = [1, 2] }\n\
+                        factors.b = { from = 0.1, to = 10.0, count = 3, spacing = 'log' }\n",
+        )
         .unwrap();
         let rows: Vec<(f64, f64)> =
             found.iter().map(|row| (row[0].as_f64().unwrap(), row[1].as_f64().unwrap())).collect();
         assert_eq!(rows, [(1.0, 0.1), (1.0, 1.0), (1.0, 10.0), (2.0, 0.1), (2.0, 1.0), (2.0, 10.0)]);
-        assert_eq!(of("").unwrap(), [Vec::<Value>::new()], "without factors there is one point");
+        assert_eq!(design_points("").unwrap(), [Vec::<Value>::new()], "without factors there is one point");
     }
 
     #[test]
     fn a_latin_hypercube_has_a_point_in_every_slice() {
         let text = "design = 'latin-hypercube'\npoints = 50\nfactors.a = { from = 0.0, to = 1.0 }\n\
                     factors.b = { from = 1.0, to = 1e4, spacing = 'log' }\n";
-        let found = of(text).unwrap();
+        let found = design_points(text).unwrap();
         let mut slices: Vec<usize> = found.iter().map(|row| (row[0].as_f64().unwrap() * 50.0) as usize).collect();
         slices.sort_unstable();
         assert_eq!(slices, (0..50).collect::<Vec<_>>());
-        assert_eq!(of(text).unwrap(), found, "the lot is the same again");
-        assert_ne!(of(&("seed = 2\n".to_owned() + text)).unwrap(), found);
+        assert_eq!(design_points(text).unwrap(), found, "the lot is the same again");
+        assert_ne!(design_points(&("seed = 2\n".to_owned() + text)).unwrap(), found);
     }
 
     #[test]
@@ -196,7 +198,7 @@ mod tests {
             "design = 'spiral'",
             "factors.a = { from = 0.0, to = 1.0, count = 4000000000 }",
         ] {
-            assert!(of(text).is_err(), "{text}");
+            assert!(design_points(text).is_err(), "{text}");
         }
     }
 }

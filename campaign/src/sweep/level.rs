@@ -18,7 +18,7 @@ pub fn read(words: &str) -> Result<Resolution, String> {
 /// Returns true if the solver supports this kind of resolution. External solvers are assumed to support every kind.
 #[must_use]
 pub fn fits(solver: &str, resolution: &Resolution) -> bool {
-    match Method::of(solver) {
+    match Method::from_name(solver) {
         Some(Method::Dem) => matches!(resolution, Resolution::CriticalFraction(_) | Resolution::TimeStep(_)),
         Some(Method::Rigid) => matches!(resolution, Resolution::Rigid { .. }),
         Some(Method::Grid) => matches!(resolution, Resolution::Grid { .. }),

@@ -131,7 +131,7 @@ impl Look {
         let Self::Own(own) = self else { return Ok(()) };
         let place = |key: &str| format!("{file}: record ({}): {key}", own.quantity);
         let table = source.table().map_err(|error| Fault::Input(error.to_string()))?;
-        let numbers = Numbers::of(table, scene).map_err(Fault::Input)?;
+        let numbers = Numbers::new(table, scene).map_err(Fault::Input)?;
         let is_column = |name: &str| numbers.columns.iter().any(|column| column == name);
         // The solver decides the columns of deformable bodies.
         let knows_columns = scene.needs_deformable().is_none();
@@ -212,7 +212,7 @@ impl Look {
 
 /// Returns the largest error that passes for a claim in this scene, which may differ from the scene of its case.
 fn own_allowance(claim: &Claim, done: &Done) -> f64 {
-    let stated = || claim.tolerance.of(std::slice::from_ref(done));
+    let stated = || claim.tolerance.allowed(std::slice::from_ref(done));
     claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
@@ -240,7 +240,7 @@ impl Own {
     fn at(&self, seen: &Seen<'_>) -> Result<Looked, Missing> {
         let scene = &seen.done.scene;
         let table = seen.source.table().map_err(|error| Missing(error.to_string()))?;
-        let numbers = Arc::new(Numbers::of(table, scene).map_err(Missing)?);
+        let numbers = Arc::new(Numbers::new(table, scene).map_err(Missing)?);
         let read = Read { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
         let (time, value) = read.one(seen.done)?;
         let evaluated = |formula: &Expression| {

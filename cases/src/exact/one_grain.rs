@@ -58,7 +58,7 @@ pub struct State {
 impl OneGrain {
     /// Reads a scene with one grain on a plane. The normal of the plane is y in two dimensions, z in three.
     #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let grain = &scene.grains[0];
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let onto = -scene.gravity[normal_axis(scene)];

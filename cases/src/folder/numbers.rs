@@ -24,10 +24,10 @@ impl Numbers {
     ///
     /// # Errors
     /// When the scene cannot be serialised. The error is a message.
-    pub fn of(file: Table, scene: &Scene) -> Result<Self, String> {
+    pub fn new(file: Table, scene: &Scene) -> Result<Self, String> {
         // Steps belong to a run and not to a claim, so they are removed below.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
-        let resolved = Resolved::of(&Given { scene, stepping, grid: None });
+        let resolved = Resolved::new(&Given { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
         let mut definite = Value::try_from(resolved).map_err(|error| error.to_string())?;
         if let Some(table) = definite.as_table_mut() {

@@ -43,7 +43,7 @@ impl Reader<'_> {
         let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
         let in_scene = |error: grainbench_scene::error::SceneError| Wrong::Scene(error.to_string());
         let scene = source.scene(&read_grains).map_err(in_scene)?;
-        let numbers = Numbers::of(source.table().map_err(in_scene)?, &scene).map_err(Wrong::Scene)?;
+        let numbers = Numbers::new(source.table().map_err(in_scene)?, &scene).map_err(Wrong::Scene)?;
         let numbers = Arc::new(numbers);
         for (key, text) in [("quantity", &claimed.quantity), ("unit", &claimed.unit), ("because", &claimed.because)] {
             in_words(key, text)?;
@@ -56,10 +56,10 @@ impl Reader<'_> {
             Some([(first, _), .., (last, _)]) => format!("{}, {first} to {last} s", claimed.quantity),
             _ => claimed.quantity.clone(),
         };
-        let quantity = claim(words, kept(claimed.unit.clone())).of(run);
+        let quantity = claim(words, kept(claimed.unit.clone())).run(run);
         let tolerance = tolerance(&claimed, &numbers)?;
         let control = control(&claimed.control, &source, &scene)?;
-        let is_dem = Method::of(&claimed.solver) == Some(Method::Dem);
+        let is_dem = Method::from_name(&claimed.solver) == Some(Method::Dem);
         let expecting = expecting(quantity, &claimed, course, (&numbers, is_dem))?;
         let claim = expecting.within(tolerance).refuses(control);
         let claim = match (&claim.trace, claim.quantity.clone()) {
@@ -256,7 +256,7 @@ fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Resu
 
 /// Returns the resolution of a solver from the parameters of its method.
 fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, Wrong> {
-    let Some(method) = solvers::by_name(solver).and(Method::of(solver)) else {
+    let Some(method) = solvers::by_name(solver).and(Method::from_name(solver)) else {
         return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
     };
     let Knobs { time_step_fraction, time_step, cells, points, courant, substeps, iterations } = *knobs;

@@ -50,7 +50,7 @@ pub(crate) fn of_packings(
     because: &'static str,
 ) -> Tolerated {
     claim(quantity, unit)
-        .of_all(runs)
+        .runs(runs)
         .equals(cited.source(), move |done| {
             let values = done.iter().map(&value).collect::<Result<Vec<f64>, _>>()?;
             let own = values.iter().sum::<f64>() / values.len() as f64;

@@ -43,7 +43,7 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
 /// When the run has no grain.
 pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::of(&done.scene).rigid_incline(t).x - 1.0)
+    Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }
 
 /// An elastic disc in plane strain, compressed without friction at two opposite sides or at four: the shortening δ of
@@ -67,7 +67,7 @@ pub struct Pressed {
 impl Pressed {
     /// Reads the first grain of a scene; `None` if it is not deformable.
     #[must_use]
-    pub fn of(scene: &Scene, sides: u8) -> Option<Self> {
+    pub fn from_scene(scene: &Scene, sides: u8) -> Option<Self> {
         let disc = (*scene.deformable.first()?)?;
         let (bulk, shear) = (disc.bulk_modulus, disc.shear_modulus);
         let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));

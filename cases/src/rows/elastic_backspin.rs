@@ -13,7 +13,7 @@ const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid 
 /// Returns the displacement over the displacement of a rigid grain, minus one.
 pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
     let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::of(&done.scene).rigid_backspin(t).x - 1.0)
+    Ok(state.x / OneGrain::from_scene(&done.scene).rigid_backspin(t).x - 1.0)
 }
 
 /// Returns mean velocity and mean surface speed ΩR over the time of rolling (m/s).
@@ -37,7 +37,7 @@ pub(crate) fn slippery() -> Control {
 pub(crate) fn sphere(level: &str, asked: f64, [displacement, speed]: [Run; 2]) -> [Claim; 2] {
     [
         claim(format!("displacement at .8 s over the rigid one, less 1, {level}"), "1")
-            .of(displacement)
+            .run(displacement)
             .equals_cited(BACKSPIN, 1.0, |done| excess(&done[0]))
             .within(required(
                 asked + BACKSPIN.uncertainty,
@@ -45,7 +45,7 @@ pub(crate) fn sphere(level: &str, asked: f64, [displacement, speed]: [Run; 2]) -
             ))
             .refuses(slippery()),
         claim(format!("mean velocity of rolling, {level}"), "m/s")
-            .of(speed)
+            .run(speed)
             .between([1.43, 1.48], Source::Printed(&WORK, SPEED), |done| Ok(rolling(&done[0])?.0))
             .within(exactly("the band was asked for before the solver existed"))
             .refuses(Control::scene("a tenth less spin", |scene| scene.grains[0].spin *= 0.9)),

@@ -174,7 +174,7 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
 /// When the record lacks the grain.
 pub fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
     let (t, state) = last(done)?;
-    let expected = pick(exact(&OneGrain::of(&done.scene), t));
+    let expected = pick(exact(&OneGrain::from_scene(&done.scene), t));
     Ok(Measured::new(pick(state), expected, expected))
 }
 
@@ -184,16 +184,16 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
-    let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::of(&scene).slips_from());
+    let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).slips_from());
     let error = |done: &Done| end(done, OneGrain::compliant_incline, |state| state.x);
     vec![
         claim("displacement at 1 s, undamped, against the elastic answer", "m")
-            .of(run(FINE))
+            .run(run(FINE))
             .equals(SOURCE, move |done| error(&done[0]))
             .within(estimated(3e-7, "discretisation, of second order in Δt; relative to the displacement"))
             .refuses(stronger_friction()),
         claim("order in Δt of that displacement", "1")
-            .of_all(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
+            .runs(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
             .sweep(move |done| Ok((done.record.provenance.time_step, error(done)?.error())))
             .converges(2.0, Source::Derived("central differences are of second order"))
             .within(computed(
@@ -217,7 +217,7 @@ fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
     let unknown = State { x: f64::NAN, v: f64::NAN, omega: f64::NAN };
     case.variant(slope.variant).map_or(unknown, |mut scene| {
         rest_at_overlap(&mut scene, ratio, DAMPING);
-        OneGrain::of(&scene).compliance(1.0)
+        OneGrain::from_scene(&scene).compliance(1.0)
     })
 }
 
@@ -226,7 +226,7 @@ fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
 pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain) -> f64) -> Tolerance {
     let left = case.variant(variant).map_or(f64::NAN, |mut scene| {
         rest_at_overlap(&mut scene, 1e-3, DAMPING);
-        let grain = OneGrain::of(&scene);
+        let grain = OneGrain::from_scene(&scene);
         let steps = STEP.steps(&scene).map_or(f64::NAN, |(_, steps)| steps as f64);
         2.0 * steps * f64::EPSILON + grain.rung(1.0 - slides(&grain))
     });
@@ -242,7 +242,7 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
     let rigid_claim = |quantity: &str, unit, pick: fn(State) -> f64| {
         claim(quantity, unit)
-            .of(at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))
+            .run(at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))
             .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
             .within(computed(pick(allowed), if slope.sticks { SWINGS } else { LATE }))
             .refuses(telling(slope))
@@ -261,10 +261,10 @@ fn exponent(slope: Slope) -> Claim {
     let expected: f64 = if slope.sticks { 1.0 } else { 0.5 };
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
     claim("exponent of the displacement's error in overlap/R, 1e-3 to 1e-5", "1")
-        .of_all(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
+        .runs(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
         .sweep(|done| {
             let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
-            Ok((OneGrain::of(&done.scene).overlap_ratio, error))
+            Ok((OneGrain::from_scene(&done.scene).overlap_ratio, error))
         })
         .scales(
             expected,
@@ -299,7 +299,7 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
             computed(pick(allowed), LATE)
         };
         claim(format!("{} at 1 s, nearly rigid contact", quantity[0]), unit)
-            .of(nearly_rigid(slope.variant, slope.sticks))
+            .run(nearly_rigid(slope.variant, slope.sticks))
             .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
             .within(tolerance)
             .refuses(telling(slope))
@@ -321,7 +321,7 @@ const ELSEWHERE: &str = "rolling: overlap/R for the torque arm, beside it the sp
 /// Returns the largest deviation from the rigid solution on a slope with any parameters, for displacement, velocity and
 /// spin, as fractions.
 fn elsewhere(scene: &Scene) -> State {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);
     let exact = grain.rigid_incline(end);
     if grain.sticks() {
@@ -343,10 +343,10 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
-            .of(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
+            .run(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
             .equals(Source::Derived("v(1 + i(R/a)²) = g_t t with arm a (derivation)"), move |done| {
                 let (t, state) = last(&done[0])?;
-                let grain = OneGrain::of(&done[0].scene);
+                let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.rolling_velocity(t, arm);
                 Ok(Measured::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
@@ -372,7 +372,7 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut spin = Vec::new();
     for slope in slopes {
         let done = runner.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
-        let grain = OneGrain::of(&done.scene);
+        let grain = OneGrain::from_scene(&done.scene);
         let states = course(&done).unwrap_or_default();
         let thin: Vec<_> = states.iter().step_by(states.len().div_ceil(12).max(1)).collect();
         let curve = |label: String, stroke, points| Curve { label, stroke, points };

@@ -66,7 +66,7 @@ fn subject(
         measure: Arc::new(move |done| {
             let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
             let (t, state) = last(done)?;
-            let expected = exact(&OneGrain::of(&done.scene), t).x;
+            let expected = exact(&OneGrain::from_scene(&done.scene), t).x;
             Ok(Measured::new(state.x, expected, expected))
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),

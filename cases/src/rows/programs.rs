@@ -22,7 +22,7 @@ pub(crate) fn row(
     measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
 ) -> Claim {
     claim(format!("{quantity}, against {}", runs[1].solver), unit)
-        .of_all(runs)
+        .runs(runs)
         .agrees(Source::Program, measure)
         .within(tolerance)
         .refuses(control)
@@ -71,7 +71,7 @@ fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
 /// Claims the separation velocity of two grains over their approach velocity.
 #[must_use]
 pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
-    fn of(done: &Done) -> Result<f64, Missing> {
+    fn restitution_coefficient(done: &Done) -> Result<f64, Missing> {
         let grains = &done.scene.grains;
         Ok((done.last("b.vx")? - done.last("a.vx")?) / (grains[0].velocity.x - grains[1].velocity.x))
     }
@@ -87,7 +87,7 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
             });
             let allowed = rounding(1.0, "the same cycle; in units of the approach velocity");
             claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
-                Ok(Measured::new(of(&done[0])?, of(&done[1])?, 1.0))
+                Ok(Measured::new(restitution_coefficient(&done[0])?, restitution_coefficient(&done[1])?, 1.0))
             }));
         }
     }

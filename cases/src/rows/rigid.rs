@@ -71,10 +71,10 @@ fn wrong(row: Row) -> Control {
 fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
-            .of(run(row.variant, DEFAULT))
+            .run(run(row.variant, DEFAULT))
             .equals(RIGID_SOURCE, move |done| {
                 let (t, state) = last(&done[0])?;
-                let expected = pick(exact(&OneGrain::of(&done[0].scene), t));
+                let expected = pick(exact(&OneGrain::from_scene(&done[0].scene), t));
                 Ok(Measured::new(pick(state), expected, expected))
             })
             .within(tolerance)
@@ -96,10 +96,10 @@ fn fine(row: Row) -> impl Iterator<Item = Run> {
 /// Claims the order of the displacement's error in the time step, for a slipping grain.
 fn order(row: Row) -> Claim {
     claim("order in Δt of the displacement's error", "1")
-        .of_all(fine(row))
+        .runs(fine(row))
         .sweep(move |done| {
             let (t, state) = last(done)?;
-            let exact = OneGrain::of(&done.scene).rigid_incline(t).x;
+            let exact = OneGrain::from_scene(&done.scene).rigid_incline(t).x;
             Ok((done.record.provenance.time_step, (state.x - exact) / exact))
         })
         .converges(1.0, ORDER_SOURCE)
@@ -115,14 +115,14 @@ fn between_arms(case: &Case, row: Row) -> Claim {
     let width = overlap * i / (1.0 + i);
     let coarsest = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS * FINE[0]);
     claim("displacement less h/t, between arms of R − δ/2 and R, farthest of 16 to 256 substeps", "1")
-        .of_all(fine(row))
+        .runs(fine(row))
         .between(
             [0.0, 1.0],
             Source::Derived("v(1 + i(R/a)²) = g_t t, a from R to R − δ/2 (derived beside the row)"),
             |done| {
                 let places = done.iter().map(|done| {
                     let (t, state) = last(done)?;
-                    let grain = OneGrain::of(&done.scene);
+                    let grain = OneGrain::from_scene(&done.scene);
                     let [shortest, longest] = [grain.radius - 0.5 * rest_overlap(&grain), grain.radius]
                         .map(|arm| 0.5 * t * grain.rolling_velocity(t, arm));
                     let ahead = done.record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS) / t;
@@ -148,7 +148,7 @@ pub fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
 
 /// Returns the overlap at rest over the radius, and I/(mR²).
 fn arm(case: &Case, row: Row) -> (f64, f64) {
-    let grain = case.variant(row.variant).map(|scene| OneGrain::of(&scene));
+    let grain = case.variant(row.variant).map(|scene| OneGrain::from_scene(&scene));
     grain.map_or((f64::NAN, f64::NAN), |grain| (rest_overlap(&grain) / grain.radius, grain.inertia_factor))
 }
 
@@ -192,12 +192,12 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
     let Settings { wall_frequency, damping_ratio, .. } = Settings::default();
     let ((overlap, i), lag) = (arm(case, row), 2.0 * damping_ratio / (TAU * wall_frequency));
     claim("velocity at 1 s, arm R − δ/2", "m/s")
-        .of(run(row.variant, Resolution::substeps(32)))
+        .run(run(row.variant, Resolution::substeps(32)))
         .equals(
             Source::Derived("v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)"),
             |done| {
                 let (t, state) = last(&done[0])?;
-                let exact = rolling(&OneGrain::of(&done[0].scene), t);
+                let exact = rolling(&OneGrain::from_scene(&done[0].scene), t);
                 Ok(Measured::new(state.v, exact, exact))
             },
         )
@@ -242,7 +242,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
                 done => done?,
             };
             if let Ok((t, state)) = last(&done) {
-                let x = exact(&OneGrain::of(&done.scene), t).x;
+                let x = exact(&OneGrain::from_scene(&done.scene), t).x;
                 points.push((f64::from(substeps), ((state.x - x) / x).abs()));
             }
         }
@@ -270,7 +270,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
 #[must_use]
 pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Claim {
     claim("coefficient of restitution", "1")
-        .of(Run::new(variant, RIGID, DEFAULT))
+        .run(Run::new(variant, RIGID, DEFAULT))
         .equals(Source::Derived("damped oscillator whose dashpot may pull (derivation)"), move |done| {
             measured(&done[0])
         })
@@ -294,7 +294,7 @@ pub fn momentum(
     worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
 ) -> Claim {
     claim(quantity, "kg m/s")
-        .of(Run::new(variant, RIGID, DEFAULT))
+        .run(Run::new(variant, RIGID, DEFAULT))
         .holds("equal and opposite impulses", move |done| worst(&done[0]))
         .within(rounding(1.0, "in units of one grain's momentum"))
         .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
@@ -307,7 +307,7 @@ pub fn angular_momentum(
     worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
 ) -> Claim {
     claim("angular momentum, worst", "kg m²/s")
-        .of(Run::new(variant, RIGID, DEFAULT))
+        .run(Run::new(variant, RIGID, DEFAULT))
         .holds("equal and opposite impulses at one point", move |done| worst(&done[0]))
         .within(estimated(
             3e-3,
@@ -326,7 +326,7 @@ pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Resul
         scene.duration = Duration::Seconds(seconds);
     });
     claim(format!("total energy over {seconds} s, worst"), "J")
-        .of(run)
+        .run(run)
         .holds("conservation of energy", move |done| worst(&done[0]))
         .within(judged(
             1.5e-2,
@@ -344,7 +344,7 @@ pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Resul
 /// Claims that `rigid` reports a duration in cycles as unsupported.
 #[must_use]
 pub fn refuses_cycles(variant: &'static str) -> Claim {
-    claim("refusal of a length in calculation cycles", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(
+    claim("refusal of a length in calculation cycles", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
         "a cycle is a fraction of the period of the contacts' springs, which rigid contacts do not have",
         Control::scene("a length in seconds, walls at rest, no forces asked for", |scene| {
             scene.duration = Duration::Seconds(0.1);
@@ -357,7 +357,7 @@ pub fn refuses_cycles(variant: &'static str) -> Claim {
 /// Claims that `rigid` reports periodic axes as unsupported.
 #[must_use]
 pub fn refuses_periodic_axes(variant: &'static str) -> Claim {
-    claim("refusal of periodic axes", "1").of(Run::new(variant, RIGID, DEFAULT)).refused(
+    claim("refusal of periodic axes", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
         "rapier has no periodic axes",
         Control::scene("no box, ten microseconds", |scene| {
             scene.domain = None;

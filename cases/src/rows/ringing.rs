@@ -139,7 +139,7 @@ impl Ringing {
         };
         let rings = |run: Run, cells: f64| {
             claim(format!("frequency at which elastic discs ring, {cells} cells a radius"), "rad/s")
-                .of(run)
+                .run(run)
                 .equals(exact, move |done| {
                     let expected = self.expected(&done[0])?;
                     Ok(Measured::new(self.frequency(&done[0])?, expected, expected))
@@ -149,7 +149,7 @@ impl Ringing {
         };
         vec![
             claim("force at the wall of elastic discs, mean after the walls have stopped", "N/m")
-                .of(set(self.discs(self.cells)))
+                .run(set(self.discs(self.cells)))
                 .equals(exact, move |done| {
                     let force = self.exact(&done[0])?.force;
                     let (_, found) = self.ringing(&done[0])?;
@@ -160,8 +160,8 @@ impl Ringing {
             rings(set(self.discs(self.cells)), self.cells),
             rings(self.discs(self.fine).long(), self.fine),
             claim("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1")
-                .of(set(self.discs(self.cells)))
-                .of(self.rigid().aside())
+                .run(set(self.discs(self.cells)))
+                .run(self.rigid().aside())
                 .equals(exact, move |done| {
                     let Rung { force, restoring, stirred, .. } = self.exact(&done[0])?;
                     // m cancels. k_n is the stiffness at which the springs have this force.

@@ -61,7 +61,7 @@ struct Oscillator {
 
 impl Oscillator {
     /// Builds the oscillator from stiffness and damping, both divided by the mass.
-    fn of(stiffness: f64, dashpot: f64) -> Self {
+    fn new(stiffness: f64, dashpot: f64) -> Self {
         let frequency = stiffness.sqrt();
         Self { frequency, damping: 0.5 * dashpot / frequency }
     }
@@ -86,24 +86,24 @@ impl Oscillator {
 
 /// Returns the oscillators along the normal and along the slope, from the scene's contact law and the grain's mass.
 fn oscillators(scene: &Scene) -> [Oscillator; 2] {
-    let (grain, law) = (OneGrain::of(scene), scene.laws.iter().flatten().next().copied().unwrap_or_default());
+    let (grain, law) = (OneGrain::from_scene(scene), scene.laws.iter().flatten().next().copied().unwrap_or_default());
     let (normal, tangential) = (law.normal_stiffness() / grain.mass, law.tangential_stiffness() / grain.mass);
     let turning = 1.0 + 1.0 / grain.inertia_factor;
     [
-        Oscillator::of(normal, law.normal_damping + law.stiffness_damping * normal),
-        Oscillator::of(turning * tangential, turning * (law.tangential_damping + law.stiffness_damping * tangential)),
+        Oscillator::new(normal, law.normal_damping + law.stiffness_damping * normal),
+        Oscillator::new(turning * tangential, turning * (law.tangential_damping + law.stiffness_damping * tangential)),
     ]
 }
 
 /// Returns the static overlap (m).
 fn rest(scene: &Scene) -> f64 {
-    let grain = OneGrain::of(scene);
+    let grain = OneGrain::from_scene(scene);
     grain.overlap_ratio * grain.radius
 }
 
 /// Returns the peak slip velocity of an undamped spring: g_t/ω (m/s).
 fn peak(scene: &Scene) -> f64 {
-    OneGrain::of(scene).along / oscillators(scene)[1].frequency
+    OneGrain::from_scene(scene).along / oscillators(scene)[1].frequency
 }
 
 fn set_down(scene: &mut Scene, dashpots: Dashpots) {
@@ -149,7 +149,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     });
     let overlap = || {
         claim("overlap while it rings, largest deviation", "m")
-            .of(run())
+            .run(run())
             .series(|done| samples(done, "contact.overlap"))
             .follows(
                 SOURCE,
@@ -163,7 +163,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     };
     let slip = || {
         claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
-            .of(run())
+            .run(run())
             .series(|done| {
                 let radius = done.scene.grains[0].radius;
                 Ok(course(done)?.into_iter().map(|(t, state)| (t, state.v - state.omega * radius)).collect())
@@ -172,7 +172,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 SOURCE,
                 |done, t| {
                     let oscillator = oscillators(&done.scene)[1];
-                    OneGrain::of(&done.scene).along / (oscillator.frequency * oscillator.frequency)
+                    OneGrain::from_scene(&done.scene).along / (oscillator.frequency * oscillator.frequency)
                         * oscillator.approach(t)
                 },
                 |done| peak(&done.scene),

@@ -189,7 +189,7 @@ impl Silo {
         let allowed = (self.spread(quantity) + cited.uncertainty) / scale;
         let because = format!("{PACKINGS}, and what the prototype says of its own mean; in units {in_units}");
         claim(quantity, unit)
-            .of(self.run.clone())
+            .run(self.run.clone())
             .equals_cited(cited, scale, move |done| read(&done[0], flow))
             .within(computed(allowed, because))
             .refuses(control)
@@ -199,7 +199,7 @@ impl Silo {
     fn range_of_friction(&self) -> Claim {
         let (flow, source) = (self.flow, self.numbers.sine.source());
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
-            .of(self.run.clone())
+            .run(self.run.clone())
             .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
             .within(exactly("asked for before: the source tells the range and not how many elements are in it"))
             .refuses(tangent_for_sine())
@@ -214,12 +214,12 @@ impl Silo {
         let elsewhere = "each element beside the rate of another";
         vec![
             claim("correlation of sin φ with Drucker and Prager's ratio", "1")
-                .of(self.run.clone())
+                .run(self.run.clone())
                 .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
                 .within(exactly(for_criteria))
                 .refuses(Control::misread(shuffled, ensemble::friction_elsewhere)),
             claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
-                .of(self.run.clone())
+                .run(self.run.clone())
                 .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
                 .within(exactly(for_rates))
                 .refuses(Control::misread(elsewhere, ensemble::rate_elsewhere)),
@@ -249,7 +249,7 @@ impl Silo {
     /// Claims that a symmetric silo has no shear stress as a whole.
     pub(crate) fn symmetry(&self) -> Claim {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
-            .of(self.run.clone())
+            .run(self.run.clone())
             .holds("scene, walls and slit are their own mirror image in x = 0", |done| {
                 Ok(Measured::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
             })
@@ -263,7 +263,7 @@ impl Silo {
         let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
         vec![
             claim("packing fraction over |I₀| in bins, worst", "1")
-                .of(self.run.clone())
+                .run(self.run.clone())
                 .equals(bins[0].source(), move |done| {
                     let full = cited().take(ensemble::FULL);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, full)?;
@@ -277,7 +277,7 @@ impl Silo {
                 ))
                 .refuses(no_springs()),
             claim(mean_off, "1")
-                .of(self.run.clone())
+                .run(self.run.clone())
                 .equals(bins[0].source(), move |done| {
                     // From the second bin to the last but one: the ten packings were read in these bins.
                     let middle = cited().skip(1).take(bins.len() - 2);

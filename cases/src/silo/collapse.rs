@@ -65,7 +65,7 @@ impl Other {
 /// `which` and `size` name the other silo and the size.
 pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
-        .of(run)
+        .run(run)
         .agrees(Source::Ourselves("what is kept of that silo's run"), move |done| {
             let other = other.done()?;
             let theirs = ensemble::over_inertia(&other)?;
@@ -85,7 +85,7 @@ const FEW_STRAINS: usize = 3;
 /// Claims that three flows lie on one curve of φ over |E|.
 pub(crate) fn of_strained(run: Run, others: &'static [Other], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
-        .of(run)
+        .run(run)
         .agrees(Source::Ourselves("what is kept of the other silos' runs"), move |done| {
             let ours = ensemble::over_strain(&done[0], &STRAIN)?;
             let mut pairs = Vec::new();

@@ -51,7 +51,7 @@ struct Rows<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Rows<'a, N> {
-    fn of(table: &'a Table, names: [&str; N]) -> Result<Self, Missing> {
+    fn from_table(table: &'a Table, names: [&str; N]) -> Result<Self, Missing> {
         let mut columns: [&[f64]; N] = [&[]; N];
         for (column, name) in columns.iter_mut().zip(names) {
             *column = table.column(name).ok_or_else(|| Missing(format!("column `{name}` of `{}`", table.name)))?;
@@ -69,7 +69,7 @@ impl<'a, const N: usize> Rows<'a, N> {
 /// Returns a quantity of the elements of the bulk that flow steadily, far from the cause of the flow.
 pub(crate) fn steady(done: &Done, flow: Flow, quantity: &str) -> Result<Vec<f64>, Missing> {
     let names = ["time", "x", "z", "side", "surface", "shear_rate", quantity];
-    let rows = Rows::of(done.table("elements")?, names)?;
+    let rows = Rows::from_table(done.table("elements")?, names)?;
     let values: Vec<f64> = rows
         .whole()
         .filter(|&[time, x, z, side, surface, rate, _]| {
@@ -105,7 +105,7 @@ fn pairs(done: &Done, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Miss
 /// Returns a pair of quantities of the elements in a table, up to a time.
 fn pairs_of(table: &Table, until: f64, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
     let [a, b] = names;
-    let rows = Rows::of(table, ["time", "side", "surface", "shear_rate", a, b])?;
+    let rows = Rows::from_table(table, ["time", "side", "surface", "shear_rate", a, b])?;
     let is_seen = |time: f64| (STEADY - 1e-9..until + 1e-9).contains(&time);
     let flows = |row: &[f64; 6]| is_seen(row[0]) && row[1] + row[2] == 0.0 && row[3] >= rate;
     let found: Vec<[f64; 2]> = rows.whole().filter(flows).map(|row| [row[4], row[5]]).collect();
@@ -208,7 +208,7 @@ pub(crate) fn lowest(done: &Done) -> f64 {
 
 /// Returns strain |E| and packing fraction of tracers.
 pub(crate) fn strained(done: &Done) -> Result<Vec<[f64; 2]>, Missing> {
-    let rows = Rows::of(done.table("tracers")?, ["z", "strain", "packing_fraction"])?;
+    let rows = Rows::from_table(done.table("tracers")?, ["z", "strain", "packing_fraction"])?;
     let lowest = lowest(done);
     Ok(rows.whole().filter(|row| row[0] > lowest).map(|[_, strain, packing]| [strain, packing]).collect())
 }
@@ -236,7 +236,7 @@ const DILATION: f64 = 0.02;
 
 /// Returns the largest sin φ before dilation, for each tracer that dilates.
 pub(crate) fn before_dilation(done: &Done) -> Result<Vec<f64>, Missing> {
-    let rows = Rows::of(done.table("tracers")?, ["tracer", "packing_fraction", "sine_of_friction"])?;
+    let rows = Rows::from_table(done.table("tracers")?, ["tracer", "packing_fraction", "sine_of_friction"])?;
     let mut courses: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for [tracer, packing, sine] in rows.whole() {
         match courses.iter_mut().find(|(number, _)| *number == tracer) {
@@ -260,7 +260,7 @@ pub(crate) fn onset(done: &Done) -> Result<f64, Missing> {
 /// Returns an angle of the flowing blocks of the bulk, for single frames or for windows.
 pub(crate) fn angles(done: &Done, flow: Flow, averaged: bool, name: &str) -> Result<Vec<f64>, Missing> {
     let names = ["time", "frames", "x", "z", "side", "surface", "shear_rate", name];
-    let rows = Rows::of(done.table("blocks")?, names)?;
+    let rows = Rows::from_table(done.table("blocks")?, names)?;
     let flows = |&[time, frames, x, z, side, surface, rate, _]: &[f64; 8]| {
         time >= STEADY - 1e-9
             && (frames > 1.0) == averaged
@@ -282,13 +282,13 @@ pub(crate) fn turn(done: &Done, flow: Flow) -> Result<f64, Missing> {
 
 /// Returns a column of the table of the whole silo, in steady flow.
 pub(crate) fn whole(done: &Done, name: &str) -> Result<Vec<f64>, Missing> {
-    let rows = Rows::of(done.table("whole")?, ["time", name])?;
+    let rows = Rows::from_table(done.table("whole")?, ["time", name])?;
     Ok(rows.whole().filter(|row| row[0] >= STEADY - 1e-9).map(|row| row[1]).collect())
 }
 
 /// Returns the packing fraction of the deposit: the bulk in the first frame.
 pub(crate) fn deposit(done: &Done) -> Result<f64, Missing> {
-    let rows = Rows::of(done.table("whole")?, ["packing_fraction"])?;
+    let rows = Rows::from_table(done.table("whole")?, ["packing_fraction"])?;
     let first = rows.whole().next();
     first.map(|[packing]| packing).ok_or_else(|| Missing("a bulk at the start".to_owned()))
 }
@@ -296,7 +296,7 @@ pub(crate) fn deposit(done: &Done) -> Result<f64, Missing> {
 /// Returns the number of grains that have left by the last frame: their centres are below the floor, or they are
 /// removed.
 pub(crate) fn gone(done: &Done) -> Result<f64, Missing> {
-    let rows = Rows::of(done.table("whole")?, ["grains"])?;
+    let rows = Rows::from_table(done.table("whole")?, ["grains"])?;
     let last = rows.whole().last();
     let there = last.map(|[grains]| grains).ok_or_else(|| Missing("a frame".to_owned()))?;
     Ok(done.scene.grains.len() as f64 - there)

@@ -94,12 +94,12 @@ impl PaperSize {
     }
 
     fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
-        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run())
+        claim(format!("{quantity}{SUFFIX}"), unit).run(self.run())
     }
 
     /// Returns a quantity with a known deviation.
     fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
-        claim(format!("{quantity}{SUFFIX}"), unit).of(self.run().known(reason).up_to(0.02))
+        claim(format!("{quantity}{SUFFIX}"), unit).run(self.run().known(reason).up_to(0.02))
     }
 
     /// Returns the claims.

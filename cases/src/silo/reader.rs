@@ -151,7 +151,7 @@ impl Silo {
         if self.course.frames.len().is_multiple_of(self.every_blocks) {
             add_blocks(&mut self.of_blocks, &self.blocks, snapshot.time, 1, &blocks);
         }
-        self.axes = instant::axes(&blocks, &MASKS.of(&blocks, &self.blocks), &self.blocks);
+        self.axes = instant::axes(&blocks, &MASKS.apply(&blocks, &self.blocks), &self.blocks);
         if snapshot.time < STEADY - 1e-9 {
             return;
         }
@@ -282,7 +282,7 @@ fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
 }
 
 fn add_blocks(table: &mut Table, grid: &Grid, time: f64, frames: usize, blocks: &[Element]) {
-    let masked = MASKS.of(blocks, grid);
+    let masked = MASKS.apply(blocks, grid);
     for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few) {
         let middle = grid.middle(cell);
         let flag = |is: bool| Some(f64::from(u8::from(is)));

@@ -133,7 +133,7 @@ pub fn against<'a>(
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let values_of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
-            Envelope::of(peer.series.time.clone(), &values_of(&peer.series), &values_of(half))
+            Envelope::new(peer.series.time.clone(), &values_of(&peer.series), &values_of(half))
         });
         let sample = |((time, found), expected): ((&f64, &f64), &f64)| Sample {
             time: *time,
@@ -168,7 +168,7 @@ impl Envelope {
     /// Each value is the larger of two numbers: the largest difference within a window, and the 90th percentile of all
     /// differences, which is close to the amplitude of an oscillation. A difference at an impact alone therefore widens
     /// the allowed error only around that impact.
-    fn of(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
+    fn new(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         let mut sorted = off.clone();
         sorted.sort_by(|a, b| weight(*a).total_cmp(&weight(*b)));
@@ -284,7 +284,7 @@ mod tests {
         let mut off = vec![0.0; 1000];
         off[300] = 1.0;
         let times: Vec<f64> = (0..1000).map(f64::from).collect();
-        let envelope = Envelope::of(times, &off, &vec![0.0; 1000]);
+        let envelope = Envelope::new(times, &off, &vec![0.0; 1000]);
         assert_eq!((envelope.at(0.0), envelope.at(280.0)), (0.0, 0.0));
         assert!([291.0, 300.0, 309.0].iter().all(|&at| envelope.at(at) == 1.0));
         assert!(envelope.at(400.0) < 0.08 && envelope.at(999.0) < 0.05);

@@ -60,7 +60,7 @@ pub fn time_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result
 pub fn horizon(columns: Parting, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
     claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
-        .of_all(runs)
+        .runs(runs)
         .equals(
             Source::Regression("steps until a run and its perturbed run, one position moved by one unit in the last place, part"),
             move |done| Ok(Measured::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
@@ -82,7 +82,7 @@ pub fn horizon(columns: Parting, steps: u64, runs: [Run; 2]) -> Claim {
 pub fn pointwise(columns: Parting, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
     claim(format!("energy and stress up to the horizon, worst, against {program}"), "1")
-        .of_all(runs)
+        .runs(runs)
         .agrees(Source::Program, move |done| {
             let horizon = step_of_horizon(columns, &done[2], &done[3])?;
             let found: Result<Vec<Measured>, Missing> = columns
@@ -134,7 +134,7 @@ pub fn statistics(
 ) -> Claim {
     let program = runs[1].solver;
     claim(format!("mean {words} after the horizon, against {program}"), unit)
-        .of_all(runs)
+        .runs(runs)
         .agrees(Source::Program, move |done| {
             let horizon = step_of_horizon(columns, &done[2], &done[3])?;
             let (ours, theirs) = together(&done[0], &done[1], column)?;

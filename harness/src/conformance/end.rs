@@ -30,7 +30,7 @@ impl From<RunError> for NoEnd {
 
 impl End {
     /// Runs a scene and returns its final state.
-    pub(super) fn of(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Self, NoEnd> {
+    pub(super) fn from_solver(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Self, NoEnd> {
         Self::read(scene, &solver.run(scene, resolution, &mut ())?)
     }
 

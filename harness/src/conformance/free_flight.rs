@@ -22,7 +22,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let (solver, terms) = (rows.solver, rows.terms);
     let second_order = terms.order.is_some_and(|order| order.expected >= 2.0);
     rows.each(scenes::flights(), &terms.resolution, APART, |named| {
-        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let end = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let (time, gravity) = (end.time, named.scene.gravity);
         let mut exact = end.clone();
         for (grain, start) in exact.grains.iter_mut().zip(&named.scene.grains) {

@@ -119,7 +119,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
-            controls.extend(tried.map(|row| Control::of(row, flaw.words(), Red::Value, seconds)));
+            controls.extend(tried.map(|row| Control::new(row, flaw.words(), Red::Value, seconds)));
         }
         rows.extend(found);
     }

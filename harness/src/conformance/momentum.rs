@@ -23,7 +23,7 @@ pub(super) const PROPERTY: Property = Property {
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let (solver, terms) = (rows.solver, rows.terms);
     let linear = rows.each(scenes::collisions(), &terms.resolution, ("momentum in the end", "kg m/s"), |named| {
-        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let end = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let before: Vec<Vector3<f64>> = named.scene.grains.iter().map(|grain| grain.velocity * grain.mass).collect();
         let after: Vec<Vector3<f64>> = end.grains.iter().map(|grain| grain.velocity * grain.mass).collect();
         Ok(kept(&before, &after, end.steps))
@@ -32,7 +32,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         scenes::collisions().map(|all| all.into_iter().filter(|named| !named.frictional).collect::<Vec<_>>());
     let quantity = ("angular momentum in the end", "kg m²/s");
     let angular = rows.each(frictionless, &terms.resolution, quantity, |named| {
-        let end = End::of(solver, &named.scene, &terms.resolution)?;
+        let end = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let grains = &named.scene.grains;
         let angular_momentum =
             |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;

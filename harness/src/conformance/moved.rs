@@ -52,8 +52,8 @@ impl View {
 
     /// Returns the difference between the run of the transformed scene, transformed back, and the run of the scene.
     pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<Found, NoEnd> {
-        let straight = End::of(solver, scene, &terms.resolution)?;
-        let seen = End::of(solver, &self.seen(scene), &terms.resolution)?;
+        let straight = End::from_solver(solver, scene, &terms.resolution)?;
+        let seen = End::from_solver(solver, &self.seen(scene), &terms.resolution)?;
         let allowed = rounding(scene, [&straight, &seen]);
         Ok(Found::deviation(straight.apart(&self.undone(&seen)), straight.reach().1, allowed))
     }

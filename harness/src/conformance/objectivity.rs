@@ -70,7 +70,7 @@ fn worst(rows: &Rows<'_>, turning: &Turning, read: impl Fn(&End) -> (f64, f64), 
     let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
     let mut worst: Option<(f64, f64)> = None;
     for resolution in [Some(rows.terms.resolution), coarse].into_iter().flatten() {
-        let (off, allowed) = read(&End::of(rows.solver, &turning.named.scene, &resolution)?);
+        let (off, allowed) = read(&End::from_solver(rows.solver, &turning.named.scene, &resolution)?);
         if off.is_nan() {
             return Ok(Found::deviation(off, scale, allowed));
         }

@@ -40,13 +40,13 @@ const QUANTITY: (&str, &str) = ("order in the time step of the end", "1");
 /// Returns the order from three levels. The reference is the solver's own finest run, so the contact convention has no
 /// effect.
 fn observed(rows: &Rows<'_>, named: &Named, levels: [Resolution; 3], bound: Bound) -> Result<Found, NoEnd> {
-    let run = |at: usize| End::of(rows.solver, &named.scene, &levels[at]);
+    let run = |at: usize| End::from_solver(rows.solver, &named.scene, &levels[at]);
     let ends = [run(0)?, run(1)?, run(2)?];
     let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));
     let claimed = rows.terms.order.map_or(f64::NAN, |order| order.expected);
     Ok(Found {
         measured: Measured::new((coarse / fine).log2(), Expected::Bound(bound), 1.0),
-        allowed: asymptotic(claimed).of(&[]),
+        allowed: asymptotic(claimed).allowed(&[]),
         made: Made::Required,
     })
 }

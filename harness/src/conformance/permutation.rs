@@ -20,14 +20,14 @@ pub(super) const PROPERTY: Property = Property {
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let (solver, terms) = (rows.solver, rows.terms);
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
-        let straight = End::of(solver, &named.scene, &terms.resolution)?;
+        let straight = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let mut permuted = named.scene.clone();
         // A permutation that is neither the identity nor a reversal: new place p gets the grain from old place 3p + 2
         // (mod n).
         let count = permuted.grains.len();
         let old_place = |place: usize| (3 * place + 2) % count;
         permuted.grains = (0..count).map(|place| named.scene.grains[old_place(place)]).collect();
-        let end = End::of(solver, &permuted, &terms.resolution)?;
+        let end = End::from_solver(solver, &permuted, &terms.resolution)?;
         let mut restored = straight.clone();
         for place in 0..count {
             restored.grains[old_place(place)] = end.grains[place].clone();

@@ -217,14 +217,14 @@ fn scene_error(runner: &Runner, claim: &Claim, control: Control) -> Option<f64> 
 fn is_own(claim: &Claim) -> bool {
     let is_computed = !matches!(claim.evidence(), Evidence::OtherCode | Evidence::Regression);
     let is_short = |run: &Run| {
-        Method::of(run.solver).is_some() && run.set == Set::Main && !run.kept && !run.aside && run.data.is_none()
+        Method::from_name(run.solver).is_some() && run.set == Set::Main && !run.kept && !run.aside && run.data.is_none()
     };
     is_computed && claim.control.set == Set::Main && claim.runs.iter().all(is_short)
 }
 
 /// Returns whether the runs of a claim are short enough for a wrong scene, and for a wrong method.
 fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
-    let of_grains = |run: &Run| matches!(Method::of(run.solver), Some(Method::Dem | Method::Rigid));
+    let of_grains = |run: &Run| matches!(Method::from_name(run.solver), Some(Method::Dem | Method::Rigid));
     if !is_own(claim) || !claim.runs.iter().all(of_grains) {
         return [false; 2];
     }

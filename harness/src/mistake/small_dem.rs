@@ -563,7 +563,7 @@ impl Solver for SmallDem {
         }
         watch.progress(steps, steps);
         let (series, snapshots) = recorder.finish();
-        let provenance = Provenance::of(scene, self.name(), resolution, step, Vec::new());
+        let provenance = Provenance::new(scene, self.name(), resolution, step, Vec::new());
         Ok(Record { provenance, series, snapshots, cost: Cost::of_program(steps, scene.grains.len(), f64::NAN) })
     }
 }

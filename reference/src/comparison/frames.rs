@@ -80,8 +80,8 @@ impl Frames {
             From::Grains { files, reader: None, is_new: true, snapshot: DumpSnapshot::default() }
         } else {
             let table = read_table(path)?;
-            let time = ["time", "t"].into_iter().find_map(|name| table.column(names.of(name)));
-            let (step, rows) = (table.column(names.of("step")), (0..table.rows()).collect::<Vec<_>>());
+            let time = ["time", "t"].into_iter().find_map(|name| table.column(names.in_file(name)));
+            let (step, rows) = (table.column(names.in_file("step")), (0..table.rows()).collect::<Vec<_>>());
             From::Table { step, time, rows: rows.into_iter(), table }
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
@@ -120,7 +120,7 @@ impl Frames {
     }
 
     fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<crate::read::snapshot::Coordinate> {
-        match self.names.of(AXES[axis]) {
+        match self.names.in_file(AXES[axis]) {
             theirs if theirs == AXES[axis] => snapshot.coordinate(axis),
             theirs => snapshot.coordinate_named(theirs, axis),
         }
@@ -180,13 +180,13 @@ impl Frames {
                 let step = step.map(|at| value(at) as u64);
                 let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
                 let place = Place { step, time, number, line: row as u64 + 2 };
-                let column = |name: &String| table.column(self.names.of(name)).map_or(f64::NAN, value);
+                let column = |name: &String| table.column(self.names.in_file(name)).map_or(f64::NAN, value);
                 let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
                 return Ok(Some((Frame { place, ids: None, values }, numbers)));
             }
         }
         let From::Grains { snapshot, .. } = &self.from else { return Ok(None) };
-        if let Some(id) = snapshot.column(self.names.of("id")) {
+        if let Some(id) = snapshot.column(self.names.in_file("id")) {
             self.ids.check(&self.file, snapshot, id)?;
         }
         // The reader has already compared a snapshot that repeats a step with the previous one.
@@ -238,16 +238,16 @@ impl Frames {
 
     fn of_snapshot(&self, snapshot: &DumpSnapshot, number: u64) -> Frame {
         let mut order: Vec<usize> = (0..snapshot.rows()).collect();
-        let id = snapshot.column(self.names.of("id"));
+        let id = snapshot.column(self.names.in_file("id"));
         if let Some(id) = id {
             order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
         }
         let values = self.wanted.iter().map(|name| {
             let axis = AXES.iter().position(|axis| axis == name);
             if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
-                return order.iter().map(|&row| coordinate.of(snapshot.row(row))).collect();
+                return order.iter().map(|&row| coordinate.value(snapshot.row(row))).collect();
             }
-            let at = snapshot.column(self.names.of(name));
+            let at = snapshot.column(self.names.in_file(name));
             order.iter().map(|&row| at.map_or(f64::NAN, |at| snapshot.row(row)[at])).collect()
         });
         let of_step =
@@ -271,7 +271,7 @@ impl Frames {
                     let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
                     return Printed { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
                 }
-                let at = snapshot.column(self.names.of(name));
+                let at = snapshot.column(self.names.in_file(name));
                 at.map_or(Printed::default(), |at| Printed {
                     digits: snapshot.columns[at].digits,
                     of_file,
@@ -280,7 +280,7 @@ impl Frames {
             }
             From::Table { table, .. } => {
                 let of_file = table.digits();
-                let at = table.column(self.names.of(name));
+                let at = table.column(self.names.in_file(name));
                 at.map_or(Printed::default(), |at| Printed { digits: table.columns[at].digits, of_file, scale: None })
             }
         }

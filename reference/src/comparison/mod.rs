@@ -51,7 +51,7 @@ impl Key {
         }
     }
 
-    fn of(self, place: &Place) -> f64 {
+    fn value(self, place: &Place) -> f64 {
         match self {
             Self::Step => place.step.map_or(f64::NAN, |step| step as f64),
             Self::Time => place.time.unwrap_or(f64::NAN),
@@ -114,9 +114,9 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     if walk.compared == 0 {
         return Err(ReadError::at(&name, 1, format!("a {} that the other file has", key.word()), "none"));
     }
-    let ends = [0, 1].map(|which: usize| places[which].last().map_or(f64::NAN, |place| key.of(place)));
+    let ends = [0, 1].map(|which: usize| places[which].last().map_or(f64::NAN, |place| key.value(place)));
     let interval = |which: usize| {
-        let first = places[which].first().map_or(f64::NAN, |place| key.of(place));
+        let first = places[which].first().map_or(f64::NAN, |place| key.value(place));
         (ends[which] - first) / (places[which].len().max(2) - 1) as f64
     };
     let interval = interval(0).max(interval(1));
@@ -225,12 +225,12 @@ impl Walk {
         let mut recent: Vec<Frame> = Vec::new();
         let mut ahead = second.next()?;
         while let Some(frame) = first.next()? {
-            let at = self.key.of(&frame.place);
+            let at = self.key.value(&frame.place);
             let key = self.key;
             let is_there = |other: f64| if key == Key::Time { is_one(other, at) } else { other == at };
             // Earlier frames are kept as long as a sample can lie between them and the next frame.
             while let Some(next) = ahead.take() {
-                let other = self.key.of(&next.place);
+                let other = self.key.value(&next.place);
                 if other >= at || is_there(other) {
                     ahead = Some(next);
                     break;
@@ -239,14 +239,14 @@ impl Walk {
                 ahead = second.next()?;
             }
             match (recent.last(), &ahead) {
-                (_, Some(next)) if is_there(self.key.of(&next.place)) => {
+                (_, Some(next)) if is_there(self.key.value(&next.place)) => {
                     matched(&frame, next, &second.file, self.key)?;
                     self.take(at, &frame, &next.values);
                 }
                 (Some(before), Some(next)) if self.key == Key::Time => {
                     matched(&frame, next, &second.file, self.key)?;
                     matched(&frame, before, &second.file, self.key)?;
-                    let [low, high] = [before, next].map(|sample| self.key.of(&sample.place));
+                    let [low, high] = [before, next].map(|sample| self.key.value(&sample.place));
                     let values = between(before, next, (at - low) / (high - low));
                     self.interpolated += 1;
                     self.take(at, &frame, &values);
@@ -300,7 +300,7 @@ fn between(before: &Frame, next: &Frame, share: f64) -> Vec<Vec<f64>> {
 /// Returns an error if two frames have different rows or ids.
 fn matched(frame: &Frame, other: &Frame, file: &str, key: Key) -> Result<(), ReadError> {
     let rows = |frame: &Frame| frame.values.first().map_or(0, Vec::len);
-    let (word, at) = (key.word(), key.of(&frame.place));
+    let (word, at) = (key.word(), key.value(&frame.place));
     if rows(frame) != rows(other) {
         let expected = format!("{} rows at {word} {at}, as in the other file", rows(frame));
         return Err(ReadError::at(file, other.place.line, expected, rows(other).to_string()));

@@ -24,7 +24,7 @@ impl Dashpots {
     ///
     /// Other dashpots can be converted if all contacts have the same effective mass. Then c = βk is γ = βk/m_eff, and
     /// a coefficient of restitution gives γ = 2ζ√(k/m_eff).
-    pub(crate) fn of(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<Self, String> {
+    pub(crate) fn from_law(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<Self, String> {
         let mut dashpots = Self { normal: law.normal_damping, tangential: law.tangential_damping };
         let named = match (law.stiffness_damping != 0.0, law.damping_ratio != 0.0) {
             (false, false) => return Ok(dashpots),

@@ -82,7 +82,7 @@ impl Stepping {
     ///
     /// # Errors
     /// If the resolution is no time step for this scene.
-    pub fn of(scene: &Scene, resolution: &Resolution) -> Result<Self, String> {
+    pub fn new(scene: &Scene, resolution: &Resolution) -> Result<Self, String> {
         Ok(Self::every(resolution.steps(scene)?, scene))
     }
 
@@ -110,7 +110,7 @@ impl Stepping {
 /// # Errors
 /// If the program cannot express the scene, with the reason, or if the resolution is no time step.
 pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> Result<Deck, DeckError> {
-    let stepping = Stepping::of(scene, resolution).map_err(DeckError::Resolution)?;
+    let stepping = Stepping::new(scene, resolution).map_err(DeckError::Resolution)?;
     let unsupported = |reason: String| DeckError::Unsupported { program, reason };
     outline::refuse_what_neither_has(scene).map_err(unsupported)?;
     let Written { files, logged, names } = program.peer().write(scene, &stepping).map_err(unsupported)?;

@@ -109,7 +109,7 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 impl AxisPlane {
     /// Returns a wall as such a plane. The wall must be at rest, or move tangentially along one axis at one velocity
     /// for the whole run.
-    pub(crate) fn of(wall: &Wall) -> Option<Self> {
+    pub(crate) fn from_wall(wall: &Wall) -> Option<Self> {
         let WallShape::Plane { point, normal } = wall.shape else { return None };
         let axis = (0..3).find(|&axis| normal[axis].abs() == 1.0)?;
         let mut plane = Self { axis, at: point[axis], is_low: normal[axis] > 0.0, shear: None };

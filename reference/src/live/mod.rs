@@ -142,7 +142,7 @@ impl Solver for Live {
         let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
         let options = log.version.into_iter().collect();
         Ok(Record {
-            provenance: Provenance::of(scene, self.name(), resolution, stepping.time_step, options),
+            provenance: Provenance::new(scene, self.name(), resolution, stepping.time_step, options),
             series: observed.series,
             snapshots: observed.snapshots,
             cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
@@ -210,7 +210,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
     let stepping = deck.stepping;
     let mut snapshot = DumpSnapshot::default();
     let ids: Vec<u64> = (1..=scene.grains.len() as u64).collect();
-    let mut pairs = PairForces::of(scene, &ids);
+    let mut pairs = PairForces::new(scene, &ids);
     for (name, is_there) in [(CONTACTS, true), (END_CONTACTS, !stepping.ends_on_a_sample())] {
         if !pairs.is_asked() || !is_there {
             continue;

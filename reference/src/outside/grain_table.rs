@@ -48,12 +48,12 @@ pub(super) fn observe(
 
 /// Returns the step of every row.
 fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec<u64>, ReadError> {
-    if let Some(column) = table.column(names.of("step")) {
+    if let Some(column) = table.column(names.in_file("step")) {
         let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
         let steps: Result<Vec<u64>, f64> = table.values(column).map(whole).collect();
         return steps.map_err(|step| ReadError::at(name, 1, "whole steps from zero on", step.to_string()));
     }
-    let Some(column) = ["time", "t"].into_iter().find_map(|time| table.column(names.of(time))) else {
+    let Some(column) = ["time", "t"].into_iter().find_map(|time| table.column(names.in_file(time))) else {
         let have: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         return Err(ReadError::at(name, 1, "a column `step` or `time`", quoted(&have.join(" "))));
     };

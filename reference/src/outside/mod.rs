@@ -271,7 +271,7 @@ impl Outside {
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
         let format = self.manifest.scene;
-        let text = Resolved::of(given).text(format).map_err(not_run)?;
+        let text = Resolved::new(given).text(format).map_err(not_run)?;
         let ending = if format == SceneFormat::Json { "json" } else { "toml" };
         let name = format!("{SCENE}.{ending}");
         let folder = process::scratch([(&*name, &*text)]).map_err(|error| not_run(error.to_string()))?;
@@ -489,7 +489,7 @@ impl Solver for Outside {
             return Err(cannot(reason));
         }
         let given =
-            Given::of(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
+            Given::new(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         let stepping = given.stepping;
         self.prepare()?;
         let particles = scene.grains.len() as u64;
@@ -511,7 +511,7 @@ impl Solver for Outside {
         };
         let options = self.version().into_iter().collect();
         Ok(Record {
-            provenance: Provenance::of(scene, self.name(), resolution, stepping.time_step, options),
+            provenance: Provenance::new(scene, self.name(), resolution, stepping.time_step, options),
             series: observed.series,
             snapshots: observed.snapshots,
             cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),

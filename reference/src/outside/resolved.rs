@@ -87,9 +87,9 @@ impl<'s> Given<'s> {
     ///
     /// # Errors
     /// If the resolution is not valid for the scene, with the reason.
-    pub fn of(scene: &'s Scene, resolution: &Resolution) -> Result<Self, String> {
+    pub fn new(scene: &'s Scene, resolution: &Resolution) -> Result<Self, String> {
         let Resolution::Grid { cells, points, courant } = *resolution else {
-            return Ok(Self { scene, stepping: Stepping::of(scene, resolution)?, grid: None });
+            return Ok(Self { scene, stepping: Stepping::new(scene, resolution)?, grid: None });
         };
         let stepping = Stepping::every(resolution.steps_on_grid(scene)?, scene);
         let cell = scene.reference_length / cells;
@@ -245,7 +245,7 @@ pub struct Driven {
 impl Resolved {
     /// Returns a scene with explicit values.
     #[must_use]
-    pub fn of(given: &Given<'_>) -> Self {
+    pub fn new(given: &Given<'_>) -> Self {
         let Given { scene, stepping, grid } = given;
         let vector = |vector: &Vector3<f64>| [vector.x, vector.y, vector.z];
         let material = |place: u16| scene.materials[usize::from(place)].clone();

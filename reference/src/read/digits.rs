@@ -140,7 +140,7 @@ impl Digits {
 mod tests {
     use super::*;
 
-    fn of(texts: &[&str]) -> Digits {
+    fn digits_of(texts: &[&str]) -> Digits {
         let mut digits = Digits::default();
         texts.iter().for_each(|text| digits.see(text.as_bytes()));
         digits
@@ -152,47 +152,47 @@ mod tests {
 
     #[test]
     fn general_format() {
-        let digits = of(&["0", "1", "-0.00123457", "150.25"]);
+        let digits = digits_of(&["0", "1", "-0.00123457", "150.25"]);
         assert_eq!(digits.significant(), 6);
         close(digits.uncertainty(1.0, &digits), 0.5e-5);
         close(digits.uncertainty(-0.001_234_57, &digits), 0.5e-8);
         assert_eq!(digits.uncertainty(0.0, &digits), 0.0);
         // A column with few digits is assumed to have more if the file has more.
-        close(of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
-        close(of(&["0.5"]).uncertainty(0.5, &of(&["0.12345678901234567"])), 0.5e-6);
+        close(digits_of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
+        close(digits_of(&["0.5"]).uncertainty(0.5, &digits_of(&["0.12345678901234567"])), 0.5e-6);
     }
 
     /// Python writes zero as `0.0`. In a file with more digits elsewhere, such a number is not rounded to tenths.
     #[test]
     fn a_whole_number_with_a_point_is_not_rounded_to_tenths() {
-        let of_file = of(&["0.0", "0.02125", "1e-05"]);
-        assert_eq!(of(&["0.0", "0.0"]).uncertainty(0.0, &of_file), 0.0);
-        close(of(&["0.0", "0.4"]).uncertainty(0.0, &of_file), 0.05);
-        close(of(&["0.0"]).uncertainty(0.0, &of(&["0.0", "0.4"])), 0.05);
-        let mut long = of(&["0.0"; 64]);
+        let of_file = digits_of(&["0.0", "0.02125", "1e-05"]);
+        assert_eq!(digits_of(&["0.0", "0.0"]).uncertainty(0.0, &of_file), 0.0);
+        close(digits_of(&["0.0", "0.4"]).uncertainty(0.0, &of_file), 0.05);
+        close(digits_of(&["0.0"]).uncertainty(0.0, &digits_of(&["0.0", "0.4"])), 0.05);
+        let mut long = digits_of(&["0.0"; 64]);
         long.see(b"0.4");
         close(long.uncertainty(0.0, &of_file), 0.05);
     }
 
     #[test]
     fn whole_numbers_have_no_half_unit() {
-        let whole = of(&["3", "4"]);
+        let whole = digits_of(&["3", "4"]);
         assert_eq!(whole.half_unit(3.0, &whole), 0.0);
-        close(of(&["3", "4.5"]).half_unit(3.0, &of(&["4.5"])), 0.05);
+        close(digits_of(&["3", "4.5"]).half_unit(3.0, &digits_of(&["4.5"])), 0.05);
     }
 
     #[test]
     fn full_precision() {
-        let digits = of(&["0.12345678901234567", "1"]);
+        let digits = digits_of(&["0.12345678901234567", "1"]);
         assert_eq!(digits.uncertainty(1.0, &digits), 0.5 * f64::EPSILON);
     }
 
     #[test]
     fn fixed_and_scientific_format() {
-        let fixed = of(&["0.500000", "-0.000123", "150.250000"]);
+        let fixed = digits_of(&["0.500000", "-0.000123", "150.250000"]);
         close(fixed.uncertainty(0.5, &fixed), 0.5e-6);
         close(fixed.uncertainty(0.0, &fixed), 0.5e-6);
-        let scientific = of(&["1.000000e+00", "0.000000e+00"]);
+        let scientific = digits_of(&["1.000000e+00", "0.000000e+00"]);
         close(scientific.uncertainty(2000.0, &scientific), 0.5e-3);
     }
 }

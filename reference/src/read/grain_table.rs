@@ -54,7 +54,7 @@ struct Keys {
 }
 
 impl Keys {
-    fn of(table: &Table) -> Self {
+    fn from_table(table: &Table) -> Self {
         let column = |names: &[&str]| names.iter().find_map(|name| table.column(name));
         Self { step: column(&["step"]), frame: column(&["TimeStep"]), time: column(&["Time", "time", "t", "time (s)"]) }
     }
@@ -72,7 +72,7 @@ impl Keys {
 pub(crate) fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
     let name = path.to_string_lossy();
     let table = read_table(path)?;
-    let keys = Keys::of(&table);
+    let keys = Keys::from_table(&table);
     let columns = columns(&name, &table)?;
     let mut moments: Vec<Moment> = Vec::new();
     let mut row = 0;

@@ -184,7 +184,7 @@ pub struct Coordinate {
 impl Coordinate {
     /// Returns the coordinate of a row from [`DumpSnapshot::row`].
     #[must_use]
-    pub fn of(&self, row: &[f64]) -> f64 {
+    pub fn value(&self, row: &[f64]) -> f64 {
         let value = |column: usize| row.get(column).copied().unwrap_or(f64::NAN);
         let tilted: f64 = self.tilted.iter().flatten().map(|(column, tilt)| tilt * value(*column)).sum();
         let straight = self.origin + self.scale * value(self.column);

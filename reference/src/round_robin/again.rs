@@ -35,7 +35,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    fn of(values: &[f64]) -> Option<Self> {
+    fn from_values(values: &[f64]) -> Option<Self> {
         match values {
             [one] => Some(Self { mean: *one, half: None }),
             [a, b] => Some(Self { mean: 0.5 * (a + b), half: Some(0.5 * (a - b).abs()) }),
@@ -68,7 +68,7 @@ pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
     let mut all = Vec::new();
     let mut add = |key, what: String, time, published: &[&Published], read: &dyn Fn(&Kind) -> Option<f64>| {
         let values: Option<Vec<f64>> = published.iter().map(|table| read(&table.kind)).collect();
-        if let Some(pair) = values.as_deref().and_then(Pair::of) {
+        if let Some(pair) = values.as_deref().and_then(Pair::from_values) {
             all.push(Quantity { key, what, time, pair });
         }
     };

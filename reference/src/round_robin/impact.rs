@@ -33,7 +33,7 @@ pub struct Impact {
 
 impl Impact {
     /// Reads a table whose first column is the time.
-    pub(super) fn of(table: &Table, file: &str) -> Result<Self, ReadError> {
+    pub(super) fn from_table(table: &Table, file: &str) -> Result<Self, ReadError> {
         let mut times: Vec<f64> = Vec::new();
         let mut kept = Vec::new();
         for (row, time) in table.values(0).enumerate() {
@@ -108,6 +108,6 @@ impl Impact {
         let kept: Vec<&Course> = self.courses.iter().filter(|course| kept(course)).collect();
         let values: Option<Vec<(&str, f64)>> =
             kept.iter().map(|course| Some((course.code.as_str(), value(self, course)?))).collect();
-        Spread::of(values?)
+        Spread::from_values(values?)
     }
 }

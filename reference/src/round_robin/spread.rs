@@ -16,7 +16,7 @@ pub struct Spread {
 impl Spread {
     /// Returns the statistics of values by code, or `None` if there are fewer than two codes or no code has two beds.
     #[must_use]
-    pub fn of<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
+    pub fn from_values<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
         let mut codes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         values.into_iter().for_each(|(code, value)| codes.entry(code).or_default().push(value));
         let means: Vec<f64> = codes.values().map(|code_values| mean(code_values)).collect();
@@ -62,10 +62,10 @@ mod tests {
     /// Two codes with two beds each have the means 1 and 3. Each bed differs by 1 from the mean of its code.
     #[test]
     fn tells_codes_from_beds() {
-        let spread = Spread::of([("a", 0.0), ("a", 2.0), ("b", 2.0), ("b", 4.0)]).unwrap();
+        let spread = Spread::from_values([("a", 0.0), ("a", 2.0), ("b", 2.0), ("b", 4.0)]).unwrap();
         assert_eq!((spread.mean, spread.code, spread.bed), (2.0, 2.0_f64.sqrt(), 2.0_f64.sqrt()));
         assert!((spread.allowed(1, 1) - 2.0 * 6.0_f64.sqrt()).abs() < 1e-14);
-        assert_eq!(Spread::of([("a", 0.0), ("a", 2.0)]), None);
-        assert_eq!(Spread::of([("a", 0.0), ("b", 2.0)]), None);
+        assert_eq!(Spread::from_values([("a", 0.0), ("a", 2.0)]), None);
+        assert_eq!(Spread::from_values([("a", 0.0), ("b", 2.0)]), None);
     }
 }

@@ -56,8 +56,8 @@ pub fn read(path: &Path) -> Result<Option<Published>, ReadError> {
     let table = read_table(path)?;
     let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
     let kind = match names[..] {
-        ["t", "z"] => Kind::Impact(Impact::of(&of_one(table, path), &file)?),
-        ["t", first, ..] if first.contains("_IC") => Kind::Impact(Impact::of(&table, &file)?),
+        ["t", "z"] => Kind::Impact(Impact::from_table(&of_one(table, path), &file)?),
+        ["t", first, ..] if first.contains("_IC") => Kind::Impact(Impact::from_table(&table, &file)?),
         ["t", first, ..] if ZONES.contains(&first) => Kind::Drum(drum(&table, &names, &file)?),
         ["t", "count"] => {
             let times = rising(&table, &file)?;

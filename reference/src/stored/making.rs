@@ -45,7 +45,7 @@ pub fn make(
 ) -> Result<Made, RunError> {
     let live = Live::find(program);
     let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
-    let stepping = Stepping::of(scene, resolution).map_err(fail)?;
+    let stepping = Stepping::new(scene, resolution).map_err(fail)?;
     let run = live.run(scene, resolution, &mut ())?;
     let (half_scene, half_resolution) = refined(scene, stepping.time_step, [stepping.steps, stepping.interval], 2);
     let half = live.run(&half_scene, &half_resolution, &mut ())?;

@@ -82,7 +82,7 @@ impl StoredRun {
     /// Returns true if the run was made from this scene at this resolution.
     #[must_use]
     pub fn is_of(&self, scene: &Scene, resolution: &Resolution) -> bool {
-        Stepping::of(scene, resolution).is_ok_and(|stepping| scene_hash(scene, &stepping) == self.provenance.scene)
+        Stepping::new(scene, resolution).is_ok_and(|stepping| scene_hash(scene, &stepping) == self.provenance.scene)
     }
 
     /// Returns the values of the scene's probes.
@@ -112,11 +112,11 @@ impl StoredRun {
             );
             return Err(RunError::Stale { solver, reason });
         }
-        let stepping = Stepping::of(scene, resolution)
+        let stepping = Stepping::new(scene, resolution)
             .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
         let options = vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)];
         Ok(Record {
-            provenance: grainbench_scene::record::Provenance::of(
+            provenance: grainbench_scene::record::Provenance::new(
                 scene,
                 solver,
                 resolution,

@@ -244,7 +244,7 @@ mod tests {
         let hash = |change: fn(&mut Scene), step: f64| {
             let mut scene = scene.clone();
             change(&mut scene);
-            scene_hash(&scene, &Stepping::of(&scene, &Resolution::TimeStep(step)).unwrap())
+            scene_hash(&scene, &Stepping::new(&scene, &Resolution::TimeStep(step)).unwrap())
         };
         let own = hash(|_| {}, 1e-3);
         assert_eq!(own, hash(|scene| scene.title = "b".to_owned(), 1e-3));
@@ -252,7 +252,7 @@ mod tests {
         assert_ne!(own, hash(|scene| scene.grains[0].position.x = f64::from_bits(1), 1e-3));
         assert_ne!(own, hash(|scene| scene.change_laws(|law| law.friction = 0.1), 1e-3));
         assert_ne!(own, hash(|scene| scene.gravity.y = -9.8, 1e-3));
-        let stepping = Stepping::of(&scene, &Resolution::TimeStep(1e-3)).unwrap();
+        let stepping = Stepping::new(&scene, &Resolution::TimeStep(1e-3)).unwrap();
         let by_bits = scene_hash_by_bits(&scene, &stepping);
         assert!(is_scene_of(&own, &scene, &stepping) && is_scene_of(&by_bits, &scene, &stepping) && own != by_bits);
         for change in

@@ -64,7 +64,7 @@ pub struct Over {
 impl Summary {
     /// Returns the summary of a series of frames, which must not be empty.
     #[must_use]
-    pub fn of(course: &Course, source: String, blocks: usize) -> Self {
+    pub fn new(course: &Course, source: String, blocks: usize) -> Self {
         let over = |column: &Column| {
             let (mean, elements) = course.mean_over(column, blocks)?;
             Some(Over { quantity: column.name, words: column.words, unit: column.unit, mean, elements })

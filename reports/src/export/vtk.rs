@@ -20,11 +20,11 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     whole(&mut out, "Int32", "material", grains.iter().map(|grain| i64::from(grain.material)))?;
     scalars(&mut out, "radius", grains.iter().map(|grain| grain.radius))?;
     scalars(&mut out, "mass", grains.iter().map(|grain| grain.mass))?;
-    told(grains, |grain| grain.angle, |angles| scalars(&mut out, "angle", angles.into_iter()))?;
+    write_if_complete(grains, |grain| grain.angle, |angles| scalars(&mut out, "angle", angles.into_iter()))?;
     vectors(&mut out, "velocity", grains.iter().map(|grain| grain.velocity))?;
     vectors(&mut out, "spin", grains.iter().map(|grain| grain.spin))?;
-    told(grains, |grain| grain.force, |forces| vectors(&mut out, "force", forces.into_iter()))?;
-    told(grains, |grain| grain.torque, |torques| vectors(&mut out, "torque", torques.into_iter()))?;
+    write_if_complete(grains, |grain| grain.force, |forces| vectors(&mut out, "force", forces.into_iter()))?;
+    write_if_complete(grains, |grain| grain.torque, |torques| vectors(&mut out, "torque", torques.into_iter()))?;
     writeln!(out, "</PointData>\n<Points>")?;
     vectors(&mut out, "points", grains.iter().map(|grain| grain.position))?;
     writeln!(out, "</Points>")?;
@@ -33,7 +33,7 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
 }
 
 /// Writes a quantity that every grain reports. If a grain lacks it, no array is written, rather than zeros.
-fn told<T>(
+fn write_if_complete<T>(
     grains: &[GrainState],
     value: impl Fn(&GrainState) -> Option<T>,
     write: impl FnOnce(Vec<T>) -> io::Result<()>,

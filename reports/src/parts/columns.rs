@@ -9,7 +9,7 @@ pub(super) trait Columns {
     /// Visits a number, which may be NaN.
     fn number(&mut self, name: &'static str, value: &mut f64);
     /// Visits a number that may be absent.
-    fn told(&mut self, name: &'static str, value: &mut Option<f64>);
+    fn optional(&mut self, name: &'static str, value: &mut Option<f64>);
     /// Visits a Boolean value.
     fn flag(&mut self, name: &'static str, value: &mut bool);
     /// Visits a text.
@@ -28,7 +28,7 @@ pub(super) trait Columns {
         let mut numbers = value.unwrap_or([0.0; N]);
         for (name, number) in names.into_iter().zip(&mut numbers) {
             let mut component = value.is_some().then_some(*number);
-            self.told(name, &mut component);
+            self.optional(name, &mut component);
             all &= component.is_some();
             *number = component.unwrap_or(*number);
         }
@@ -81,7 +81,7 @@ pub(super) struct Gathered {
 
 impl Gathered {
     /// Returns the columns of these rows. Without rows, the columns are empty.
-    pub(super) fn of<R: Row>(rows: &mut [R]) -> Self {
+    pub(super) fn from_rows<R: Row>(rows: &mut [R]) -> Self {
         let mut gathered = Self::default();
         R::blank().visit(&mut gathered);
         for (_, values) in &mut gathered.columns {
@@ -122,7 +122,7 @@ impl Columns for Gathered {
         }
     }
 
-    fn told(&mut self, name: &'static str, value: &mut Option<f64>) {
+    fn optional(&mut self, name: &'static str, value: &mut Option<f64>) {
         if let Values::Told(values) = self.column(name, Values::Told(Vec::new())) {
             values.push(*value);
         }
@@ -178,7 +178,7 @@ impl Columns for Scattered<'_> {
         }
     }
 
-    fn told(&mut self, _name: &'static str, value: &mut Option<f64>) {
+    fn optional(&mut self, _name: &'static str, value: &mut Option<f64>) {
         if let Some(Values::Told(values)) = self.next() {
             *value = values.get(self.row).copied().flatten();
         }

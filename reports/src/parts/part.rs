@@ -141,7 +141,11 @@ impl OpenPart {
             })
         }
         let directory = self.directory.path().join("part");
-        self.frames.add(&directory, &[], rows(first, snapshots, |snapshot| std::iter::once(Frame::of(snapshot))))?;
+        self.frames.add(
+            &directory,
+            &[],
+            rows(first, snapshots, |snapshot| std::iter::once(Frame::from_snapshot(snapshot))),
+        )?;
         self.grains.add(
             &directory,
             &self.without,

@@ -31,7 +31,7 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
 pub(super) struct Frame(pub(super) Snapshot);
 
 impl Frame {
-    pub(super) fn of(snapshot: &Snapshot) -> Self {
+    pub(super) fn from_snapshot(snapshot: &Snapshot) -> Self {
         Self(Snapshot {
             grains: Vec::new(),
             // The table of snapshots stores only whether contacts were reported.
@@ -103,7 +103,7 @@ impl Row for GrainState {
         columns.vector(PLACE, &mut self.position);
         columns.vector(VELOCITY, &mut self.velocity);
         columns.vector(SPIN, &mut self.spin);
-        columns.told("angle", &mut self.angle);
+        columns.optional("angle", &mut self.angle);
         columns.told_vector(FORCE, &mut self.force);
         columns.told_vector(TORQUE, &mut self.torque);
         columns.number("plastic_strain", &mut self.plastic_strain);

@@ -182,7 +182,7 @@ impl SnapshotStore {
         let rows = rows_of(&snapshot);
         self.rows += rows;
         self.snapshots += 1;
-        self.end = Some((Brief::of(&snapshot), rows));
+        self.end = Some((Brief::from_snapshot(&snapshot), rows));
         if self.in_short && self.rows > READABLE {
             self.leave_out();
             if rows > READABLE {

@@ -46,7 +46,7 @@ impl<R: Row> TableWriter<R> {
         }
         // Bytes of the same significance are stored together. Leading bytes are similar, and bytes of digits that were
         // rounded away are zero.
-        let mut columns = Gathered::of::<R>(&mut []).columns;
+        let mut columns = Gathered::from_rows::<R>(&mut []).columns;
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
             let encoding = match values {
@@ -56,8 +56,8 @@ impl<R: Row> TableWriter<R> {
             };
             properties = properties.set_column_encoding(ColumnPath::from(*name), encoding);
         }
-        let schema = schema(R::TABLE, columns.iter().map(|(name, values)| (*name, values))).map_err(told)?;
-        let file = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(told)?;
+        let schema = schema(R::TABLE, columns.iter().map(|(name, values)| (*name, values))).map_err(io_error)?;
+        let file = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(io_error)?;
         Ok(Self { file, without: without.to_vec(), row: PhantomData })
     }
 
@@ -68,13 +68,13 @@ impl<R: Row> TableWriter<R> {
             if group.is_empty() {
                 return Ok(());
             }
-            let gathered = Gathered::of(&mut group);
+            let gathered = Gathered::from_rows(&mut group);
             drop(group);
-            let mut writer = self.file.next_row_group().map_err(told)?;
+            let mut writer = self.file.next_row_group().map_err(io_error)?;
             for (_, values) in gathered.columns.iter().filter(|(name, _)| !self.without.contains(name)) {
-                write(&mut writer, values).map_err(told)?;
+                write(&mut writer, values).map_err(io_error)?;
             }
-            writer.close().map_err(told)?;
+            writer.close().map_err(io_error)?;
         }
     }
 
@@ -85,7 +85,7 @@ impl<R: Row> TableWriter<R> {
 
     /// Closes the file and returns the hash of all its bytes.
     pub(super) fn close(self) -> io::Result<blake3::Hash> {
-        let mut hashed = self.file.into_inner().map_err(told)?;
+        let mut hashed = self.file.into_inner().map_err(io_error)?;
         hashed.flush()?;
         hashed.file.sync_all()?;
         Ok(hashed.hash.finalize())
@@ -104,7 +104,7 @@ pub(super) struct TableReader<R> {
 impl<R: Row> TableReader<R> {
     pub(super) fn open(directory: &Path) -> io::Result<Self> {
         let file = match File::open(directory.join(file_name(R::TABLE))) {
-            Ok(file) => Some(SerializedFileReader::new(file).map_err(told)?),
+            Ok(file) => Some(SerializedFileReader::new(file).map_err(io_error)?),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
@@ -124,10 +124,10 @@ impl<R: Row> TableReader<R> {
         let Some(file) = self.file.as_ref().filter(|file| self.group < file.num_row_groups()) else {
             return Ok(Vec::new());
         };
-        let group = file.get_row_group(self.group).map_err(told)?;
+        let group = file.get_row_group(self.group).map_err(io_error)?;
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
-        let shapes = Gathered::of::<R>(&mut []).columns;
+        let shapes = Gathered::from_rows::<R>(&mut []).columns;
         let names = group.metadata().schema_descr();
         let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
             let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {
@@ -147,7 +147,7 @@ impl<R: Row> TableReader<R> {
                 }
             })
         };
-        let columns = shapes.iter().map(column).collect::<Result<Vec<Values>, _>>().map_err(told)?;
+        let columns = shapes.iter().map(column).collect::<Result<Vec<Values>, _>>().map_err(io_error)?;
         Ok(Scattered::rows(&columns, count))
     }
 }
@@ -175,20 +175,20 @@ impl<W: Write + Send> Grouped<W> {
     /// Creates a table with the columns of `like`.
     pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-        let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(told)?;
-        Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(told)? })
+        let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(io_error)?;
+        Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(io_error)? })
     }
 
     /// Adds rows as columns of equal length, in the order of the table.
     pub(crate) fn add(&mut self, columns: &[(String, Values)]) -> io::Result<()> {
-        let mut group = self.file.next_row_group().map_err(told)?;
-        columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(told)?;
-        group.close().map(drop).map_err(told)
+        let mut group = self.file.next_row_group().map_err(io_error)?;
+        columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(io_error)?;
+        group.close().map(drop).map_err(io_error)
     }
 
     /// Closes the file.
     pub(crate) fn close(self) -> io::Result<()> {
-        self.file.close().map(drop).map_err(told)
+        self.file.close().map(drop).map_err(io_error)
     }
 }
 
@@ -265,7 +265,7 @@ fn read<T: DataType>(
 }
 
 /// Returns an I/O error. An I/O error inside the Parquet error, such as a full disk, is kept.
-fn told(error: ParquetError) -> io::Error {
+fn io_error(error: ParquetError) -> io::Error {
     match error {
         ParquetError::External(inner) => match inner.downcast::<io::Error>() {
             Ok(error) => *error,

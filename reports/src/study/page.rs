@@ -78,7 +78,7 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
 }
 
 fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
-    let costs = Costs::of(study, &|solver| study.sources.get(solver).cloned());
+    let costs = Costs::from_study(study, &|solver| study.sources.get(solver).cloned());
     let scatters: Vec<Markup> = cost::scatters(study).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         header id="summary" {

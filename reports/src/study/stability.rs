@@ -228,7 +228,7 @@ fn totals(lines: &[Hold]) -> Markup {
 
 /// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
-    let tables = tables(&Stability::of(study, &|_| None))?;
+    let tables = tables(&Stability::from_study(study, &|_| None))?;
     Ok(html! {
         header id="summary" {
             p.kicker { "grainbench" }

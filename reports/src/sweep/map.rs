@@ -38,7 +38,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     if sweep.points.is_empty() || !sweep.points.iter().any(|point| point.error().is_some()) {
         return Vec::new();
     }
-    let axes = [Marks::of(sweep, x), Marks::of(sweep, y)];
+    let axes = [Marks::from_sweep(sweep, x), Marks::from_sweep(sweep, y)];
     let panels = levels(sweep);
     let columns = panels.len().clamp(1, ACROSS);
     let wide = (WIDTH - columns as f64 * (LEFT + GAP)) / columns as f64;
@@ -90,7 +90,7 @@ struct Marks {
 }
 
 impl Marks {
-    fn of(sweep: &Sweep, place: usize) -> Self {
+    fn from_sweep(sweep: &Sweep, place: usize) -> Self {
         let mut values: Vec<f64> = sweep.points.iter().filter_map(|point| point.factors[place].as_f64()).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();

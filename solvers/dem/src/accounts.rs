@@ -30,7 +30,7 @@ pub(crate) struct Accounts {
 
 /// Returns the reason why the energy budget of a scene cannot be computed; `None` if it can.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
-    let effects = Effects::of(scene);
+    let effects = Effects::from_scene(scene);
     let lossy = effects.contact_damping || effects.global_damping || effects.rolling_resistance;
     let turning = scene.walls.iter().any(|wall| wall.motion.phases.iter().any(|phase| phase.spin.norm() > 0.0));
     let what = if lossy {

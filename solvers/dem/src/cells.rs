@@ -76,7 +76,7 @@ impl Cells {
     }
 
     /// Returns the cell of a slot.
-    pub(crate) fn of(&self, slot: usize) -> usize {
+    pub(crate) fn cell(&self, slot: usize) -> usize {
         self.start.partition_point(|&start| start as usize <= slot) - 1
     }
 

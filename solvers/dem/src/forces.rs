@@ -186,7 +186,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
     }
 
     fn layout(&self) -> Layout {
-        Layout::of::<S, T, R>()
+        Layout::new::<S, T, R>()
     }
 
     fn springs(&self) -> [usize; 3] {

@@ -292,12 +292,12 @@ impl<'a> Sums<'a> {
 /// Destination of forces and torques.
 pub(crate) trait Loads {
     /// Returns the force and torque of a grain; `None` if its slot is not included.
-    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]>;
+    fn load<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]>;
 }
 
 impl Loads for Sums<'_> {
     #[inline(always)]
-    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
+    fn load<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
         self.load.as_chunks_mut::<Q>().0.get_mut(slot.wrapping_sub(self.first))
     }
 }
@@ -310,7 +310,7 @@ pub(crate) struct All<'a> {
 
 impl Loads for All<'_> {
     #[inline(always)]
-    fn of<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
+    fn load<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
         Some(&mut self.load.as_chunks_mut::<Q>().0[..self.grains][slot])
     }
 }

@@ -72,7 +72,7 @@ pub(crate) struct Moving<'a> {
 
 impl<'a> Moving<'a> {
     /// Returns the data of the grains in these slots.
-    pub(crate) fn of<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
+    pub(crate) fn new<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
         let quads = grains.quads();
         let Grains { place, movement, load, inverse_inertia, .. } = grains;
         let all = slots.start * quads..slots.end * quads;

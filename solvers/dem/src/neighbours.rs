@@ -150,7 +150,7 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
 /// the following cells.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
     let without = cells.without();
-    let mut cell = if without < place.len() { cells.of(rows.start.clamp(without, place.len() - 1)) } else { 0 };
+    let mut cell = if without < place.len() { cells.cell(rows.start.clamp(without, place.len() - 1)) } else { 0 };
     let mut at = cells.place(cell);
     Pairs::list(rows, layout, |slot, partners, _| {
         let grain = &place[slot];

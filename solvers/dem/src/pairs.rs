@@ -72,7 +72,7 @@ impl Slots {
     /// # Panics
     /// When a slot is out of range.
     #[inline(always)]
-    fn of<L: Lanes>(lanes: L, (first, second): (&[u32], &[u32]), grains: usize) -> Self {
+    fn new<L: Lanes>(lanes: L, (first, second): (&[u32], &[u32]), grains: usize) -> Self {
         Self { first: places(lanes, first, grains), second: places(lanes, second, grains) }
     }
 }
@@ -258,30 +258,30 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             let other = spread_pairs(lanes, [one[0], other[1]]);
             let one = spread_pairs(lanes, one);
             for lane in 0..count {
-                if let Some(load) = loads.of(first[lane]) {
+                if let Some(load) = loads.load(first[lane]) {
                     lanes.add_to(load, one[lane]);
                 }
-                if let Some(load) = loads.of(second[lane]) {
+                if let Some(load) = loads.load(second[lane]) {
                     lanes.oppose(load, other[lane]);
                 }
             }
         } else if T::ACTIVE {
             let [one, other] = [spread(lanes, one[0]), spread(lanes, other[0])];
             for lane in 0..count {
-                if let Some([load]) = loads.of(first[lane]) {
+                if let Some([load]) = loads.load(first[lane]) {
                     load.add(&one[lane]);
                 }
-                if let Some([load]) = loads.of(second[lane]) {
+                if let Some([load]) = loads.load(second[lane]) {
                     load.add(&other[lane]);
                 }
             }
         } else {
             let one = spread(lanes, one[0]);
             for lane in 0..count {
-                if let Some([force]) = loads.of(first[lane]) {
+                if let Some([force]) = loads.load(first[lane]) {
                     force.add(&one[lane]);
                 }
-                if let Some([force]) = loads.of(second[lane]) {
+                if let Some([force]) = loads.load(second[lane]) {
                     force.subtract(&one[lane]);
                 }
             }
@@ -308,13 +308,13 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
             let mut from = round;
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&mut aparts) {
                 if L::WIDTH < WIDEST {
-                    *apart = self.apart(lanes, &Slots::of(lanes, slots, grains), from);
+                    *apart = self.apart(lanes, &Slots::new(lanes, slots, grains), from);
                 }
                 from += L::WIDTH;
             }
             let mut from = round;
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&aparts) {
-                let slots = Slots::of(lanes, slots, grains);
+                let slots = Slots::new(lanes, slots, grains);
                 if !laws.is_one() {
                     law = laws.gather(lanes, &laws.numbers(self.grains.material, [&slots.first, &slots.second]));
                 }

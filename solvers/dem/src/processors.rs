@@ -126,7 +126,7 @@ fn simulated<S: Geometry>(
     forces: Box<dyn crate::forces::Forces<S>>,
     team: Team,
 ) -> Simulated<S> {
-    let options = crate::contact::Options::of(convention);
+    let options = crate::contact::Options::from_convention(convention);
     Simulated::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }
 

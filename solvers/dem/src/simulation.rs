@@ -325,7 +325,7 @@ impl<S: Geometry> Simulated<S> {
     fn move_grains(&mut self) {
         let Self { motion, grains, neighbours, team, processor, .. } = self;
         let all = 0..grains.len();
-        let mut left = Moving::of(grains, all);
+        let mut left = Moving::new(grains, all);
         let parts = neighbours.shares.iter().map(|share| left.take_off(share.rows.len()));
         let fastest = team.fold(parts, |_, part| motion.advance::<S>(*processor, part), 0.0, f64::max);
         self.travel(fastest);
@@ -620,13 +620,13 @@ fn evaluate_and_move<S: Geometry>(
         let (read, sums) = grains.parts();
         near.evaluate(evaluation, read, sums, block.clone());
         if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {
-            fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::of(grains, moved..row)));
+            fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::new(grains, moved..row)));
             moved = row;
         }
     }
     if let Some(motion) = motion {
         let left = moved..grains.len();
-        fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::of(grains, left)));
+        fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::new(grains, left)));
     }
     (across.own() + near.own(), fastest)
 }

@@ -148,7 +148,7 @@ impl Dem {
             );
             return Err(RunError::Unsupported { solver: self.name(), reason });
         }
-        let mut simulated = Simulated::new(scene, forces, Options::of(&self.convention), time_step, team)?;
+        let mut simulated = Simulated::new(scene, forces, Options::from_convention(&self.convention), time_step, team)?;
         simulated.follow_critical_step(self.allow_unstable);
         Ok(Box::new(simulated))
     }
@@ -236,7 +236,7 @@ impl Dem {
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
         let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
         Ok(Record {
-            provenance: Provenance::of(scene, self.name(), resolution, time_step, self.convention.words()),
+            provenance: Provenance::new(scene, self.name(), resolution, time_step, self.convention.words()),
             series,
             snapshots,
             cost,
@@ -262,7 +262,7 @@ pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<So
 
 /// Returns the loops over contacts for the effects of a scene, with `T` if it has friction.
 fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
-    let effects = Effects::of(scene);
+    let effects = Effects::from_scene(scene);
     // All laws of a scene that have springs are of one kind.
     let kinds = scene.laws.iter().flatten().map(|law| law.springs.kind());
     let kind = kinds.fold(SpringsKind::Coulomb, |found, kind| if found == SpringsKind::Coulomb { kind } else { found });

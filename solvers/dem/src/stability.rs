@@ -33,7 +33,7 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
 /// limit 2.
 #[must_use]
 pub fn damped_step(scene: &Scene, convention: &Convention) -> (f64, f64) {
-    let options = Options::of(convention);
+    let options = Options::from_convention(convention);
     // The two lightest grains of every material.
     let mut lightest = vec![[f64::INFINITY; 2]; scene.materials.len()];
     for grain in &scene.grains {

@@ -133,7 +133,7 @@ fn no_more_kernels_are_compiled_than_known() {
 #[test]
 fn a_kernel_has_no_stage_for_what_is_absent() {
     for scene in scenes() {
-        let effects = Effects::of(&scene);
+        let effects = Effects::from_scene(&scene);
         for convention in Convention::ALL {
             let kernel = kernel(&scene, convention);
             let stages = [

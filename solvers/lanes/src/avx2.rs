@@ -133,7 +133,7 @@ impl Turned for V3 {
 
 impl FourLanes for V3 {
     #[inline(always)]
-    fn of(self, [a, b, c, d]: [f64; LANES]) -> __m256d {
+    fn register(self, [a, b, c, d]: [f64; LANES]) -> __m256d {
         self.avx._mm256_setr_pd(a, b, c, d)
     }
     #[inline(always)]

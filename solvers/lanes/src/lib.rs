@@ -137,7 +137,7 @@ fn oppose_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
 /// Operations with exactly four lanes.
 pub trait FourLanes: Lanes {
     /// Returns a register with these numbers.
-    fn of(self, values: [f64; LANES]) -> Self::Register;
+    fn register(self, values: [f64; LANES]) -> Self::Register;
     /// Returns the numbers of a register.
     fn values(self, register: Self::Register) -> [f64; LANES];
     /// Returns the sums over the lanes of four registers, (a₀ + a₁) + (a₂ + a₃).

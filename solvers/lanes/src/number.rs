@@ -143,7 +143,7 @@ impl<L: FourLanes> Wide<L> {
     /// Returns one number per lane.
     #[inline(always)]
     pub fn four(lanes: L, values: [f64; LANES]) -> Self {
-        Self { lanes, register: lanes.of(values) }
+        Self { lanes, register: lanes.register(values) }
     }
 
     /// Returns the numbers of all lanes.

@@ -158,7 +158,7 @@ fn turned<const WIDTH: usize>(rows: [[f64; 4]; WIDTH]) -> [[f64; WIDTH]; 4] {
 
 impl FourLanes for Plain<LANES> {
     #[inline(always)]
-    fn of(self, values: [f64; LANES]) -> [f64; LANES] {
+    fn register(self, values: [f64; LANES]) -> [f64; LANES] {
         values
     }
     #[inline(always)]

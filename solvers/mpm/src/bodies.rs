@@ -132,7 +132,7 @@ pub(crate) fn seed<S: Space>(
                 tracers: first.1..tracers.len(),
                 chunks: tracers.cut(first.1..tracers.len()),
                 material: blank.material,
-                law: Material::of(&blank.deformable, time_step),
+                law: Material::new(&blank.deformable, time_step),
                 density: blank.density,
                 deformable: blank.deformable,
                 bounds: [Vector3::zeros(); 2],

@@ -47,7 +47,7 @@ pub(crate) struct Contacts<S: Space> {
 
 impl<S: Space> Contacts<S> {
     pub(crate) fn new(scene: &Scene, contact: Contact, tracers: Tracers<S>) -> Self {
-        let friction = FrictionTable::of(scene);
+        let friction = FrictionTable::from_scene(scene);
         let springs = Springs::new(friction.acts() && contact == Contact::Penalty, tracers.len());
         Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: Shared::new() }
     }

@@ -16,7 +16,7 @@ pub(crate) struct Failure {
 
 impl Failure {
     /// Adds the time, the step and advice, for a run with a time step and a critical time step (s).
-    pub(crate) fn told(self, step: u64, time_step: f64, critical: f64) -> Box<Broken> {
+    pub(crate) fn into_simulation_failure(self, step: u64, time_step: f64, critical: f64) -> Box<Broken> {
         let advice = match self.cause {
             Cause::GainedEnergy { .. } => {
                 "halve the time step: what a step that is too long makes falls with it; what is left comes from the method, \

@@ -66,8 +66,8 @@ fn crossing_time(body: &Body, modulus: f64, volume_ratio: f64, cell: f64) -> f64
 
 impl<S: Space> Simulation<S> {
     /// Returns the error of a failure at the current step, with a critical time step (s).
-    fn told(&self, failure: Failure, critical: f64) -> Box<Broken> {
-        failure.told(self.step, self.scheme.time_step, critical)
+    fn simulation_failure(&self, failure: Failure, critical: f64) -> Box<Broken> {
+        failure.into_simulation_failure(self.step, self.scheme.time_step, critical)
     }
 
     /// Starts to monitor the energy if the run is closed and its contact method creates no energy.
@@ -130,9 +130,10 @@ impl<S: Space> Simulation<S> {
             let strain = per_depth * touch.depth * relative;
             if strain > LARGEST_STRAIN {
                 let cause = Cause::StartsInside { depth: touch.depth, strain, allowed: LARGEST_STRAIN };
-                return Err(
-                    self.told(Failure { owner: body.owner, position: S::embed(touch.point), cause }, self.critical)
-                );
+                return Err(self.simulation_failure(
+                    Failure { owner: body.owner, position: S::embed(touch.point), cause },
+                    self.critical,
+                ));
             }
         }
         Ok(())
@@ -162,7 +163,7 @@ impl<S: Space> Simulation<S> {
             return Ok(());
         }
         let cause = Cause::Stiffened { crossing: now, at_start: *critical };
-        Err(self.told(state.failure(place, point, cause), now))
+        Err(self.simulation_failure(state.failure(place, point, cause), now))
     }
 
     /// Compares the energy with its initial value.
@@ -184,7 +185,7 @@ impl<S: Space> Simulation<S> {
         let fastest = all.max_by(|a, b| squared(a.1).total_cmp(&squared(b.1)));
         let (place, point) = fastest.unwrap_or_default();
         let cause = Cause::GainedEnergy { gained, allowed };
-        Err(self.told(self.state.failure(place, point, cause), self.critical))
+        Err(self.simulation_failure(self.state.failure(place, point, cause), self.critical))
     }
 
     /// Returns kinetic plus elastic energy, and gravitational potential energy (J).

@@ -93,7 +93,7 @@ impl<S: Space> Simulation<S> {
         team.lead(|| self.settle())?;
         let Self { critical, scheme, .. } = *self;
         let moving = team.lead(|| self.set_moving());
-        moving.map_err(|failure| failure.told(0, scheme.time_step, critical))?;
+        moving.map_err(|failure| failure.into_simulation_failure(0, scheme.time_step, critical))?;
         self.open_accounts();
         self.watch_energy();
         Ok(())
@@ -120,7 +120,7 @@ impl<S: Space> Simulation<S> {
     /// When the state of a point becomes invalid.
     pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<Broken>> {
         let Self { critical, step, scheme, .. } = *self;
-        self.stages(record).map_err(|failure| failure.told(step, scheme.time_step, critical))?;
+        self.stages(record).map_err(|failure| failure.into_simulation_failure(step, scheme.time_step, critical))?;
         self.step += 1;
         self.cost.steps += 1;
         self.cost.particle_steps += self.state.points.len() as u64;

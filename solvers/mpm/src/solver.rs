@@ -163,7 +163,7 @@ impl Mpm {
         Ok(Record {
             provenance: Provenance {
                 critical_time_step: Some(plan.critical),
-                ..Provenance::of(scene, self.name(), resolution, plan.time_step, self.setting.words())
+                ..Provenance::new(scene, self.name(), resolution, plan.time_step, self.setting.words())
             },
             series,
             snapshots,

@@ -20,7 +20,7 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
         let stress = body.stress.as_ref()?;
         let material = scene.deformable.get(usize::from(body.material)).copied().flatten()?;
         // The time step has no influence, because material at rest has no viscous stress.
-        let law = Material::of(&material, 1.0);
+        let law = Material::new(&material, 1.0);
         let (low, high) = body.shape.corners();
         let centre = body.shape.centre();
         let corner = |number: usize| {

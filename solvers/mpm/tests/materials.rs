@@ -100,7 +100,7 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     let increment = S::restrict_gradient(rotation - Matrix3::identity());
     let mut stress = S::restrict_symmetric(stress);
     for _ in 0..steps {
-        stress = law.follow::<S>(increment, VolumeRatio::of(1.0), increment, stress, &mut Off);
+        stress = law.follow::<S>(increment, VolumeRatio::new(1.0), increment, stress, &mut Off);
     }
     S::embed_symmetric(stress)
 }

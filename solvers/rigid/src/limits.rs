@@ -30,7 +30,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
              pulls them apart at a rate of its own"
         ));
     }
-    let effects = Effects::of(scene);
+    let effects = Effects::from_scene(scene);
     if effects.periodic {
         return Some("rapier has no periodic axes".to_owned());
     }

@@ -49,7 +49,7 @@ pub(crate) struct Pairs {
 }
 
 impl Pairs {
-    pub(crate) fn of(scene: &Scene) -> Self {
+    pub(crate) fn from_scene(scene: &Scene) -> Self {
         Self {
             laws: scene.laws.clone(),
             materials: scene.materials.len(),

@@ -36,7 +36,7 @@ pub(crate) struct Simulation<'a> {
 
 impl<'a> Simulation<'a> {
     pub(crate) fn new(scene: &'a Scene, stepping: Stepping) -> Self {
-        let pairs = Pairs::of(scene);
+        let pairs = Pairs::from_scene(scene);
         let engine: Box<dyn Engine> = match scene.dimension {
             Dimension::Two => Box::new(crate::plane::world::World::new(scene, pairs, &stepping)),
             Dimension::Three => Box::new(crate::solid::world::World::new(scene, pairs, &stepping)),

@@ -107,7 +107,7 @@ impl Rigid {
     /// Returns a description of the settings.
     fn words(&self, scene: &Scene, stepping: &Stepping) -> Vec<String> {
         let Settings { recycling, frequency, wall_frequency, damping_ratio } = self.settings;
-        let shared = crate::pairs::Pairs::of(scene).shared();
+        let shared = crate::pairs::Pairs::from_scene(scene).shared();
         let mut words = vec![
             RAPIER.to_owned(),
             format!("{} iterations a step", stepping.iterations),
@@ -151,7 +151,7 @@ impl Solver for Rigid {
         Ok(Record {
             provenance: Provenance {
                 critical_time_step: None,
-                ..Provenance::of(scene, self.name(), resolution, time_step, self.words(scene, &stepping))
+                ..Provenance::new(scene, self.name(), resolution, time_step, self.words(scene, &stepping))
             },
             series,
             snapshots,

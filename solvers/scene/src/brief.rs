@@ -50,7 +50,7 @@ impl Brief {
 
     /// Summarises a snapshot.
     #[must_use]
-    pub fn of(snapshot: &Snapshot) -> Self {
+    pub fn from_snapshot(snapshot: &Snapshot) -> Self {
         let Snapshot { step, time, grains, .. } = snapshot;
         Self::of_grains((*step, *time), grains.iter().cloned(), snapshot.touching())
     }

@@ -144,7 +144,7 @@ impl Course<'_> {
         {
             watch.end_state(state);
         }
-        let cost = Cost::of(stepper.counts(), clock.elapsed().as_secs_f64());
+        let cost = Cost::new(stepper.counts(), clock.elapsed().as_secs_f64());
         let (series, snapshots) = recorder.finish();
         Ok(Driven { series, snapshots, cost })
     }

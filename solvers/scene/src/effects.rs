@@ -30,7 +30,7 @@ pub struct Effects {
 impl Effects {
     /// Returns the effects that `scene` uses.
     #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let on = |effect: Effect| effect.is_on(scene);
         Self {
             friction: on(Effect::Friction) || on(Effect::Cohesion) || on(Effect::RollingResistance),

@@ -110,7 +110,7 @@ impl EndState {
     /// # Errors
     /// When a part of the state cannot be rounded; the error is a message.
     pub fn to_rounded_bytes(&self) -> Result<Vec<u8>, String> {
-        sealed_body(&Packed::of(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
+        sealed_body(&Packed::new(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
     /// Returns the bytes of a file of about a quarter of that size, for a bed at rest. Positions are rounded more
@@ -128,7 +128,7 @@ impl EndState {
             springs: Springs::default(),
             ..*self
         };
-        let packed = Packed::of(&state, rounded_state::ROUNDING_AT_REST)?;
+        let packed = Packed::new(&state, rounded_state::ROUNDING_AT_REST)?;
         sealed_body(&packed, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 /// Error in a scene: the file, the position, and the expected and found values.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{}", tamed(&told(self), |_| false))]
+#[error("{}", tamed(&message(self), |_| false))]
 pub struct SceneError {
     /// File and line, or the `--set` option that gave the value.
     pub place: String,
@@ -20,7 +20,7 @@ pub struct SceneError {
 }
 
 /// Returns the error as one sentence, with the text of the file unchanged.
-fn told(error: &SceneError) -> String {
+fn message(error: &SceneError) -> String {
     let SceneError { place, key, expected, found, help } = error;
     format!("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))
 }

@@ -390,7 +390,7 @@ pub struct Cost {
 impl Cost {
     /// Returns the cost of one of our solvers.
     #[must_use]
-    pub const fn of(counts: Counts, wall_seconds: f64) -> Self {
+    pub const fn new(counts: Counts, wall_seconds: f64) -> Self {
         Self {
             steps: counts.steps,
             particle_steps: counts.particle_steps,
@@ -438,7 +438,7 @@ pub struct Provenance {
 impl Provenance {
     /// Returns the provenance of a run at a time step (s), for solvers whose critical time step is that of the scene.
     #[must_use]
-    pub fn of(scene: &Scene, solver: String, resolution: &Resolution, time_step: f64, options: Vec<String>) -> Self {
+    pub fn new(scene: &Scene, solver: String, resolution: &Resolution, time_step: f64, options: Vec<String>) -> Self {
         let critical = scene.critical_time_step();
         Self {
             scene: scene.title.clone(),

@@ -120,7 +120,7 @@ fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
 
 impl Packed {
     /// Rounds a state. Positions are rounded to `rounding` times the power of two at or below the smallest radius.
-    pub(crate) fn of(state: &EndState, rounding: f64) -> Result<Self, String> {
+    pub(crate) fn new(state: &EndState, rounding: f64) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
         let step = if smallest.is_finite() { power_of_two(smallest) * rounding } else { 1.0 };
         let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);

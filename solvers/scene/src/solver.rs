@@ -209,7 +209,7 @@ pub enum Method {
 impl Method {
     /// Returns the kind of one of our solvers, by name.
     #[must_use]
-    pub fn of(solver: &str) -> Option<Self> {
+    pub fn from_name(solver: &str) -> Option<Self> {
         match solver.split([':', '+']).next() {
             Some("dem") => Some(Self::Dem),
             Some("rigid") => Some(Self::Rigid),

@@ -66,7 +66,7 @@ pub(crate) fn collect(arguments: &Arguments) -> Outcome {
     let plan = enter(&arguments.plan)?;
     plan.check_program()?;
     check_writable(&out)?;
-    let study = study::of(&Planned::read(&plan)?)?;
+    let study = study::from_arguments(&Planned::read(&plan)?)?;
     let finished = Finished::read(&plan.path, true)?;
     let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
     let done = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));

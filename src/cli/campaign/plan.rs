@@ -120,7 +120,7 @@ struct Summary<'a> {
 /// Writes a plan.
 pub(crate) fn plan(arguments: &Arguments) -> Outcome {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
-    let study = study::of(arguments)?;
+    let study = study::from_arguments(arguments)?;
     let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
     head.chunks = arguments.chunks.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));

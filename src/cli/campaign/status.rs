@@ -32,7 +32,7 @@ struct Told<'a> {
 /// Prints the progress of a plan.
 pub(crate) fn status(arguments: &Arguments) -> Outcome {
     let plan = Plan::read(&arguments.plan)?;
-    let status = Status::of(&plan)?;
+    let status = Status::from_plan(&plan)?;
     let queued = slurm::in_queue(&plan.path);
     if arguments.json {
         print_json(&Told { status: &status, queued: queued.ok() })?;

@@ -35,7 +35,7 @@ pub(crate) trait Study: Sync {
 }
 
 /// Returns the study that the arguments ask for.
-pub(crate) fn of(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
+pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
     Ok(match arguments.what.as_str() {
         "run" => Box::new(OfRun::new(arguments)?),
         "cost" => Box::new(OfCost::new(arguments)?),

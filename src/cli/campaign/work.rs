@@ -55,7 +55,7 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
     if arguments.on.is_some() {
         return submit(&plan, arguments);
     }
-    let study = study::of(&Planned::read(&plan)?)?;
+    let study = study::from_arguments(&Planned::read(&plan)?)?;
     let jobs = match (arguments.jobs, plan.head.timed) {
         (Some(2..), true) => {
             return Err(Fault::input("--jobs: expected 1, for times are measured, found more"));

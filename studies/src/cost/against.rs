@@ -116,7 +116,7 @@ impl Middle {
     /// Computes the median of at least one number, and its standard error from the median absolute deviation.
     ///
     /// The deviation is robust against a few outliers. The error of a single number is unknown and set to zero.
-    fn of(values: &[f64]) -> Self {
+    fn from_values(values: &[f64]) -> Self {
         let value = median(values);
         let distance = median(&values.iter().map(|other| (other - value).abs()).collect::<Vec<_>>());
         Self { value, error: 1.2533 * 1.4826 * distance / (values.len() as f64).sqrt() }
@@ -126,7 +126,7 @@ impl Middle {
     fn of_repetitions(point: &Point) -> Option<Self> {
         let times = point.repetitions.iter().map(|timing| (timing.cpu / timing.reference).ln());
         let times: Vec<f64> = times.filter(|time| time.is_finite()).collect();
-        (!times.is_empty()).then(|| Self::of(&times))
+        (!times.is_empty()).then(|| Self::from_values(&times))
     }
 }
 
@@ -136,7 +136,7 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
         return None;
     }
     let logarithms: Vec<f64> = ratios.iter().map(|(ratio, _)| *ratio).collect();
-    let Middle { value: middle, error: scatter } = Middle::of(&logarithms);
+    let Middle { value: middle, error: scatter } = Middle::from_values(&logarithms);
     let doubt = ratios.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / ratios.len() as f64;
     let error = scatter.max(doubt);
     let worse = middle > 0.0;

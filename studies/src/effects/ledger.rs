@@ -243,8 +243,9 @@ impl Ledger {
     }
 
     fn idle_with(&self, piece: &Piece, method: Method) -> Option<(&'static str, Idle)> {
-        let is_ours =
-            |run: &&Run| self.is_judged(run) && run.variant == piece.variant && Method::of(run.solver) == Some(method);
+        let is_ours = |run: &&Run| {
+            self.is_judged(run) && run.variant == piece.variant && Method::from_name(run.solver) == Some(method)
+        };
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
         let mut scene = (*self.runner.scene(run).ok()?).clone();
         if method == Method::Grid {
@@ -260,5 +261,5 @@ impl Ledger {
 
 /// Returns true if the solver of a run supports an effect.
 fn knows(run: &Run, effect: Effect) -> bool {
-    Method::of(run.solver).is_none_or(|method| effect.concerns(method))
+    Method::from_name(run.solver).is_none_or(|method| effect.concerns(method))
 }

@@ -39,7 +39,7 @@ impl Asked<'_> {
     /// Returns `None` if the effect has no neutral value or the solver does not support the effect.
     #[must_use]
     pub fn entry(&self, whole: &Record, effect: Effect) -> Option<Entry> {
-        if Method::of(&self.solver.name()).is_some_and(|method| !effect.concerns(method)) {
+        if Method::from_name(&self.solver.name()).is_some_and(|method| !effect.concerns(method)) {
             return None;
         }
         let key = effect.key(self.scene);

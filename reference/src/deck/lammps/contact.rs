@@ -83,7 +83,7 @@ fn history(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result
         let (normal, tangential) = hertz(law);
         return Ok(format!("hertz/history {normal:?} {tangential:?} 0.0 0.0 {friction:?} 1"));
     }
-    let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, side)?;
+    let Dashpots { normal, tangential } = Dashpots::from_law(scene, law, material, side)?;
     let (k_n, k_t) = (law.normal_stiffness(), law.tangential_stiffness());
     Ok(format!("hooke/history {k_n:?} {k_t:?} {normal:?} {tangential:?} {friction:?} 1"))
 }
@@ -131,7 +131,7 @@ fn rolling(scene: &Scene, law: &ContactLaw, material: u16) -> Result<String, Str
                 .to_owned(),
         );
     }
-    let Dashpots { normal, tangential } = Dashpots::of(scene, law, material, Side::Wall)?;
+    let Dashpots { normal, tangential } = Dashpots::from_law(scene, law, material, Side::Wall)?;
     if normal == 0.0 && tangential != 0.0 {
         return Err("`granular` has the tangential dashpot as a multiple of the normal one, which is none".to_owned());
     }

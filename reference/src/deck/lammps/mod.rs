@@ -108,7 +108,7 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     let grains = passing::grains(scene);
     passing::atoms(scene)?.iter().for_each(|line| say(line));
     say(&format!("neighbor {:?} bin\nneigh_modify every 1 delay 0 check yes", skin(scene)));
-    let effects = Effects::of(scene);
+    let effects = Effects::from_scene(scene);
     if effects.hertz && effects.restitution {
         say("# The number behind the stiffness is what the polynomial of `damping tsuji` makes sqrt(5) zeta of:");
         say("# with it the dashpot is 2 sqrt(5/6) zeta sqrt(S m_eff), as the coefficient of restitution asks for.");
@@ -166,7 +166,7 @@ fn wall_lines(scene: &Scene, wall: &Wall, number: u32, stepping: &Stepping) -> R
     let tells = tells(scene, number);
     let grains = passing::grains(scene);
     let ways = passing::ways(scene, wall, number as usize, stepping);
-    if let Some(plane) = AxisPlane::of(wall).filter(|_| ways.iter().all(String::is_empty)) {
+    if let Some(plane) = AxisPlane::from_wall(wall).filter(|_| ways.iter().all(String::is_empty)) {
         let axis = AXES[plane.axis];
         let (low, high) = if plane.is_low {
             (format!("{:?}", plane.at), "NULL".to_owned())

@@ -16,8 +16,8 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    pub(crate) fn of(scene: &Scene) -> Self {
-        Self { effects: Effects::of(scene) }
+    pub(crate) fn from_scene(scene: &Scene) -> Self {
+        Self { effects: Effects::from_scene(scene) }
     }
 
     /// Returns true for Hertz contacts whose dashpots give a coefficient of restitution. LIGGGHTS defines these by
@@ -111,8 +111,11 @@ impl Model {
             _ => return Ok(None),
         };
         let Some(law) = scene.law(material(a), material(b)) else { return Ok(None) };
-        let dashpots =
-            if self.effects.hertz { Dashpots::default() } else { Dashpots::of(scene, law, material(grain), side)? };
+        let dashpots = if self.effects.hertz {
+            Dashpots::default()
+        } else {
+            Dashpots::from_law(scene, law, material(grain), side)?
+        };
         Ok(Some((*law, dashpots)))
     }
 }

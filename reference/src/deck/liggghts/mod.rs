@@ -71,7 +71,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let (mut low, mut high) = box_of(scene);
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));
     for (number, wall) in (1..).zip(&scene.walls) {
-        if AxisPlane::of(wall).is_none() {
+        if AxisPlane::from_wall(wall).is_none() {
             // A rotating plane comes into contact with grains at a part that is far from the grains at the start.
             let aside = if turns(&wall.motion) { 2.0 * (wall.motion.centre - centre).norm() } else { 0.0 };
             meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach + aside) });
@@ -80,7 +80,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let flat = is_flat(scene) && has_discs(scene) && meshes.is_empty();
     if flat {
         one_inertia(scene, 0.5)?;
-    } else if Effects::of(scene).friction || !is_flat(scene) {
+    } else if Effects::from_scene(scene).friction || !is_flat(scene) {
         // Without friction nothing rotates, and spheres can replace discs.
         one_inertia(scene, 0.4).map_err(|reason| match (is_flat(scene), meshes.is_empty()) {
             (true, false) => format!("this needs meshes for walls, which work in three dimensions only: {reason}"),
@@ -203,7 +203,7 @@ fn input(
     }
     say(&boundary);
     say("newton off\ncommunicate single vel yes");
-    let model = Model::of(scene);
+    let model = Model::from_scene(scene);
     let (words, switches) = (model.words(), model.switches());
     if let Some(line) = model.preparation() {
         say(line);
@@ -220,7 +220,7 @@ fn input(
     }
     for (number, wall) in (1..).zip(&scene.walls) {
         let kind = type_of_wall(scene, wall.material);
-        if let Some(plane) = AxisPlane::of(wall) {
+        if let Some(plane) = AxisPlane::from_wall(wall) {
             let axis = AXES[plane.axis];
             let shear =
                 plane.shear.map(|(along, speed)| format!(" shear {} {speed:?}", AXES[along])).unwrap_or_default();

@@ -35,7 +35,7 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
         );
     }
     for (number, wall) in (1..).zip(&scene.walls).filter(|(_, wall)| wall.until.is_some()) {
-        if AxisPlane::of(wall).is_none() {
+        if AxisPlane::from_wall(wall).is_none() {
             let name = &wall.name;
             return Err(format!(
                 "`{name}` is taken away and needs a mesh: one `fix wall/gran` has all meshes, and keeps them"

@@ -15,7 +15,7 @@ pub(super) struct Difference {
 }
 
 /// Returns the differences of the lines from the exact curves, on linear axes and if all lines coincide with them.
-pub(super) fn of(graph: &Graph, y: &Scale) -> Option<Difference> {
+pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     if graph.x.logarithmic || graph.y.logarithmic {
         return None;
     }

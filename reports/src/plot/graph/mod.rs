@@ -146,7 +146,7 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let x =
         Scale::fit(points().filter(seen).map(|point| point.0), log_x, x_margin, 7).at_levels(&levels(&graph.curves));
     let y = Scale::fit(points().filter(seen).map(|point| point.1), log_y, 0.06, 6);
-    let difference = difference::of(graph, &y);
+    let difference = difference::from_graph(graph, &y);
     let height = form.height + if difference.is_some() { BELOW } else { 0.0 };
 
     let legend = if form.legend { legend::lines(&graph.curves) } else { Vec::new() };

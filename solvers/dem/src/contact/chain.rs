@@ -18,7 +18,7 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// Returns the layout of a chain of stages.
-    pub(crate) fn of<S: Geometry, T: Tangential<S>, R: Rolling<S>>() -> Self {
+    pub(crate) fn new<S: Geometry, T: Tangential<S>, R: Rolling<S>>() -> Self {
         let mut exchanged = [1.0; MEMORY];
         exchanged[..T::NUMBERS].fill(T::EXCHANGED);
         exchanged[T::NUMBERS..T::NUMBERS + R::NUMBERS].fill(-1.0);

@@ -162,7 +162,7 @@ impl Options {
 
     /// Returns the options of a convention.
     #[must_use]
-    pub(crate) const fn of(convention: &Convention) -> Self {
+    pub(crate) const fn from_convention(convention: &Convention) -> Self {
         Self {
             arm_reduction: match convention.torque_arm {
                 TorqueArm::Radius => 0.0,

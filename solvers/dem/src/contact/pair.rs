@@ -133,7 +133,7 @@ mod tests {
     fn stuck_spheres_carry_their_spring_when_they_swing() {
         type Stretched = Coulomb<Projected>;
         let law = Constants { springs: [1e6, 5e5], friction: 1e3, ..Constants::default() };
-        let options = Options::of(&Convention::LIGGGHTS);
+        let options = Options::from_convention(&Convention::LIGGGHTS);
         let (steps, overlap, slip) = (1000, 0.01, 1e-4);
         let spin = Vector3::z() * FRAC_PI_2;
         let mut memory = [0.0; MEMORY];

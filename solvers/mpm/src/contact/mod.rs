@@ -45,7 +45,7 @@ pub(crate) struct FrictionTable {
 }
 
 impl FrictionTable {
-    pub(crate) fn of(scene: &grainbench_scene::scene::Scene) -> Self {
+    pub(crate) fn from_scene(scene: &grainbench_scene::scene::Scene) -> Self {
         let coefficients = scene.laws.iter().map(|law| law.map(|law| law.friction)).collect();
         Self { coefficients, materials: scene.materials.len() }
     }

@@ -301,7 +301,7 @@ mod tests {
             .to_vec();
         let mut nodes: Vec<Node<Plane>> =
             (0..3).map(|at| Node { mass: masses[at], velocity: velocities[at], change: velocities[at] }).collect();
-        let friction = FrictionTable::of(&simulation.scene);
+        let friction = FrictionTable::from_scene(&simulation.scene);
         let lattice = &simulation.grid.lattice;
         let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
         let mut felt = Felt { walls: &mut [], driven: &mut [], ledger: Off };

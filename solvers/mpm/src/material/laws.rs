@@ -33,7 +33,7 @@ pub(crate) use with_law;
 
 impl Material {
     /// Returns the law of a material for steps of `time_step` (s).
-    pub(crate) fn of(deformable: &Deformable, time_step: f64) -> Self {
+    pub(crate) fn new(deformable: &Deformable, time_step: f64) -> Self {
         let &Deformable { bulk_modulus, shear_modulus, constitutive } = deformable;
         let elastic = Hypoelastic { bulk_modulus, shear_modulus };
         let rubber = NeoHookean { lame: deformable.lame(), shear_modulus };
@@ -124,7 +124,7 @@ impl Law for NeoHookean {
         }
         let is_found = now > 0.0 && excess(now).abs() <= 1e-12 * now * now;
         let deformation = symmetric_root(&finger(now)).filter(|_| is_found)?;
-        let stress = Solid::embed_symmetric(self.stress::<Solid>(deformation, VolumeRatio::of(now)));
+        let stress = Solid::embed_symmetric(self.stress::<Solid>(deformation, VolumeRatio::new(now)));
         Some(State { deformation, stress, plastic_strain: 0.0 })
     }
 }
@@ -172,7 +172,7 @@ impl Law for KelvinVoigt {
         deformation: S::Matrix,
         stress: S::Symmetric,
     ) -> f64 {
-        let elastic = self.elastic.stress::<S>(deformation, VolumeRatio::of(volume_ratio));
+        let elastic = self.elastic.stress::<S>(deformation, VolumeRatio::new(volume_ratio));
         S::double_dot(S::scaled_sum(elastic, -1.0, stress), strain)
     }
 

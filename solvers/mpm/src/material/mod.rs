@@ -42,7 +42,7 @@ impl VolumeRatio {
     /// Returns a ratio with its logarithm.
     #[inline(always)]
     #[must_use]
-    pub fn of(ratio: f64) -> Self {
+    pub fn new(ratio: f64) -> Self {
         Self { ratio, logarithm: ln(ratio) }
     }
 }
@@ -73,7 +73,7 @@ pub trait Law: Copy + Send + Sync + 'static {
         let stress = Solid::restrict_symmetric(state.stress);
         let own = std::slice::from_mut(&mut state.plastic_strain);
         let mut plastic_strain = Self::PlasticStrain::read(own, 0);
-        let volume = VolumeRatio::of(volume_ratio);
+        let volume = VolumeRatio::new(volume_ratio);
         let stress = self.follow::<Solid>(*increment, volume, state.deformation, stress, &mut plastic_strain);
         plastic_strain.write(own, 0);
         state.stress = Solid::embed_symmetric(stress);
