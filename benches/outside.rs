@@ -7,7 +7,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use grainbench::cases::registry::read_grains;
-use grainbench::reference::outside::{Given, Outside, Resolved, SceneFormat};
+use grainbench::reference::outside::{DiscretizedScene, ExternalProgram, Resolved, SceneFormat};
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
@@ -54,18 +54,18 @@ const STAYS: &str = r#"while read -r line; do
 done
 "#;
 
-fn solver(folder: &Path, name: &str, command: &str, script: &str) -> Outside {
+fn solver(folder: &Path, name: &str, command: &str, script: &str) -> ExternalProgram {
     let manifest = folder.join(format!("{name}.toml"));
     fs::write(&manifest, format!("name = \"{name}\"\n{command}\n{REST}")).unwrap();
     fs::write(folder.join(format!("{name}.sh")), format!("{LEAVE}{script}")).unwrap();
-    Outside::read(&manifest).unwrap()
+    ExternalProgram::read(&manifest).unwrap()
 }
 
 fn runs(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
     let scene: Scene = SceneSource::from_text("disc.toml", folder.path(), SCENE).scene(&read_grains).unwrap();
     let step = Resolution::CriticalFraction(0.1);
-    let given = Given::new(&scene, &step).unwrap();
+    let given = DiscretizedScene::new(&scene, &step).unwrap();
     let resolved = folder.path().join("scene.json");
     fs::write(&resolved, Resolved::new(&given).text(SceneFormat::Json).unwrap()).unwrap();
 

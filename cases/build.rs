@@ -146,7 +146,7 @@ fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Res
         writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
     }
     writeln!(code, "/// What accuracy is measured by, of cases that say it themselves.")?;
-    writeln!(code, "pub(crate) static COSTS: &[Own] = &[")?;
+    writeln!(code, "pub(crate) static COSTS: &[TargetFunction] = &[")?;
     for name in &own {
         writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
     }
@@ -196,7 +196,7 @@ fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Resul
         let (key, what) = (text(value, "key")?, text(value, "what")?);
         let uncertainty = number(value, "uncertainty").unwrap_or(0.0);
         let value = number(value, "value").ok_or(format!("expected a number `value` of {key}"))?;
-        writeln!(code, "/// {what}\npub const {}: {source}::Cited = {source}::Cited", key.to_uppercase())?;
+        writeln!(code, "/// {what}\npub const {}: {source}::CitedNumber = {source}::CitedNumber", key.to_uppercase())?;
         writeln!(code, "{{ work: &WORK, what: {what:?}, value: {value:?}, uncertainty: {uncertainty:?} }};")?;
     }
     writeln!(code, "}}")?;

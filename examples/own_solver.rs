@@ -4,7 +4,7 @@
 //! rolls, its acceleration is constant, so a step of any length is exact.
 
 use grainbench::scene::nalgebra::Vector3;
-use grainbench::scene::record::{Cost, GrainState, Look, Provenance, Record, Snapshot};
+use grainbench::scene::record::{Cost, GrainState, Provenance, Record, Snapshot, StepState};
 use grainbench::scene::recorder::Recorder;
 use grainbench::scene::scene::{Duration, Scene, WallShape};
 use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
@@ -51,7 +51,7 @@ impl Solver for Rigid {
             if recorder.is_due(step) {
                 let state = GrainState { position, velocity, spin, angle: Some(angle), ..GrainState::start(1, grain) };
                 let snapshot = Snapshot::of_grains(scene, step, step as f64 * time_step, vec![state]);
-                let due = recorder.take(scene, Look::of_rigid(snapshot, 0.0));
+                let due = recorder.take(scene, StepState::of_rigid(snapshot, 0.0));
                 due.into_iter().for_each(|snapshot| recorder.keep(snapshot));
             }
             let before = (velocity, spin);

@@ -12,7 +12,7 @@ use grainbench::cases::registry::{by_name, read_grains};
 use grainbench::cases::solvers::by_name as solver;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::reading;
-use grainbench::harness::run::{Done, Run};
+use grainbench::harness::run::{FinishedRun, Run};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::error::Error;
@@ -29,14 +29,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_writer(std::io::stdout());
     table.write_record(std::iter::once("seed").chain(claims.iter().map(|claim| claim.quantity.as_str())))?;
     for seed in seeds {
-        let mut done: BTreeMap<String, Done> = BTreeMap::new();
+        let mut done: BTreeMap<String, FinishedRun> = BTreeMap::new();
         let mut row = vec![seed.clone()];
         for claim in &claims {
             let run = &claim.runs[0];
             if let Entry::Vacant(place) = done.entry(run.key()) {
                 place.insert(of_seed(case, run, key, seed)?);
             }
-            let all: Vec<Done> = claim.runs.iter().filter_map(|_| done.get(&run.key())).cloned().collect();
+            let all: Vec<FinishedRun> = claim.runs.iter().filter_map(|_| done.get(&run.key())).cloned().collect();
             let value = (claim.measure)(&all).map_err(|missing| missing.to_string())?.value;
             row.push(format!("{value:.6}"));
         }
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Runs the case with another random seed.
-fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> Result<Done, Box<dyn Error>> {
+fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> Result<FinishedRun, Box<dyn Error>> {
     let source = case.source().variant(run.variant).set(key, seed);
     let mut scene = source.scene(&read_grains)?;
     if let Some((_, change)) = &run.adjustment {
@@ -55,5 +55,5 @@ fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> 
     }
     let solver = solver(run.solver).ok_or("there is no such solver")?;
     let (record, tables) = reading::run(&*solver, &scene, &run.resolution, 1, run.reading)?;
-    Ok(Done { tables: Arc::new(tables), ..Done::new(Arc::new(scene), Arc::new(record)) })
+    Ok(FinishedRun { tables: Arc::new(tables), ..FinishedRun::new(Arc::new(scene), Arc::new(record)) })
 }

@@ -14,7 +14,7 @@
 use grainbench::cases::registry::{by_name, read_grains};
 use grainbench::cases::solvers::by_name as solver;
 use grainbench::harness::reading;
-use grainbench::harness::run::{Done, Run};
+use grainbench::harness::run::{FinishedRun, Run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -48,11 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Runs the case with another deposit.
-fn done(case: &grainbench::cases::Case, run: &Run, state: &Path) -> Result<Done, Box<dyn Error>> {
+fn done(case: &grainbench::cases::Case, run: &Run, state: &Path) -> Result<FinishedRun, Box<dyn Error>> {
     let path = format!("{:?}", state.canonicalize()?);
     let source = case.source().variant(run.variant).set("grains.deposit.state.path", &path);
     let scene = source.scene(&read_grains)?;
     let solver = solver(run.solver).ok_or("there is no such solver")?;
     let (record, tables) = reading::run(&*solver, &scene, &run.resolution, 1, run.reading)?;
-    Ok(Done { tables: Arc::new(tables), ..Done::new(Arc::new(scene), Arc::new(record)) })
+    Ok(FinishedRun { tables: Arc::new(tables), ..FinishedRun::new(Arc::new(scene), Arc::new(record)) })
 }

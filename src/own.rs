@@ -33,7 +33,7 @@ pub struct Judgement {
 
 /// Reasons why a case cannot test a solver.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum NotJudged {
+pub enum JudgementError {
     /// The case does not exist.
     #[error("there is no case `{0}`; there are {known}", known = names())]
     NoSuchCase(String),
@@ -44,23 +44,23 @@ pub enum NotJudged {
 
 /// Error of a solver that failed. `Debug` prints the same lines as `Display`, so that failed tests show them too.
 #[derive(Clone, PartialEq, Eq)]
-pub struct Refused {
+pub struct SolverRejection {
     lines: Vec<String>,
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for SolverRejection {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}", self.lines.join("\n"))
     }
 }
 
-impl fmt::Debug for Refused {
+impl fmt::Debug for SolverRejection {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "the solver does not pass:\n{self}")
     }
 }
 
-impl std::error::Error for Refused {}
+impl std::error::Error for SolverRejection {}
 
 fn names() -> String {
     registry::CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ")
@@ -74,16 +74,16 @@ fn names() -> String {
 ///
 /// # Errors
 /// When a case does not exist or has no solver-independent claim.
-pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement, NotJudged> {
+pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement, JudgementError> {
     let solver: Arc<dyn Solver> = Arc::new(solver);
     let solvers: Arc<dyn Solvers> = Arc::new(Registry);
     let mut judgement = Judgement::default();
     for &name in cases {
-        let case = registry::by_name(name).ok_or_else(|| NotJudged::NoSuchCase(name.to_owned()))?;
+        let case = registry::by_name(name).ok_or_else(|| JudgementError::NoSuchCase(name.to_owned()))?;
         let runner = registry::runner(case).with_solver(Arc::clone(&solver));
         let claims = runner.claims();
         if claims.is_empty() {
-            return Err(NotJudged::NothingFair(name.to_owned()));
+            return Err(JudgementError::NothingFair(name.to_owned()));
         }
         let mut rows = Vec::new();
         for claim in &claims {
@@ -120,13 +120,13 @@ impl Judgement {
     ///
     /// # Errors
     /// With the lines of [`Judgement::failures`], or with all results if none is green.
-    pub fn require(self) -> Result<Self, Refused> {
+    pub fn require(self) -> Result<Self, SolverRejection> {
         let mut lines = self.failures();
         if lines.is_empty() && self.verdicts.iter().all(|row| row.outcome != Outcome::Pass) {
             lines = self.verdicts.iter().map(line::verdict).collect();
             lines.push("no row passed".to_owned());
         }
-        if lines.is_empty() { Ok(self) } else { Err(Refused { lines }) }
+        if lines.is_empty() { Ok(self) } else { Err(SolverRejection { lines }) }
     }
 }
 

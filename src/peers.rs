@@ -1,6 +1,6 @@
 //! Stored results of the external solvers in `peers/`.
 
-use grainbench_reports::judged::Judged;
+use grainbench_reports::judged::ExternalResults;
 
 /// Stored results by the directory of the solver.
 pub const KEPT: [(&str, &str); 5] = [
@@ -15,8 +15,9 @@ pub const KEPT: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// The error names the file that cannot be read as stored results.
-pub fn kept() -> Result<Vec<Judged>, String> {
-    let read =
-        |(name, text): (&str, &str)| Judged::read(text).map_err(|error| format!("peers/{name}/judged.json: {error}"));
+pub fn kept() -> Result<Vec<ExternalResults>, String> {
+    let read = |(name, text): (&str, &str)| {
+        ExternalResults::read(text).map_err(|error| format!("peers/{name}/judged.json: {error}"))
+    };
     KEPT.into_iter().map(read).collect()
 }

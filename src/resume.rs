@@ -4,9 +4,9 @@ use crate::reports::write_file;
 use crate::scene::brief::Brief;
 use crate::scene::checkpoint::{Checkpoint, CheckpointError};
 use crate::scene::end_state::EndState;
-use crate::scene::record::{Record, Remains, Snapshot};
+use crate::scene::record::{PartialOutput, Record, Snapshot};
 use crate::scene::scene::Scene;
-use crate::scene::solver::{Ahead, NotStored, Resolution, RunError, Solver, Watch};
+use crate::scene::solver::{Resolution, RunError, RunOutline, Solver, StorageError, Watch};
 use std::path::Path;
 
 /// File for checkpoints; each checkpoint replaces the previous one.
@@ -35,7 +35,7 @@ pub fn run(
     watch: &mut dyn Watch,
 ) -> Result<Record, RunError> {
     let before = from.map_or(Some(0.0), seconds).unwrap_or(f64::NAN);
-    let mut watcher = Resumable { watch, place, before, begun: std::time::Instant::now() };
+    let mut watcher = CheckpointWriter { watch, place, before, begun: std::time::Instant::now() };
     let mut record = match from {
         None => solver.run(scene, resolution, &mut watcher)?,
         Some(checkpoint) => solver.restart(scene, resolution, checkpoint, &mut watcher)?,
@@ -53,7 +53,7 @@ fn seconds(checkpoint: &Checkpoint) -> Option<f64> {
 }
 
 /// Observer that stores checkpoints and forwards all other calls.
-struct Resumable<'a> {
+struct CheckpointWriter<'a> {
     watch: &'a mut dyn Watch,
     place: Place<'a>,
     /// Run time before the checkpoint (s).
@@ -61,8 +61,8 @@ struct Resumable<'a> {
     begun: std::time::Instant,
 }
 
-impl Watch for Resumable<'_> {
-    fn begin(&mut self, ahead: Ahead) {
+impl Watch for CheckpointWriter<'_> {
+    fn begin(&mut self, ahead: RunOutline) {
         self.watch.begin(ahead);
         self.begun = std::time::Instant::now();
     }
@@ -85,7 +85,7 @@ impl Watch for Resumable<'_> {
         write_file(self.place.path, bytes).map_err(|error| CheckpointError::NotStored(error.to_string()))
     }
 
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         self.watch.snapshot(snapshot)
     }
 
@@ -117,7 +117,7 @@ impl Watch for Resumable<'_> {
         self.watch.is_over()
     }
 
-    fn broke(&mut self, remains: Remains) {
+    fn broke(&mut self, remains: PartialOutput) {
         self.watch.broke(remains);
     }
 }

@@ -2,11 +2,11 @@
 
 use grainbench_cases::stored::Reference;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::Measured;
+use grainbench_harness::expect::Measurement;
 use grainbench_harness::statistics::{BLOCKS, Estimate, difference};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::live::Live;
+use grainbench_reference::live::LiveProgram;
 use grainbench_reference::stored::{Drift, StoredRun, drift, folder, unusable};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
@@ -28,7 +28,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
         solver: reference.program.name().to_owned(),
         resolution: reference.run.resolution.to_string(),
         allowed: ALLOWED,
-        tolerance: Made::Computed,
+        tolerance: ToleranceOrigin::Computed,
         evidence: Evidence::OtherCode,
         ..Verdict::open(reference.case.name, "the stored run, run again", "1")
     };
@@ -47,7 +47,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     if let Err(error) = stored.record(&scene, &reference.run.resolution, reference.program) {
         return Ok(ended(&error));
     }
-    let rerun = match Live::find(reference.program).run(&scene, &reference.run.resolution, &mut ()) {
+    let rerun = match LiveProgram::find(reference.program).run(&scene, &reference.run.resolution, &mut ()) {
         Ok(rerun) => rerun,
         Err(error) => return Ok(ended(&error)),
     };
@@ -79,8 +79,10 @@ fn weight(drift: &Drift) -> f64 {
 
 fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
     let until = if last == u64::MAX { String::new() } else { format!(" to step {last}") };
-    let found =
-        Measured { course: vec![(worst.time, worst.error())], ..Measured::new(worst.rerun, worst.stored, worst.scale) };
+    let found = Measurement {
+        course: vec![(worst.time, worst.error())],
+        ..Measurement::new(worst.rerun, worst.stored, worst.scale)
+    };
     let row = Verdict {
         quantity: format!("the stored run, run again{until}: worst in {}", worst.name),
         unit: worst.unit.clone(),
@@ -109,11 +111,11 @@ fn statistics(row: &Verdict, before: &Series, rerun: &Series, last: u64) -> Vec<
             quantity: format!("mean of {} after step {last}", column.name),
             unit: column.unit.clone(),
             allowed: 1.0,
-            tolerance: Made::Interval,
+            tolerance: ToleranceOrigin::Interval,
             because: format!("99 % confidence interval of the difference, from {BLOCKS} blocks"),
             ..row.clone()
         };
-        verdicts.push(row.judged(&Measured::new(second, first, scale)));
+        verdicts.push(row.judged(&Measurement::new(second, first, scale)));
     }
     verdicts
 }

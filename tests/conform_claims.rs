@@ -4,8 +4,8 @@
 
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
-use grainbench::harness::control::Red;
-use grainbench::harness::mistake::small_dem::{Slip, SmallDem};
+use grainbench::harness::control::FailureMode;
+use grainbench::harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench::harness::verdict::{Outcome, Verdict};
 use grainbench::scene::file::GrainShape;
 use grainbench::scene::record::Record;
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 
 const CASES: [&str; 5] = ["unequal-impact", "rolling-off", "carried-grain", "turning-walls", "rocking"];
 
-fn rows(mistake: Option<Slip>, cases: &[&str]) -> Vec<Verdict> {
+fn rows(mistake: Option<MethodMistake>, cases: &[&str]) -> Vec<Verdict> {
     grainbench::judge(SmallDem { mistake }, cases).unwrap().verdicts
 }
 
@@ -29,21 +29,21 @@ fn the_right_laws_pass_every_claim() {
 
 #[test]
 fn planted_defects_fail_claims_by_value() {
-    let expected: [(Slip, &[&str]); 8] = [
-        (Slip::SpringNotTurned, &["carried-grain", "turning-walls"]),
-        (Slip::TwistNotFollowed, &["carried-grain", "turning-walls"]),
-        (Slip::MeanArm, &["unequal-impact", "rolling-off"]),
-        (Slip::OneArm, &["unequal-impact", "rolling-off", "carried-grain"]),
-        (Slip::WrongSpin, &["rolling-off", "carried-grain"]),
-        (Slip::WallSpinDropped, &["turning-walls"]),
-        (Slip::RollingNotCut, &["rocking"]),
-        (Slip::SpinsDropped, &["carried-grain", "turning-walls", "rocking"]),
+    let expected: [(MethodMistake, &[&str]); 8] = [
+        (MethodMistake::SpringNotTurned, &["carried-grain", "turning-walls"]),
+        (MethodMistake::TwistNotFollowed, &["carried-grain", "turning-walls"]),
+        (MethodMistake::MeanArm, &["unequal-impact", "rolling-off"]),
+        (MethodMistake::OneArm, &["unequal-impact", "rolling-off", "carried-grain"]),
+        (MethodMistake::WrongSpin, &["rolling-off", "carried-grain"]),
+        (MethodMistake::WallSpinDropped, &["turning-walls"]),
+        (MethodMistake::RollingNotCut, &["rocking"]),
+        (MethodMistake::SpinsDropped, &["carried-grain", "turning-walls", "rocking"]),
     ];
     for (mistake, cases) in expected {
         for case in cases {
             let rows = rows(Some(mistake), &[case]);
             let red: Vec<_> =
-                rows.iter().filter(|row| row.red() == Some(Red::Value)).map(|row| &row.quantity).collect();
+                rows.iter().filter(|row| row.red() == Some(FailureMode::Value)).map(|row| &row.quantity).collect();
             assert!(!red.is_empty(), "{mistake:?} in {case}");
             let is_named = |row: &&Verdict| row.detail.as_ref().is_some_and(|detail| detail.contains(mistake.words()));
             assert_eq!(rows.iter().filter(is_named).count(), red.len(), "{mistake:?} in {case}: {rows:#?}");
@@ -53,9 +53,9 @@ fn planted_defects_fail_claims_by_value() {
 }
 
 /// Our solver, given a wrong scene.
-struct Misled(fn(&mut Scene));
+struct MisledSolver(fn(&mut Scene));
 
-impl Solver for Misled {
+impl Solver for MisledSolver {
     fn name(&self) -> String {
         "misled".to_owned()
     }
@@ -95,8 +95,8 @@ fn a_failed_result_names_the_mistake() {
         }),
     ];
     for (case, words, wrong) in expected {
-        let rows = grainbench::judge(Misled(wrong), &[case]).unwrap().verdicts;
-        let red: Vec<&Verdict> = rows.iter().filter(|row| row.red() == Some(Red::Value)).collect();
+        let rows = grainbench::judge(MisledSolver(wrong), &[case]).unwrap().verdicts;
+        let red: Vec<&Verdict> = rows.iter().filter(|row| row.red() == Some(FailureMode::Value)).collect();
         let hint = |row: &Verdict| {
             row.detail.as_deref().unwrap_or_default().split_once("as if: ").map(|hint| hint.1.to_owned())
         };
@@ -110,7 +110,7 @@ fn a_failed_result_names_the_mistake() {
 /// Defects of Mindlin's law change nothing where springs are linear.
 #[test]
 fn claims_with_linear_springs_do_not_see_mindlins() {
-    for mistake in [Slip::SecantSpring, Slip::NotRescaled] {
+    for mistake in [MethodMistake::SecantSpring, MethodMistake::NotRescaled] {
         let red: Vec<_> =
             rows(Some(mistake), &["carried-grain"]).into_iter().filter(|row| row.red().is_some()).collect();
         assert!(red.is_empty(), "{mistake:?}: {red:#?}");

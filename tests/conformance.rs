@@ -12,10 +12,10 @@ use grainbench::scene::terms::{Order, Terms};
 /// Each property detects its own defect, and does not fail for every other defect.
 #[test]
 fn a_property_sees_its_own_flaw_and_not_every_other() {
-    use grainbench::harness::conformance::{Flaw, Flawed};
+    use grainbench::harness::conformance::{Flaw, FlawedSolver};
     let solver = solvers::by_name("dem").unwrap();
     let red = |flaw: Flaw| -> Vec<&str> {
-        let flawed = Flawed::new(&*solver, flaw);
+        let flawed = FlawedSolver::new(&*solver, flaw);
         let is_red =
             |rows: Vec<grainbench::harness::verdict::Verdict>| rows.iter().all(|row| row.outcome == Outcome::Fail);
         ALL.iter().filter(|property| is_red(property.check(&flawed, &Terms::SECOND_ORDER))).map(|p| p.name).collect()
@@ -50,8 +50,8 @@ fn an_order_that_is_not_there_is_not_believed() {
 /// A solver that rejects every scene does not pass.
 #[test]
 fn a_solver_that_runs_nothing_does_not_pass() {
-    struct Nothing;
-    impl Solver for Nothing {
+    struct IdleSolver;
+    impl Solver for IdleSolver {
         fn name(&self) -> String {
             "nothing".to_owned()
         }
@@ -59,7 +59,7 @@ fn a_solver_that_runs_nothing_does_not_pass() {
             Err(RunError::Unsupported { solver: self.name(), reason: "it runs nothing".to_owned() })
         }
     }
-    let refused = grainbench::conform(&Nothing, &Terms::at(Resolution::TimeStep(1e-4))).require().unwrap_err();
+    let refused = grainbench::conform(&IdleSolver, &Terms::at(Resolution::TimeStep(1e-4))).require().unwrap_err();
     assert!(refused.to_string().contains("no row passed"));
-    assert!(grainbench::judge(Nothing, &["backspin"]).unwrap().require().is_err());
+    assert!(grainbench::judge(IdleSolver, &["backspin"]).unwrap().require().is_err());
 }

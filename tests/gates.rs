@@ -4,7 +4,7 @@
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
 use grainbench::harness::claim::Claim;
-use grainbench::harness::run::{Set, Standing};
+use grainbench::harness::run::{ExpectedOutcome, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::Outcome;
 use grainbench::lanes::Processor;
@@ -50,9 +50,9 @@ fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     let verdict = runner.judge(claim);
     let expected = match claim.standing() {
         _ if !runner.is_available(claim) => Outcome::NotAvailable,
-        Standing::Passes => Outcome::Pass,
-        Standing::Refused => Outcome::Unsupported,
-        Standing::Known(_) => Outcome::Known,
+        ExpectedOutcome::Passes => Outcome::Pass,
+        ExpectedOutcome::Refused => Outcome::Unsupported,
+        ExpectedOutcome::Known(_) => Outcome::Known,
     };
     // A stored result of other solver sources is amber until somebody repeats the run.
     let is_expected = verdict.outcome == expected || (expected, verdict.outcome) == (Outcome::Pass, Outcome::Outdated);

@@ -17,7 +17,7 @@ use common::{expect_file, root, with_generated};
 use dialogue::{Place, blocks, hold};
 use grainbench::cases::registry::CASES;
 use grainbench::harness::evidence::Evidence;
-use grainbench::harness::run::Standing;
+use grainbench::harness::run::ExpectedOutcome;
 use grainbench::harness::verdict::Outcome;
 use pages::{Chapter, chapters, expanded, lost_links, untold};
 use std::collections::BTreeMap;
@@ -136,7 +136,7 @@ fn known_table() -> String {
     for case in CASES {
         for claim in (case.claims)() {
             for run in &claim.runs {
-                if let Standing::Known(reason) = run.standing {
+                if let ExpectedOutcome::Known(reason) = run.standing {
                     let seen = format!("`{}`: {}", case.name, claim.quantity);
                     let rows = known.entry((run.solver, reason)).or_default();
                     if !rows.contains(&seen) {

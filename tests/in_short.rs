@@ -8,7 +8,7 @@ use grainbench::cases::solvers;
 use grainbench::scene::brief::Brief;
 use grainbench::scene::record::{Series, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{NotStored, Resolution, Watch};
+use grainbench::scene::solver::{Resolution, StorageError, Watch};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
@@ -48,7 +48,7 @@ impl Watch for Taker {
     fn threads(&self) -> usize {
         self.threads
     }
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         self.whole.push(snapshot);
         Ok(None)
     }

@@ -8,10 +8,10 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
-use grainbench::harness::control::Wrong;
+use grainbench::harness::control::WrongPhysics;
 use grainbench::harness::run::Set;
 use grainbench::harness::verdict::Outcome;
-use grainbench::own::NotJudged;
+use grainbench::own::JudgementError;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
@@ -74,7 +74,7 @@ fn a_panic_is_a_broken_result() {
 fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
     for case in CASES {
         for claim in (case.claims)().iter().filter(|claim| claim.scope.is_open()) {
-            assert!(matches!(claim.control.wrong, Wrong::Scene(_)), "{}: {}", case.name, claim.quantity);
+            assert!(matches!(claim.control.wrong, WrongPhysics::Scene(_)), "{}: {}", case.name, claim.quantity);
             let solvers: BTreeSet<&str> = claim.runs.iter().map(|run| run.solver).collect();
             assert_eq!(solvers.len(), 1, "{}: {} compares solvers", case.name, claim.quantity);
         }
@@ -85,16 +85,16 @@ fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
 fn a_case_that_is_not_there_or_not_fair_says_so() {
     let solver = || Dem::new(Convention::LAMMPS);
     let nothing = grainbench::judge(solver(), &["sqash"]).unwrap_err();
-    assert!(matches!(nothing, NotJudged::NoSuchCase(_)) && nothing.to_string().contains("squash"), "{nothing}");
-    assert_eq!(grainbench::judge(solver(), &["squash"]), Err(NotJudged::NothingFair("squash".to_owned())));
+    assert!(matches!(nothing, JudgementError::NoSuchCase(_)) && nothing.to_string().contains("squash"), "{nothing}");
+    assert_eq!(grainbench::judge(solver(), &["squash"]), Err(JudgementError::NothingFair("squash".to_owned())));
 }
 
 /// A solver that ignores the scene may give the right result, but not for the wrong scene of a control.
 #[test]
 fn a_solver_that_ignores_the_scene_is_found_out() {
     use grainbench::scene::{record::Record, scene::Scene, solver::*};
-    struct Deaf(Box<dyn Solver>);
-    impl Solver for Deaf {
+    struct SceneIgnoringSolver(Box<dyn Solver>);
+    impl Solver for SceneIgnoringSolver {
         fn name(&self) -> String {
             "deaf".to_owned()
         }
@@ -105,7 +105,8 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
             self.0.run(&scene, resolution, watch)
         }
     }
-    let judgement = grainbench::judge(Deaf(solvers::by_name("dem").unwrap()), &["incline-disc"]).unwrap();
+    let judgement =
+        grainbench::judge(SceneIgnoringSolver(solvers::by_name("dem").unwrap()), &["incline-disc"]).unwrap();
     assert!(judgement.verdicts.iter().all(|row| row.outcome.word() == "pass"));
     let failures = judgement.failures();
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
@@ -128,7 +129,7 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
         assert_eq!(example.matches(line).count(), 1, "`{line}` is one line of the example");
         programs.push((name, example.replace(line, wrong)));
     }
-    let foreign = Foreign::build(&programs);
+    let foreign = ForeignCrate::build(&programs);
     let honest = foreign.run("honest");
     assert_eq!(honest.status.code(), Some(0), "{honest:?}");
     let rows = String::from_utf8(honest.stdout).unwrap();
@@ -141,11 +142,11 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
 
 /// All programs in one executable, compiled against the library of this test. For a crate outside the workspace, cargo
 /// would build all our crates again, which takes minutes and gives the same code.
-struct Foreign {
+struct ForeignCrate {
     folder: tempfile::TempDir,
 }
 
-impl Foreign {
+impl ForeignCrate {
     fn build(programs: &[(&str, String)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut main = "fn main() -> Result<(), Box<dyn std::error::Error>> {\n".to_owned();

@@ -11,8 +11,8 @@ mod common;
 use common::{expect_file, root, with_generated};
 use grainbench::cases::registry;
 use grainbench::peers::{KEPT, kept};
-use grainbench::reference::outside::Outside;
-use grainbench::reports::judged::{Count, Judged, cases};
+use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::judged::{Count, ExternalResults, cases};
 use grainbench::reports::study::point::Diagram;
 use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
@@ -33,7 +33,7 @@ fn every_adapter_was_judged_as_it_stands() {
     assert_eq!(folders, named);
     for ((folder, _), judged) in KEPT.iter().zip(kept().unwrap()) {
         let path = root("peers").join(folder);
-        let program = Outside::read(&path.join("SOLVER.toml")).unwrap();
+        let program = ExternalProgram::read(&path.join("SOLVER.toml")).unwrap();
         assert_eq!(
             judged.adapter,
             program.fingerprint().unwrap(),
@@ -66,7 +66,7 @@ fn kept_rows_are_earned_and_are_those_of_today() {
     }
 }
 
-fn programs_table(judged: &[Judged]) -> String {
+fn programs_table(judged: &[ExternalResults]) -> String {
     let mut table =
         "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
     for results in judged {
@@ -94,7 +94,7 @@ fn cell(count: Count) -> String {
         + &format!("{pass}/{asked}{red}")
 }
 
-fn cases_table(judged: &[Judged]) -> String {
+fn cases_table(judged: &[ExternalResults]) -> String {
     let names: Vec<&str> = judged.iter().map(|results| results.program.as_str()).collect();
     let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
     for case in cases(judged) {

@@ -19,7 +19,7 @@ use grainbench::mpm::solver::Mpm;
 use grainbench::reports::plot;
 use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
-use grainbench::studies::race::Race;
+use grainbench::studies::race::ThroughputBenchmark;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -56,7 +56,7 @@ fn conventions_table() -> String {
 /// Returns the table of the stored throughput benchmark. `grainbench race` on a quiet machine writes a new `race.json`.
 fn race_table() -> String {
     let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
-    serde_json::from_str::<Race>(&kept).unwrap().table().trim_end().to_owned()
+    serde_json::from_str::<ThroughputBenchmark>(&kept).unwrap().table().trim_end().to_owned()
 }
 
 #[test]

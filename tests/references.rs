@@ -8,10 +8,10 @@ mod common;
 use common::{grainbench, grainbench_alone};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
-use grainbench::cases::uncertainty::{self, Stored};
+use grainbench::cases::uncertainty::{self, StoredEstimates};
 use grainbench::harness::claim::Claim;
-use grainbench::harness::run::Standing;
-use grainbench::harness::tolerance::Made;
+use grainbench::harness::run::ExpectedOutcome;
+use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::deck::Program;
 use grainbench::reference::stored::{StoredRun, folder};
 use grainbench::scene::solver::RunError;
@@ -39,13 +39,13 @@ fn every_run_that_gates_read_is_stored_and_no_other() {
 fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
     for case in CASES {
         let claims: Vec<Claim> =
-            (case.claims)().into_iter().filter(|claim| claim.tolerance.made == Made::Estimated).collect();
+            (case.claims)().into_iter().filter(|claim| claim.tolerance.made == ToleranceOrigin::Estimated).collect();
         for claim in &claims {
             let found = uncertainty::find(case, claim);
             assert!(found.is_some(), "{} · {}: grainbench reference uncertainty makes it", case.name, claim.quantity);
         }
         let stored = std::fs::read_to_string(uncertainty::file(case.name)).unwrap_or_default();
-        let stored: Stored = toml::from_str(&stored).unwrap_or_default();
+        let stored: StoredEstimates = toml::from_str(&stored).unwrap_or_default();
         assert_eq!(stored.estimate.len(), claims.len(), "{}", case.name);
     }
 }
@@ -55,7 +55,7 @@ fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
 fn every_known_error_has_a_second_bound() {
     for case in CASES {
         for claim in (case.claims)() {
-            if matches!(claim.standing(), Standing::Known(_)) {
+            if matches!(claim.standing(), ExpectedOutcome::Known(_)) {
                 let bound = claim.runs[0].known_up_to;
                 assert!(bound.is_finite() && bound > 0.0, "{} · {}: {bound}", case.name, claim.quantity);
             }

@@ -5,11 +5,11 @@
 mod common;
 
 use common::{bits, files, grainbench};
-use grainbench::cases::kept::{self, Wanted};
+use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::harness::case::Case;
-use grainbench::harness::run::Done;
+use grainbench::harness::run::FinishedRun;
 use grainbench::resume::{self, Place};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::end_state::EndState;
@@ -90,13 +90,13 @@ fn every_case_continues_to_the_same_bits() {
 }
 
 /// Watch that ends a run after some steps.
-struct Impatient {
+struct RunInterrupter {
     until: u64,
     done: u64,
     end: Option<EndState>,
 }
 
-impl Watch for Impatient {
+impl Watch for RunInterrupter {
     fn progress(&mut self, done: u64, _total: u64) {
         self.done = done;
     }
@@ -119,11 +119,11 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let run = claim.runs[0].clone();
     let scene = case.variant(run.variant).unwrap();
     let solver = solvers::by_name(run.solver).unwrap();
-    let wanted = Wanted { case, claim, run: run.clone(), wrong: false, id: "thousand".to_owned() };
+    let wanted = StorableRun { case, claim, run: run.clone(), wrong: false, id: "thousand".to_owned() };
     let files = |record: Record| {
         assert!(record.cost.wall_seconds > 0.0);
         let record = Record { cost: Cost { wall_seconds: 1.0, ..record.cost }, ..record };
-        let done = Done::new(Arc::new(scene.clone()), Arc::new(record));
+        let done = FinishedRun::new(Arc::new(scene.clone()), Arc::new(record));
         kept::files(&wanted, &done, &scene, ["commit", "2024-01-01"]).unwrap()
     };
     let straight = files(solver.run(&scene, &run.resolution, &mut ()).unwrap());
@@ -132,7 +132,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let path = directory.path().join("run.checkpoint");
     let place = Place { path: &path, every: 300 };
     let go = |from: Option<&Checkpoint>, until: u64| {
-        let mut watch = Impatient { until, done: 0, end: None };
+        let mut watch = RunInterrupter { until, done: 0, end: None };
         let record = resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch);
         assert!(record.is_err() || watch.end.is_some(), "the final state of a resumed run");
         record
@@ -152,7 +152,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
     let mut other = scene.clone();
     other.gravity *= 2.0;
-    let mut watch = Impatient { until: u64::MAX, done: 0, end: None };
+    let mut watch = RunInterrupter { until: u64::MAX, done: 0, end: None };
     let refused = resume::run(solver.as_ref(), &other, &run.resolution, Some(&theirs), place, &mut watch);
     assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }

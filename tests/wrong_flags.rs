@@ -41,13 +41,13 @@ const COMMANDS: [&[&str]; 26] = [
 ];
 
 /// An option in the help: its long name and the name of its value.
-struct Shown {
+struct HelpOption {
     name: String,
     value: Option<String>,
 }
 
 /// Returns the options in a help text.
-fn options(help: &str) -> Vec<Shown> {
+fn options(help: &str) -> Vec<HelpOption> {
     let read = |line: &str| {
         let line = line.trim_start();
         let long = line
@@ -61,13 +61,13 @@ fn options(help: &str) -> Vec<Shown> {
             .next()
             .and_then(|word| word.strip_prefix('<'))
             .map(|word| word.trim_end_matches(['.', '>']).to_owned());
-        Some(Shown { name, value })
+        Some(HelpOption { name, value })
     };
     help.lines().filter_map(read).filter(|shown| !["--help", "--version"].contains(&shown.name.as_str())).collect()
 }
 
 /// Returns values that are invalid for all options with this name of the value.
-fn wrong(option: &Shown) -> Vec<&'static str> {
+fn wrong(option: &HelpOption) -> Vec<&'static str> {
     match (option.name.as_str(), option.value.as_deref()) {
         (_, None) => vec!["yes"],
         ("--low" | "--high", _) => vec!["1,2", "wrong"],

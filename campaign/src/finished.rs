@@ -17,7 +17,7 @@ pub struct Entry {
     pub seconds: f64,
     /// System load during the task: the average number of processes that wanted a core.
     pub load: Option<f64>,
-    /// Index of the worker in [`Finished::workers`].
+    /// Index of the worker in [`FinishedTasks::workers`].
     pub worker: usize,
     /// Result as JSON; empty unless results were requested.
     pub json: Box<str>,
@@ -25,7 +25,7 @@ pub struct Entry {
 
 /// All finished tasks of a plan.
 #[derive(Clone, Debug, Default)]
-pub struct Finished {
+pub struct FinishedTasks {
     /// Results by task.
     pub entries: HashMap<Id, Entry>,
     /// Workers with a result file.
@@ -36,7 +36,7 @@ pub struct Finished {
     pub twice: usize,
 }
 
-impl Finished {
+impl FinishedTasks {
     /// Reads the result files of all workers. The JSON of the results is kept only if `with_results` is set.
     ///
     /// # Errors

@@ -29,7 +29,7 @@ const ENDING: &str = "json";
 
 /// Contents of a lease.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Said {
+pub struct LeaseContents {
     /// Name of the worker.
     pub worker: String,
     /// Name of the machine.
@@ -44,7 +44,7 @@ pub struct Said {
     pub done: usize,
 }
 
-impl Said {
+impl LeaseContents {
     /// Returns true if the lease covers a task.
     #[must_use]
     pub fn has(&self, place: usize) -> bool {
@@ -56,7 +56,7 @@ impl Said {
 #[derive(Debug)]
 pub struct Lease {
     path: PathBuf,
-    said: Said,
+    said: LeaseContents,
 }
 
 impl Lease {
@@ -69,13 +69,13 @@ impl Lease {
     pub fn take(
         plan: &Path,
         range: Range<usize>,
-        contents: &Said,
+        contents: &LeaseContents,
         seconds: f64,
-    ) -> Result<(Option<Self>, Vec<Said>), Fault> {
+    ) -> Result<(Option<Self>, Vec<LeaseContents>), Fault> {
         let folder = plan.join(RUNNING);
         fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
         let _lock = Lock::acquire(&folder)?;
-        let others: Vec<Said> =
+        let others: Vec<LeaseContents> =
             held(plan, seconds)?.into_iter().filter(|other| other.worker != contents.worker).collect();
         let mut tasks: Vec<[usize; 2]> = Vec::new();
         for place in range {
@@ -91,7 +91,7 @@ impl Lease {
             return Ok((None, others));
         }
         let path = folder.join(format!("{}.{ENDING}", contents.worker));
-        let lease = Self { path, said: Said { tasks, ..contents.clone() } };
+        let lease = Self { path, said: LeaseContents { tasks, ..contents.clone() } };
         lease.renew(0)?;
         Ok((Some(lease), others))
     }
@@ -107,7 +107,7 @@ impl Lease {
     /// # Errors
     /// When the disk rejects the write.
     pub fn renew(&self, done: usize) -> Result<(), WriteError> {
-        let contents = Said { done, ..self.said.clone() };
+        let contents = LeaseContents { done, ..self.said.clone() };
         write_file(&self.path, serde_json::to_string(&contents).unwrap_or_default())
     }
 }
@@ -122,7 +122,7 @@ impl Drop for Lease {
 ///
 /// # Errors
 /// When the directory of leases cannot be read.
-pub fn held(plan: &Path, seconds: f64) -> Result<Vec<Said>, Fault> {
+pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
     let folder = plan.join(RUNNING);
     let entries = match fs::read_dir(&folder) {
         Ok(entries) => entries,
@@ -136,7 +136,7 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<Said>, Fault> {
             continue;
         }
         let (Ok(text), Some(age)) = (fs::read_to_string(&path), age(&path, now)) else { continue };
-        let Ok(contents) = serde_json::from_str::<Said>(&text) else { continue };
+        let Ok(contents) = serde_json::from_str::<LeaseContents>(&text) else { continue };
         let is_gone = contents.host == machine::name() && machine::runs(contents.process) == Some(false);
         if is_gone || age > seconds {
             let _ = fs::remove_file(&path);
@@ -225,8 +225,15 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    fn lease_contents(worker: &str, process: u32) -> Said {
-        Said { worker: worker.to_owned(), host: machine::name(), process, job: None, tasks: Vec::new(), done: 0 }
+    fn lease_contents(worker: &str, process: u32) -> LeaseContents {
+        LeaseContents {
+            worker: worker.to_owned(),
+            host: machine::name(),
+            process,
+            job: None,
+            tasks: Vec::new(),
+            done: 0,
+        }
     }
 
     #[test]
@@ -255,7 +262,7 @@ mod tests {
         child.wait().unwrap();
         for (process, host, seconds) in [(child.id(), machine::name(), 60.0), (1, "elsewhere".to_owned(), 0.02)] {
             let (lease, _) =
-                Lease::take(plan.path(), 0..4, &Said { host, ..lease_contents("a", process) }, 60.0).unwrap();
+                Lease::take(plan.path(), 0..4, &LeaseContents { host, ..lease_contents("a", process) }, 60.0).unwrap();
             sleep(Duration::from_millis(100));
             assert_eq!(held(plan.path(), seconds).unwrap(), []);
             drop(lease);

@@ -5,7 +5,7 @@
 
 use crate::chunk::{self, MOST};
 use crate::fault::Fault;
-use crate::finished::Finished;
+use crate::finished::FinishedTasks;
 use crate::lease;
 use crate::plan::Plan;
 use grainbench_reports::{WriteError, write_file};
@@ -36,7 +36,7 @@ pub struct Job {
 
 /// Request for a submission.
 #[derive(Clone, Debug)]
-pub struct Asked<'a> {
+pub struct SubmitRequest<'a> {
     /// Path of the program on the nodes.
     pub program: &'a Path,
     /// True to submit the remaining chunks of a plan that was submitted before.
@@ -50,7 +50,7 @@ pub struct Asked<'a> {
 /// # Errors
 /// When Slurm does not answer or rejects the job, or when an option would change the job array. A plan that was
 /// submitted before is an error too, unless `again` is set.
-pub fn submit(plan: &Plan, asked: &Asked<'_>) -> Result<Option<Job>, Fault> {
+pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fault> {
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected(
             "options for sbatch",
@@ -132,7 +132,7 @@ pub fn in_queue(plan: &Path) -> Result<usize, Fault> {
 
 /// Returns the numbers of the chunks that are not queued and have a task that is neither finished nor leased.
 fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<u32>>) -> Result<Vec<u32>, Fault> {
-    let finished = Finished::read(&plan.path, false)?;
+    let finished = FinishedTasks::read(&plan.path, false)?;
     let is_queued = |index: u32| {
         jobs.iter()
             .any(|job| job.chunks == chunks && queued.get(&job.job).is_some_and(|of_job| of_job.contains(&index)))

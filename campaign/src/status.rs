@@ -1,8 +1,8 @@
 //! Progress of a plan.
 
 use crate::fault::Fault;
-use crate::finished::Finished;
-use crate::lease::{self, Said};
+use crate::finished::FinishedTasks;
+use crate::lease::{self, LeaseContents};
 use crate::log::State;
 use crate::plan::Plan;
 use crate::task::Id;
@@ -29,7 +29,7 @@ pub struct Status {
     /// The estimate is scaled by the ratio of actual to expected time of the finished tasks.
     pub seconds_left: f64,
     /// Active workers.
-    pub workers: Vec<Said>,
+    pub workers: Vec<LeaseContents>,
     /// Number of result lines that are cut off or damaged; their tasks are repeated.
     pub damaged: usize,
     /// Number of repeated results of tasks that were done already.
@@ -43,7 +43,7 @@ impl Status {
     /// When a file of the plan cannot be read.
     pub fn from_plan(plan: &Plan) -> Result<Self, Fault> {
         let workers = lease::held(&plan.path, plan.head.lease_seconds)?;
-        let finished = Finished::read(&plan.path, false)?;
+        let finished = FinishedTasks::read(&plan.path, false)?;
         let mut status = Self { tasks: plan.tasks.len(), damaged: finished.damaged, ..Self::default() };
         let (mut left, mut took, mut expected) = (0.0, 0.0, 0.0);
         for (place, task) in plan.tasks.iter().enumerate() {

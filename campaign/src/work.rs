@@ -2,8 +2,8 @@
 
 use crate::chunk::{self, Chunk};
 use crate::fault::Fault;
-use crate::finished::Finished;
-use crate::lease::{Lease, Said};
+use crate::finished::FinishedTasks;
+use crate::lease::{Lease, LeaseContents};
 use crate::log::{Line, Log, State, Worker};
 use crate::machine;
 use crate::plan::{Plan, RESULTS};
@@ -25,7 +25,7 @@ const SHARE: u32 = 20;
 
 /// Request for a worker.
 #[derive(Clone, Debug)]
-pub struct Asked {
+pub struct WorkRequest {
     /// Chunk to run.
     pub chunk: Chunk,
     /// True to repeat failed tasks.
@@ -47,7 +47,7 @@ pub trait Watch: Send + Sync {
     /// Called when a task is finished.
     fn finished(&self) {}
     /// Called when the remaining tasks are leased to other workers and this worker waits for them.
-    fn waits(&self, _others: &[Said]) {}
+    fn waits(&self, _others: &[LeaseContents]) {}
 }
 
 impl Watch for () {}
@@ -68,7 +68,7 @@ pub struct Summary {
 }
 
 /// Result sink: receives the results of tasks and writes them to the log.
-pub struct Desk {
+pub struct ResultSink {
     log: Mutex<Log>,
     watch: Arc<dyn Watch>,
     fault: Mutex<Option<WriteError>>,
@@ -78,7 +78,7 @@ pub struct Desk {
     timed: bool,
 }
 
-impl Desk {
+impl ResultSink {
     /// Returns true if another task may be started.
     #[must_use]
     pub fn goes_on(&self) -> bool {
@@ -137,7 +137,7 @@ fn quoted(words: &str) -> String {
 }
 
 /// Function that runs tasks and writes their results to the sink.
-pub type Does<'a> = &'a dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>;
+pub type TaskFunction<'a> = &'a dyn Fn(&[&Task], &Arc<ResultSink>) -> Result<(), Fault>;
 
 /// Runs a chunk of a plan; `does` runs the tasks.
 ///
@@ -145,14 +145,14 @@ pub type Does<'a> = &'a dyn Fn(&[&Task], &Arc<Desk>) -> Result<(), Fault>;
 /// When the disk rejects a write; results written before are kept.
 pub fn work(
     plan: &Plan,
-    asked: &Asked,
+    asked: &WorkRequest,
     worker: &Worker,
     watch: Arc<dyn Watch>,
-    does: Does<'_>,
+    does: TaskFunction<'_>,
 ) -> Result<Summary, Fault> {
     let range = chunk::task_range(&plan.tasks, asked.chunk);
     let seconds = plan.head.lease_seconds;
-    let contents = Said {
+    let contents = LeaseContents {
         worker: worker.name.clone(),
         host: worker.host.clone(),
         process: worker.process,
@@ -161,7 +161,7 @@ pub fn work(
         done: 0,
     };
     let mut summary = Summary { tasks: range.len(), ..Summary::default() };
-    let mut desk: Option<Arc<Desk>> = None;
+    let mut desk: Option<Arc<ResultSink>> = None;
     // Each task is tried at most once by this worker, even if it fails again.
     let mut tried: BTreeSet<usize> = BTreeSet::new();
     let mut is_first = true;
@@ -169,7 +169,7 @@ pub fn work(
         let (lease, others) = Lease::take(&plan.path, range.clone(), &contents, seconds)?;
         // Results are read after the lease is taken, so that no other worker can finish a leased task meanwhile.
         let look = Instant::now();
-        let finished = Finished::read(&plan.path, false)?;
+        let finished = FinishedTasks::read(&plan.path, false)?;
         let look = look.elapsed();
         let is_open = |place: usize| match finished.entries.get(&plan.tasks[place].id) {
             None => true,
@@ -183,7 +183,8 @@ pub fn work(
         summary.left = open.len();
         let is_mine = |place: &usize| lease.as_ref().is_some_and(|lease| lease.has(*place));
         let mine: Vec<usize> = open.iter().copied().filter(is_mine).collect();
-        let others: Vec<Said> = others.into_iter().filter(|other| open.iter().any(|place| other.has(*place))).collect();
+        let others: Vec<LeaseContents> =
+            others.into_iter().filter(|other| open.iter().any(|place| other.has(*place))).collect();
         if mine.is_empty() {
             drop(lease);
             if others.is_empty() || !watch.goes_on() {
@@ -217,10 +218,10 @@ pub fn work(
     Ok(summary)
 }
 
-fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<Desk, Fault> {
+fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<ResultSink, Fault> {
     let folder = plan.path.join(RESULTS);
     fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
-    Ok(Desk {
+    Ok(ResultSink {
         log: Mutex::new(Log::new(&folder, worker)?),
         watch,
         fault: Mutex::new(None),
@@ -232,7 +233,7 @@ fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<Desk, Fa
 }
 
 /// Runs a function while a second thread renews the lease.
-fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl FnOnce() -> T) -> T {
+fn with_a_heart<T>(lease: Option<&Lease>, desk: &ResultSink, every: f64, work: impl FnOnce() -> T) -> T {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let beats = scope.spawn(|| {
@@ -247,7 +248,7 @@ fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl Fn
                 }
             }
         });
-        let over = Over(&is_over, beats.thread().clone());
+        let over = HeartbeatGuard(&is_over, beats.thread().clone());
         let done = work();
         drop(over);
         done
@@ -255,9 +256,9 @@ fn with_a_heart<T>(lease: Option<&Lease>, desk: &Desk, every: f64, work: impl Fn
 }
 
 /// Guard that stops the heartbeat thread, even if the work panics.
-struct Over<'a>(&'a AtomicBool, std::thread::Thread);
+struct HeartbeatGuard<'a>(&'a AtomicBool, std::thread::Thread);
 
-impl Drop for Over<'_> {
+impl Drop for HeartbeatGuard<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
         self.1.unpark();

@@ -42,7 +42,7 @@ fn claims() -> Vec<Claim> {
 }
 
 /// Compares a quantity of the last state with the rigid solution.
-fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     incline::end(done, OneGrain::rigid_backspin, pick)
 }
 
@@ -95,8 +95,8 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
 /// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
 /// solver-independent.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
-    type Pick = fn(&Done) -> Result<Measured, Missing>;
-    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+    type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
+    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
             .run(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
@@ -166,12 +166,12 @@ fn displaced(scene: &Scene) -> f64 {
     rolling(scene) + grain.backspin_velocity(grain.radius) * grain.onset() / grain.rigid_backspin(end).x
 }
 
-fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
+fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let grain = OneGrain::from_scene(&done.scene);
     let halfway = 0.5 * sliding(&grain);
     let (t, state) = nearest(done, halfway)?;
     let exact = grain.rigid_backspin(t).v;
-    Ok(Measured::new(state.v, exact, exact))
+    Ok(Measurement::new(state.v, exact, exact))
 }
 
 fn final_motion(variant: &'static str) -> Vec<Claim> {
@@ -184,7 +184,7 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
                 let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.backspin_velocity(arm);
-                Ok(Measured::new(state.v, exact, exact))
+                Ok(Measurement::new(state.v, exact, exact))
             })
             .within(incline::come_to_roll(&CASE, variant, sliding))
             .refuses(other)

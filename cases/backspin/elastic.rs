@@ -6,7 +6,7 @@
 //! undamped free vibration of the contact.
 
 use crate::exact::one_grain::course;
-use crate::rows::elastic::{Pressed, Rest, settle, stiffen};
+use crate::rows::elastic::{PressedDisc, Rest, settle, stiffen};
 use crate::rows::elastic_backspin::{excess, rolling, slippery, sphere};
 use grainbench_harness::prelude::*;
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -34,12 +34,12 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
 
 /// Returns the flattening of the disc at rest: the decrease of the height of its centre, over R. The load is its weight
 /// W (N per metre), on a grid with `cells` cells a radius. It includes the springs at the surface. K = 10 MPa and G =
-/// 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`Pressed::gives`] for the displacement of the disc.
+/// 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`PressedDisc::gives`] for the displacement of the disc.
 fn flattened(cells: f64) -> f64 {
     let radius = 0.5;
     let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
     let modulus = rock.plane_modulus();
-    let disc = Pressed { modulus, poisson: 5.0 / 13.0, radius, sides: 2 };
+    let disc = PressedDisc { modulus, poisson: 5.0 / 13.0, radius, sides: 2 };
     let weight = 3000.0 * 9.8 * PI * radius * radius;
     let springs = weight / (2.0 * disc.patch(weight) * radius) / (2.6 * modulus * cells);
     weight * disc.gives(weight).u / (PI * modulus * radius) + springs
@@ -60,7 +60,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .run(run("disc", "mpm", 8.0))
             .equals(Source::Derived("rolling without slip"), |done| {
                 let (v, surface) = rolling(&done[0])?;
-                Ok(Measured::new(surface / v, 1.0, 1.0))
+                Ok(Measurement::new(surface / v, 1.0, 1.0))
             })
             .within(computed(
                 flattened(8.0),
@@ -76,7 +76,7 @@ pub(super) fn claims() -> Vec<Claim> {
                  0.494 to 0.504 m, and its displacement is too small. A disc that rotates without contact has no noise",
             )
             .up_to(0.5))
-            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(0.02, "elasticity; it is worth .015 for the sphere of the prototype"))
             .refuses(Control::without_the_error(
                 "nodal contact of surfaces that met",
@@ -91,7 +91,7 @@ pub(super) fn claims() -> Vec<Claim> {
                  into the region, and normal force and friction are several times those of the weight",
             )
             .up_to(0.2))
-            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(0.05, "what a contact that acts at the surface reaches at this resolution"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3))),
     );
@@ -104,7 +104,7 @@ fn stiff_discs() -> [Claim; 2] {
         let run = stiffened("disc", "mpm", 8.0, factor);
         claim(format!("displacement at .8 s over the rigid one, less 1, moduli × {factor}, R/8"), "1")
             .run(if factor > 10.0 { run.long() } else { run.slow() })
-            .equals(RIGID, |done| Ok(Measured::new(excess(&done[0])?, 0.0, 1.0)))
+            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(
                 allowed,
                 "as of the stiffened discs on the slopes: elasticity falls with the modulus or its square root, and \

@@ -7,7 +7,7 @@ use grainbench_scene::body::BlockShape;
 const LEVELS: &[Level] = &[cells("L/20", 20.0, 2), cells("L/40", 40.0, 2), cells("L/80", 80.0, 2)];
 const SOURCE: Source = Source::Derived("waves in a line of material (derivation)");
 
-const VELOCITY: Plate = Plate {
+const VELOCITY: ClaimFigure = ClaimFigure {
     name: "velocity",
     title: "Velocity of the right bar",
     caption: "It grows for as long as the bars touch, 2L/c, to that of the bar that came.",
@@ -70,7 +70,7 @@ fn width(resolution: Resolution) -> f64 {
 const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
 /// Returns the mean stress in the middle of the right bar from 0.7 to 1.3 transits L/c.
-fn plateau(done: &Done) -> Result<f64, Missing> {
+fn plateau(done: &FinishedRun) -> Result<f64, MissingData> {
     let impact = Impact::from_scene(&done.scene);
     let transit = impact.length / impact.wave;
     let stress = done.column("middle.sigma_xx")?;
@@ -78,7 +78,7 @@ fn plateau(done: &Done) -> Result<f64, Missing> {
     let samples: Vec<f64> =
         done.series().time.iter().zip(stress).filter(|(time, _)| within(**time)).map(|(_, &stress)| stress).collect();
     if samples.is_empty() {
-        Err(Missing("samples".to_owned()))
+        Err(MissingData("samples".to_owned()))
     } else {
         Ok(samples.iter().sum::<f64>() / samples.len() as f64)
     }
@@ -115,7 +115,7 @@ fn claims() -> Vec<Claim> {
             claim(format!("velocity of the left bar in the end, {} cells", level.name), "m/s")
                 .run(run())
                 .equals(SOURCE, |done| {
-                    Ok(Measured::new(done[0].last("left.vx")?, 0.0, Impact::from_scene(&done[0].scene).speed))
+                    Ok(Measurement::new(done[0].last("left.vx")?, 0.0, Impact::from_scene(&done[0].scene).speed))
                 })
                 .within(computed(
                     LEFT_BEHIND * width,
@@ -131,7 +131,7 @@ fn claims() -> Vec<Claim> {
             .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
             .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
                 let exact = -Impact::from_scene(&done[0].scene).stress();
-                Ok(Measured::new(plateau(&done[0])?, exact, -exact))
+                Ok(Measurement::new(plateau(&done[0])?, exact, -exact))
             })
             .within(estimated(0.015, "ringing behind a front that is a jump"))
             .refuses(softer())

@@ -131,18 +131,18 @@ fn claims() -> Vec<Claim> {
 }
 
 /// Compares a quantity of the last state with the rigid solution.
-fn end(done: &Done, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let exact = pick(Belt::from_scene(&done.scene).rigid(t));
-    Ok(Measured::new(pick(state), exact, exact))
+    Ok(Measurement::new(pick(state), exact, exact))
 }
 
 /// Compares the velocity at half the time of sliding with the rigid solution.
-fn velocity_halfway(done: &Done) -> Result<Measured, Missing> {
+fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let belt = Belt::from_scene(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
     let exact = belt.rigid(t).v;
-    Ok(Measured::new(state.v, exact, exact))
+    Ok(Measurement::new(state.v, exact, exact))
 }
 
 /// Returns grain and belt of a variant with the spring stiffness of the nearly rigid runs, and their time step (s).
@@ -174,9 +174,9 @@ const NO_GRAIN: OneGrain = OneGrain {
 /// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
 /// solver-independent.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
-    type Pick = fn(&Done) -> Result<Measured, Missing>;
+    type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
     let (belt, step) = stiff(variant);
-    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: Pick| {
+    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
             .run(nearly_rigid(variant, tangential_dashpot))
             .equals(SOURCE, move |done| pick(&done[0]))
@@ -238,7 +238,7 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
                 let grain = belt.grain;
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = belt.rolling_at(arm);
-                Ok(Measured::new(state.v, exact, exact))
+                Ok(Measurement::new(state.v, exact, exact))
             })
             .within(rounding())
             .refuses(other)
@@ -299,7 +299,7 @@ fn stopped() -> Vec<Claim> {
                 .equals(STOPPED, move |done| {
                     let (_, state) = last(&done[0])?;
                     let [value, exact, scale] = pick(state, &Belt::from_scene(&done[0].scene));
-                    Ok(Measured::new(value, exact, scale))
+                    Ok(Measurement::new(value, exact, scale))
                 })
                 .within(tolerance)
                 .refuses(control)
@@ -349,7 +349,7 @@ fn kick() -> Claim {
         .equals(Source::Derived("a dashpot that friction does not limit, from step 0 or 1 on (derivation)"), |done| {
             let [ours, program] = [last(&done[0])?.1.v, last(&done[1])?.1.v];
             let kicked = Belt::from_scene(&done[0].scene).kicked(&done[0].scene, done[0].record.provenance.time_step);
-            Ok(Measured::new(program - ours, kicked[1] - kicked[0], kicked[1]))
+            Ok(Measurement::new(program - ours, kicked[1] - kicked[0], kicked[1]))
         })
         .within(computed(1e-3, "overlap/R, for a torque arm between R and R − overlap; in units of LIGGGHTS' velocity"))
         .refuses(Control::ours("a dashpot along the belt × 1.05 in ours", |scene| {

@@ -77,8 +77,8 @@ fn torque(variant: &'static str, about: &str) -> Claim {
 
 /// Returns the largest difference between our rate and the external solver's, in units of its largest rate. A rate is
 /// the velocity change per step, times an inertia, over the step.
-fn rate(done: &[Done], columns: &[&str], inertia: f64) -> Result<Measured, Missing> {
-    let [ours, theirs, ..] = done else { return Err(Missing("second run to compare with".to_owned())) };
+fn rate(done: &[FinishedRun], columns: &[&str], inertia: f64) -> Result<Measurement, MissingData> {
+    let [ours, theirs, ..] = done else { return Err(MissingData("second run to compare with".to_owned())) };
     let times = &theirs.series().time;
     let middle: Vec<f64> = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let gains = |values: &[f64]| -> Vec<f64> {
@@ -93,7 +93,7 @@ fn rate(done: &[Done], columns: &[&str], inertia: f64) -> Result<Measured, Missi
         largest = theirs.iter().fold(largest, |most, value| most.max(value.abs()));
         both.push((ours, theirs));
     }
-    let found: Vec<Measured> =
-        both.iter().map(|(ours, theirs)| Measured::worst_of(&middle, ours, theirs, largest)).collect();
-    Measured::worst_among(found).ok_or_else(|| Missing("columns to compare".to_owned()))
+    let found: Vec<Measurement> =
+        both.iter().map(|(ours, theirs)| Measurement::worst_of(&middle, ours, theirs, largest)).collect();
+    Measurement::worst_among(found).ok_or_else(|| MissingData("columns to compare".to_owned()))
 }

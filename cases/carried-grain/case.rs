@@ -72,7 +72,7 @@ fn motion(variant: &str) -> Option<Motion> {
 }
 
 /// Returns the final position of the carried grain (m).
-fn place(done: &Done) -> Result<Vector3<f64>, Missing> {
+fn place(done: &FinishedRun) -> Result<Vector3<f64>, MissingData> {
     let mut place = Vector3::zeros();
     for (axis, name) in ["carried.x", "carried.y", "carried.z"].iter().enumerate().take(done.scene.dimension.count()) {
         place[axis] = done.last(name)?;
@@ -93,7 +93,7 @@ fn after_a_turn(variant: &'static str) -> Claim {
         .holds("a mass on springs alike in all directions, whose rest place turns (derivation)", |done| {
             let motion = Motion::from_scene(&done[0].scene);
             let exact = sprung(motion.start, motion.spin, motion.frequency, motion.time);
-            Ok(Measured::new((place(&done[0])? - exact).norm(), 0.0, motion.start.norm()))
+            Ok(Measurement::new((place(&done[0])? - exact).norm(), 0.0, motion.start.norm()))
         })
         .within(computed(
             allowed,
@@ -115,7 +115,7 @@ fn spin() -> Claim {
         .run(Run::new("across", "dem", STEP.resolution))
         .equals(Source::Derived("the torques of both contacts are opposite (derivation)"), |done| {
             let rate = Motion::from_scene(&done[0].scene).spin.norm();
-            Ok(Measured::new(done[0].last("carried.omega")?, rate, rate))
+            Ok(Measurement::new(done[0].last("carried.omega")?, rate, rate))
         })
         .within(computed(allowed, "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + θ)²"))
         .refuses(Control::scene("the drivers run on and do not spin", |scene| {

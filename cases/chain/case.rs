@@ -14,7 +14,7 @@ const BEADS: [(usize, &str); 6] =
     [(5, "v5.vx"), (10, "v10.vx"), (15, "v15.vx"), (18, "v18.vx"), (20, "v20.vx"), (22, "v22.vx")];
 const BESSEL: Source = Source::Derived("v_n = V∫(2n/s)J_2n(s)ds over 0 to 2ω₀t (derivation)");
 
-const CONVERGENCE: Plate = Plate {
+const CONVERGENCE: ClaimFigure = ClaimFigure {
     name: "convergence",
     title: "Error against the step",
     caption: "Root mean square over beads 5, 10, 15, 18, 20 and 22 at ω₀t = 20.",
@@ -49,10 +49,10 @@ fn chain(scene: &Scene) -> (f64, f64, f64) {
     (scene.walls[0].motion.phases[0].velocity.x, (stiffness / mass).sqrt(), (stiffness * mass).sqrt())
 }
 
-fn bead(done: &Done, n: usize, column: &str) -> Result<Measured, Missing> {
+fn bead(done: &FinishedRun, n: usize, column: &str) -> Result<Measurement, MissingData> {
     let (speed, omega, _) = chain(&done.scene);
     let time = done.series().time.last().copied().unwrap_or_default();
-    Ok(Measured::new(done.last(column)?, speed * bessel::velocity(n, 2.0 * omega * time), speed))
+    Ok(Measurement::new(done.last(column)?, speed * bessel::velocity(n, 2.0 * omega * time), speed))
 }
 
 fn claims() -> Vec<Claim> {
@@ -83,7 +83,7 @@ fn claims() -> Vec<Claim> {
             let force = done[0].column("driver.force_x")?;
             let half = &force[force.len() / 2..];
             let mean = half.iter().sum::<f64>() / half.len() as f64;
-            Ok(Measured::new(-mean, speed * impedance, speed * impedance))
+            Ok(Measurement::new(-mean, speed * impedance, speed * impedance))
         })
         .within(computed(
             2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),
@@ -108,8 +108,8 @@ fn claims() -> Vec<Claim> {
 }
 
 /// Returns the root mean square error of the velocities of the six beads, in units of V.
-fn rms(done: &Done) -> Result<f64, Missing> {
-    let errors: Result<Vec<f64>, Missing> =
+fn rms(done: &FinishedRun) -> Result<f64, MissingData> {
+    let errors: Result<Vec<f64>, MissingData> =
         BEADS.into_iter().map(|(n, column)| Ok(bead(done, n, column)?.error())).collect();
     Ok((errors?.iter().map(|error| error * error).sum::<f64>() / BEADS.len() as f64).sqrt())
 }

@@ -11,7 +11,7 @@ use crate::exact::dashpot::{no_tension_lag, no_tension_ratio};
 use crate::rows::program_forces::forces;
 use crate::rows::programs::hertz_impact;
 use crate::rows::rigid;
-use forms::Meeting;
+use forms::ImpactParameters;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::ContactLaw;
 use std::f64::consts::PI;
@@ -97,10 +97,10 @@ fn peak(values: &[f64]) -> f64 {
 }
 
 /// Returns the time at which the overlap ends: the last sample in contact, extrapolated with its approach rate.
-fn duration(done: &Done) -> Result<f64, Missing> {
+fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
     let overlap = done.column("contact.overlap")?;
     let time = &done.series().time;
-    let last = overlap.iter().rposition(|&overlap| overlap > 0.0).ok_or_else(|| Missing("contact".to_owned()))?;
+    let last = overlap.iter().rposition(|&overlap| overlap > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
     let rate = (overlap[last - 1] - overlap[last]) / (time[last] - time[last - 1]);
     Ok(time[last] + overlap[last] / rate)
 }
@@ -110,12 +110,12 @@ fn elastic() -> Vec<Claim> {
                           quantity: &str,
                           unit,
                           exact: fn(&Scene) -> f64,
-                          read: fn(&Done) -> Result<f64, Missing>| {
+                          read: fn(&FinishedRun) -> Result<f64, MissingData>| {
         claim(quantity, unit)
             .run(Run::new(variant, "dem", STEP.resolution))
             .equals(HERTZ, move |done| {
                 let exact = exact(&done[0].scene);
-                Ok(Measured::new(read(&done[0])?, exact, exact))
+                Ok(Measurement::new(read(&done[0])?, exact, exact))
             })
             .within(estimated(1e-6, "discretisation of the impact by some thousand steps"))
             .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))))
@@ -153,7 +153,7 @@ fn with_restitution(variant: &'static str, restitution: f64) -> Run {
     })
 }
 
-fn rebound(done: &Done) -> Result<f64, Missing> {
+fn rebound(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(-done.last("a.vz")? / done.scene.grains[0].velocity.z)
 }
 
@@ -189,7 +189,7 @@ fn restitution() -> Vec<Claim> {
         };
         claim(format!("rebound velocity over impact velocity, e = {restitution}"), "1")
             .run(with_restitution(variant, restitution))
-            .equals(RESTITUTION, move |done| Ok(Measured::new(rebound(&done[0])?, restitution, 1.0)))
+            .equals(RESTITUTION, move |done| Ok(Measurement::new(rebound(&done[0])?, restitution, 1.0)))
             .within(tolerance)
             .refuses(control)
     };
@@ -223,7 +223,7 @@ fn force_that_moves() -> Claim {
                 let expected: Vec<f64> =
                     (0..height.len()).map(|at| damped_force(0.0025 - height[at], rate(at))).collect();
                 let force = done[0].column("contact.normal_force")?;
-                Ok(Measured::worst_of(time, force, &expected, hertz(&done[0].scene).1))
+                Ok(Measurement::worst_of(time, force, &expected, hertz(&done[0].scene).1))
             },
         )
         .within(computed(
@@ -242,13 +242,13 @@ fn at_angle(variant: &'static str, degrees: f64) -> Run {
 }
 
 /// Returns the tangential velocity after the impact over the tangential velocity before it.
-fn tangential(done: &Done) -> Result<f64, Missing> {
+fn tangential(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
 /// Returns tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
-    let meeting = Meeting::from_scene(scene);
+    let meeting = ImpactParameters::from_scene(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);
     (along / scene.grains[0].velocity.x, spin)
 }
@@ -262,7 +262,7 @@ fn oblique() -> Vec<Claim> {
             claims.push(
                 claim(format!("tangential restitution at {degrees}°"), "1")
                     .run(at_angle(variant, degrees))
-                    .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
+                    .equals(SLIDING, |done| Ok(Measurement::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
                     .within(estimated(5e-5, ENDS))
                     .refuses(more_friction()),
             );
@@ -271,7 +271,7 @@ fn oblique() -> Vec<Claim> {
                     .run(at_angle(variant, degrees))
                     .equals(SLIDING, |done| {
                         let exact = sliding(&done[0].scene).1;
-                        Ok(Measured::new(done[0].last("a.omega_y")?, exact, exact))
+                        Ok(Measurement::new(done[0].last("a.omega_y")?, exact, exact))
                     })
                     .within(estimated(5e-5, ENDS))
                     .refuses(Control::scene("a disc's inertia in a sphere", |scene| {
@@ -301,7 +301,7 @@ fn rigid() -> Vec<Claim> {
     vec![
         claim("rebound velocity over impact velocity, e = 0.8", "1")
             .run(rigid(with_restitution(DAMPED[0], 0.8)))
-            .equals(RESTITUTION, |done| Ok(Measured::new(rebound(&done[0])?, 0.8, 1.0)))
+            .equals(RESTITUTION, |done| Ok(Measurement::new(rebound(&done[0])?, 0.8, 1.0)))
             .within(rounding())
             .refuses(Control::scene("e = .79", |scene| {
                 scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))
@@ -313,7 +313,7 @@ fn rigid() -> Vec<Claim> {
                 |done| {
                     let velocity = done[0].scene.grains[0].velocity;
                     let exact = 1.0 + law(&done[0].scene).friction * velocity.z / velocity.x;
-                    Ok(Measured::new(tangential(&done[0])?, exact, 1.0))
+                    Ok(Measurement::new(tangential(&done[0])?, exact, 1.0))
                 },
             )
             .within(rounding())
@@ -324,7 +324,7 @@ fn rigid() -> Vec<Claim> {
                     "the friction limit uses the impulse that stops the approach, without the impulse of restitution",
                 )
                 .up_to(0.1))
-            .equals(SLIDING, |done| Ok(Measured::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
+            .equals(SLIDING, |done| Ok(Measurement::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
             .within(judged(2e-5, "what a solver with springs reaches"))
             .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution)),
     ]

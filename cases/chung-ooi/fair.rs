@@ -2,7 +2,7 @@
 //! independent of conventions. They use only sampled positions, velocities and spins, because an external solver need
 //! not output contact forces.
 
-use super::forms::{Meeting, restitution};
+use super::forms::{ImpactParameters, restitution};
 use super::turning::{BALLS, PLANE, STICKING, elastic, sliding_along, spinning};
 use super::{CASE, DAMPED, ELASTIC, HERTZ, LEVELS, OBLIQUE, RESTITUTION, SLIDING, STEP};
 use super::{at_angle, hertz, peak, rebound, with_restitution};
@@ -80,14 +80,14 @@ fn depth(run: &Run) -> f64 {
 
 /// Returns the overlap (m) from the displacement of the first sphere since first contact; twice the displacement if two
 /// equal spheres collide.
-fn overlap(done: &Done) -> Result<Vec<f64>, Missing> {
+fn overlap(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let times = done.scene.grains.len() as f64;
     let start = done.scene.grains[0].position.z;
     Ok(done.column("a.z")?.iter().map(|height| times * (start - height)).collect())
 }
 
 /// Returns the time at which the overlap returns to zero (s), interpolated between samples. NaN if it never does.
-fn parted(done: &Done) -> Result<f64, Missing> {
+fn parted(done: &FinishedRun) -> Result<f64, MissingData> {
     let (overlap, time) = (overlap(done)?, &done.series().time);
     let last = overlap.iter().rposition(|&overlap| overlap > 0.0).unwrap_or_default();
     let Some(&next) = overlap.get(last + 1) else { return Ok(f64::NAN) };
@@ -103,7 +103,7 @@ fn normal(variant: &'static str) -> [Claim; 3] {
             .run(run())
             .equals(HERTZ, |done| {
                 let exact = hertz(&done[0].scene).0;
-                Ok(Measured::new(peak(&overlap(&done[0])?), exact, exact))
+                Ok(Measurement::new(peak(&overlap(&done[0])?), exact, exact))
             })
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
@@ -111,13 +111,13 @@ fn normal(variant: &'static str) -> [Claim; 3] {
             .run(run())
             .equals(HERTZ, |done| {
                 let exact = hertz(&done[0].scene).2;
-                Ok(Measured::new(parted(&done[0])?, exact, exact))
+                Ok(Measurement::new(parted(&done[0])?, exact, exact))
             })
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(stiffer()),
         claim("rebound velocity over impact velocity", "1")
             .run(run())
-            .equals(HERTZ, |done| Ok(Measured::new(rebound(&done[0])?, 1.0, 1.0)))
+            .equals(HERTZ, |done| Ok(Measurement::new(rebound(&done[0])?, 1.0, 1.0)))
             .within(computed(FIRST_ORDER, SCHEME))
             .refuses(Control::scene("e = .99", |scene| {
                 scene.change_laws(|law| law.damping_ratio = super::damping_ratio(0.99));
@@ -134,7 +134,7 @@ fn given_back(run: Run) -> Claim {
         .equals(RESTITUTION, |done| {
             let (found, ratio) = (rebound(&done[0])?, super::law(&done[0].scene).damping_ratio);
             let [late, early] = [restitution(ratio), no_tension_restitution(ratio)];
-            Ok(Measured::new(found, if found - late < early - found { late } else { early }, 1.0))
+            Ok(Measurement::new(found, if found - late < early - found { late } else { early }, 1.0))
         })
         .within(computed(
             2.0 * FIRST_ORDER,
@@ -144,7 +144,7 @@ fn given_back(run: Run) -> Claim {
 }
 
 /// Returns the normal impulse on the first sphere (N s).
-fn normal_impulse(done: &Done) -> Result<f64, Missing> {
+fn normal_impulse(done: &FinishedRun) -> Result<f64, MissingData> {
     let grain = &done.scene.grains[0];
     Ok(grain.mass * (done.last("a.vz")? - grain.velocity.z))
 }
@@ -159,10 +159,10 @@ fn sliding(run: &Run) -> [Claim; 2] {
                 .run(run.clone())
                 .equals(SLIDING, move |done| {
                     let scene = &done[0].scene;
-                    let meeting = Meeting::from_scene(scene);
+                    let meeting = ImpactParameters::from_scene(scene);
                     let after = meeting.after(scene, normal_impulse(&done[0])? / meeting.stopping)[at];
                     let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
-                    Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
+                    Ok(Measurement::new(done[0].last(column)?, after, (after - before).abs()))
                 })
                 .within(allowed)
                 .refuses(control)
@@ -199,7 +199,7 @@ fn wrong_inertia() -> Control {
 /// Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if the dashpot is made
 /// for a release at zero force and the spring is incremental.
 fn coulomb(run: Run) -> Claim {
-    let given = scene(&run).as_ref().map(Meeting::from_scene);
+    let given = scene(&run).as_ref().map(ImpactParameters::from_scene);
     let [low, high] = given.map_or([0.0; 2], |meeting| {
         [1.0 + meeting.restitution - meeting.latest_start(), 1.0 + 2.0 * meeting.early - meeting.restitution]
     });
@@ -207,7 +207,7 @@ fn coulomb(run: Run) -> Claim {
         .run(run)
         .between([low, high], SLIDING, |done| {
             let scene = &done[0].scene;
-            let (grain, meeting) = (&scene.grains[0], Meeting::from_scene(scene));
+            let (grain, meeting) = (&scene.grains[0], ImpactParameters::from_scene(scene));
             Ok(grain.mass * (done[0].last("a.vx")? - grain.velocity.x) / meeting.impulse(1.0))
         })
         .within(computed(
@@ -235,7 +235,7 @@ fn lever(run: Run, times: f64) -> Claim {
             let grain = &done[0].scene.grains[0];
             let turned = grain.inertia * (done[0].last("a.omega_y")? - grain.spin.y);
             let moved = grain.mass * grain.radius * (done[0].last("a.vx")? - grain.velocity.x);
-            Ok(Measured::new(-turned / moved, 1.0, 1.0))
+            Ok(Measurement::new(-turned / moved, 1.0, 1.0))
         })
         .within(allowed)
         .refuses(wrong_inertia())
@@ -250,7 +250,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
                 let grains = &done[0].scene.grains;
                 let gained = |at: usize| Ok(grains[at].mass * (done[0].last(columns[at])? - grains[at].velocity[axis]));
                 let [first, second] = [gained(0)?, gained(1)?];
-                Ok(Measured::new(first + second, 0.0, first.abs()))
+                Ok(Measurement::new(first + second, 0.0, first.abs()))
             })
             .within(computed(
                 1.25e5 * 1e-10,
@@ -273,7 +273,7 @@ fn gears(variant: &'static str) -> [Claim; 3] {
                 let grain = &done[0].scene.grains[0];
                 let (before, scale) =
                     if is_spin { (grain.spin.y, grain.spin.y) } else { (0.0, grain.spin.y * grain.radius) };
-                Ok(Measured::new(done[0].last(column)?, before, scale))
+                Ok(Measurement::new(done[0].last(column)?, before, scale))
             })
             .within(computed(10.0 * 1e-10, "spins differ in sign alone; velocities are told to ten digits"))
             .refuses(Control::scene("one sphere turns slower by a hundredth", |scene| scene.grains[1].spin *= 0.99))

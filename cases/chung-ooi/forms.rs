@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// Impact parameters of the first grain of a scene against the second grain or the plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(super) struct ImpactParameters {
     /// Velocity of its surface along x relative to the partner's surface, s = v_a − ω_a R_a − v_b − ω_b R_b (m/s).
     pub(super) slip: f64,
     /// Impulse m* v_n that stops the approach (N s).
@@ -28,7 +28,7 @@ pub(super) fn restitution(ratio: f64) -> f64 {
     (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()
 }
 
-impl Meeting {
+impl ImpactParameters {
     /// Reads a scene.
     pub(super) fn from_scene(scene: &Scene) -> Self {
         let first = &scene.grains[0];

@@ -1,7 +1,7 @@
 //! Tests 5 to 8 for our solvers: friction impulses to the digits that a convention fixes, and figures with the sticking
 //! branches.
 
-use super::forms::Meeting;
+use super::forms::ImpactParameters;
 use super::{SLIDING, STEP};
 use grainbench_harness::prelude::*;
 
@@ -45,7 +45,10 @@ pub(super) fn claims() -> Vec<Claim> {
 /// friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the part before the tangential spring is
 /// displaced is missing.
 fn sharp(run: &Run) -> Vec<Claim> {
-    let sharp_claims = |solver: &'static str, other: &'static str, words: &str, factor: fn(&Meeting) -> f64| {
+    let sharp_claims = |solver: &'static str,
+                        other: &'static str,
+                        words: &str,
+                        factor: fn(&ImpactParameters) -> f64| {
         let row = |quantity: &str, unit, column: &'static str, at: usize| {
             let control = if run.variant.starts_with('5') {
                 Control::scene("friction × 1.01", |scene| scene.change_laws(|law| law.friction *= 1.01))
@@ -56,10 +59,10 @@ fn sharp(run: &Run) -> Vec<Claim> {
                 .run(Run { solver, ..run.clone() })
                 .equals(SLIDING, move |done| {
                     let scene = &done[0].scene;
-                    let meeting = Meeting::from_scene(scene);
+                    let meeting = ImpactParameters::from_scene(scene);
                     let after = meeting.after(scene, factor(&meeting))[at];
                     let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
-                    Ok(Measured::new(done[0].last(column)?, after, (after - before).abs()))
+                    Ok(Measurement::new(done[0].last(column)?, after, (after - before).abs()))
                 })
                 .within(computed(
                     1e-3,
@@ -80,8 +83,8 @@ fn sharp(run: &Run) -> Vec<Claim> {
 /// Returns the paper's figure: the tangential surface velocity after the impact over the value before, both over the
 /// normal velocity.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let slides = |done: &Done, friction: f64| -> Option<(f64, f64)> {
-        let (grain, before) = (&done.scene.grains[0], Meeting::from_scene(&done.scene));
+    let slides = |done: &FinishedRun, friction: f64| -> Option<(f64, f64)> {
+        let (grain, before) = (&done.scene.grains[0], ImpactParameters::from_scene(&done.scene));
         let onto = friction * grain.velocity.z.abs();
         let other = match done.scene.grains.get(1) {
             Some(second) => done.last("b.vx").ok()? + done.last("b.omega_y").ok()? * second.radius,

@@ -44,7 +44,7 @@ fn with_cohesion(factor: f64) -> Run {
 
 /// Compares the growth rate of the surface's slip, d(v − ΩR)/dt, with the exact rate, in units of g sin θ. The rate is
 /// that of the second half of the run.
-fn slip(done: &Done) -> Result<Measured, Missing> {
+fn slip(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let scene = &done.scene;
     let grain = OneGrain::from_scene(scene);
     let cohesion = scene.laws.iter().flatten().map(|law| law.cohesion).fold(0.0, f64::max);
@@ -53,7 +53,7 @@ fn slip(done: &Done) -> Result<Measured, Missing> {
     let slip = |state: &State| state.v - state.omega * grain.radius;
     let left = (threshold(scene) - cohesion) / grain.mass;
     let exact = (left * (1.0 + grain.inertia_factor) / grain.inertia_factor).max(0.0);
-    Ok(Measured::new((slip(&end.1) - slip(&half.1)) / (end.0 - half.0), exact, grain.along))
+    Ok(Measurement::new((slip(&end.1) - slip(&half.1)) / (end.0 - half.0), exact, grain.along))
 }
 
 fn claims() -> Vec<Claim> {

@@ -54,11 +54,11 @@ fn along((_, axis): (&str, usize)) -> String {
 }
 
 /// Compares a momentum with its initial value, in units of the first grain's momentum.
-fn worst_momentum(done: &Done, (column, axis): (&str, usize)) -> Result<Measured, Missing> {
+fn worst_momentum(done: &FinishedRun, (column, axis): (&str, usize)) -> Result<Measurement, MissingData> {
     let grains = &done.scene.grains;
     let start: f64 = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum();
     let scale = grains[0].mass * grains[0].velocity.norm();
-    Ok(Measured::worst(&done.series().time, done.column(column)?, |_| start, scale))
+    Ok(Measurement::worst(&done.series().time, done.column(column)?, |_| start, scale))
 }
 
 /// Returns m v R of the first grain (kg m²/s).
@@ -68,9 +68,9 @@ fn lever(scene: &Scene) -> f64 {
 }
 
 /// Compares the angular momentum with its initial value, in units of m v R.
-fn worst_angular_momentum(done: &Done) -> Result<Measured, Missing> {
+fn worst_angular_momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let start = initial_angular_momentum(&done.scene);
-    Ok(Measured::worst(&done.series().time, done.column("all.angular_momentum")?, |_| start, lever(&done.scene)))
+    Ok(Measurement::worst(&done.series().time, done.column("all.angular_momentum")?, |_| start, lever(&done.scene)))
 }
 
 /// Returns effective mass (kg), frequency ω (rad/s) and damping ratio ζ of the pair.
@@ -86,13 +86,13 @@ fn exact_restitution(zeta: f64, pulls: bool) -> f64 {
     if pulls { (-PI * zeta / (1.0 - zeta * zeta).sqrt()).exp() } else { no_tension_restitution(zeta) }
 }
 
-fn measured_restitution(done: &Done) -> Result<Measured, Missing> {
+fn measured_restitution(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let grains = &done.scene.grains;
     let before = grains[0].velocity.x - grains[1].velocity.x;
     let after = done.last("b.vx")? - done.last("a.vx")?;
     let pulls = done.record.provenance.solver != "dem";
     let (_, _, zeta) = pair(&done.scene);
-    Ok(Measured::new(after / before, exact_restitution(zeta, pulls), 1.0))
+    Ok(Measurement::new(after / before, exact_restitution(zeta, pulls), 1.0))
 }
 
 /// Variant whose contact force is compared: ζ = 0.2 by β.
@@ -117,7 +117,7 @@ fn force_that_moves() -> Claim {
             let force_at = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
             // The discs start apart.
             let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(force_at)).collect();
-            Ok(Measured::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
+            Ok(Measurement::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
         })
         .within(computed(
             0.2 * (4.0 * f64::EPSILON / 2e-4 + f64::EPSILON * 500.0) + 8.0 * f64::EPSILON * 1.0e4 / LARGEST,
@@ -141,7 +141,7 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
         let force = |at: usize| damped_force(2.0 - (x[1][at] - x[0][at]), v[0][at] - v[1][at]);
         let ours: Vec<f64> = (0..x[0].len()).map(force).collect();
         let theirs = done[1].column("contact.normal_force")?;
-        Ok(Measured::worst_of(&done[1].series().time, &ours, theirs, LARGEST))
+        Ok(Measurement::worst_of(&done[1].series().time, &ours, theirs, LARGEST))
     })
 }
 
@@ -160,7 +160,7 @@ fn restitution(variant: &'static str, solver: &'static str) -> Claim {
         .equals(Source::Derived("damped oscillator with this release (derivation)"), move |done| {
             // The exact value follows the convention of the claim, even if the control replaces the solver.
             let exact = exact_restitution(pair(&done[0].scene).2, solver != "dem");
-            Ok(Measured::new(measured_restitution(&done[0])?.value, exact, 1.0))
+            Ok(Measurement::new(measured_restitution(&done[0])?.value, exact, 1.0))
         })
         .within(computed(first_order(variant, FINEST.resolution), FIRST_ORDER))
         .refuses(other(solver))
@@ -192,10 +192,10 @@ fn steps(variant: &'static str, solver: &'static str) -> Claim {
             let found = done.iter().zip(0..).map(|(done, at)| {
                 let exact = exact_restitution(pair(&done.scene).2, solver != "dem");
                 let error = measured_restitution(done)?.value - exact;
-                Ok(Measured::new(error / first_order(variant, step(at)), 0.0, 1.0))
+                Ok(Measurement::new(error / first_order(variant, step(at)), 0.0, 1.0))
             });
-            let found = found.collect::<Result<Vec<Measured>, Missing>>()?;
-            Measured::worst_among(found).ok_or_else(|| Missing("runs".to_owned()))
+            let found = found.collect::<Result<Vec<Measurement>, MissingData>>()?;
+            Measurement::worst_among(found).ok_or_else(|| MissingData("runs".to_owned()))
         })
         .within(computed(1.0, FIRST_ORDER))
         .refuses(other(solver))
@@ -247,7 +247,7 @@ fn angular_momentum() -> Vec<Claim> {
                 // The shear force on the first grain is positive along t = (e₂, −e₁). Because e × t = −1, both lever
                 // arms give a torque −R F_t.
                 let expected = -impulse * done[0].record.provenance.time_step;
-                Ok(Measured::new(change, expected, lever(scene)))
+                Ok(Measurement::new(change, expected, lever(scene)))
             })
             .within(rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R − overlap/2", "dem:liggghts")),
@@ -270,7 +270,7 @@ fn at_the_limit() -> Claim {
             let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
             // Friction turns both discs clockwise.
             let expected = -limit * grain.radius / grain.inertia;
-            Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
         })
         .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
         .refuses(Control::without(Effect::Friction))
@@ -307,7 +307,7 @@ fn coulomb() -> Vec<Claim> {
             let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
             let impulse = law.friction * pushes * done[0].record.provenance.time_step;
             let expected = -impulse * grain.radius / grain.inertia;
-            Ok(Measured::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
         },
     )
     .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))

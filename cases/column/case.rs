@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 const LEVELS: &[Level] = &[cells("H/12", 12.5, 2), cells("H/25", 25.0, 2), cells("H/50", 50.0, 2)];
 const SOURCE: Source = Source::Derived("u_tt = c² u_yy − g on a fixed base (derivation)");
 
-const DISPLACEMENT: Plate = Plate {
+const DISPLACEMENT: ClaimFigure = ClaimFigure {
     name: "displacement",
     title: "Displacement of the centre of mass",
     caption: "Let go at once: a chain of parabolas with the period 4H/c = 10 s; cells along the height in the legend.",
@@ -86,7 +86,7 @@ fn claims() -> Vec<Claim> {
             .equals(SOURCE, |done| {
                 let y = done[0].column("column.y")?;
                 let exact = Column::from_scene(&done[0].scene).sag();
-                Ok(Measured::new(y[0] - y[y.len() - 1], exact, exact))
+                Ok(Measurement::new(y[0] - y[y.len() - 1], exact, exact))
             })
             .within(estimated(2e-3, "strain of .0005, and discretisation"))
             .refuses(softer()),
@@ -99,7 +99,7 @@ fn claims() -> Vec<Claim> {
                     let column = Column::from_scene(&done[0].scene);
                     let weight = column.density * column.gravity * column.height;
                     let stress = done[0].last(&format!("{probe}.sigma_yy"))?;
-                    Ok(Measured::new(stress, -weight * (1.0 - share), weight))
+                    Ok(Measurement::new(stress, -weight * (1.0 - share), weight))
                 })
                 .within(estimated(4e-5, "what still swings, and strain of .0005; in units of ρ g H"))
                 .refuses(Control::scene("gravity × .95", |scene| scene.gravity *= 0.95))
@@ -112,7 +112,7 @@ fn claims() -> Vec<Claim> {
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
                 let kinetic = done[0].column("all.kinetic_energy")?.iter().copied().fold(0.0, f64::max);
-                Ok(Measured::drift(&done[0].series().time, energy, kinetic))
+                Ok(Measurement::drift(&done[0].series().time, energy, kinetic))
             })
             .within(
                 estimated(1e-3, "half a step between velocities and stresses; in units of the largest kinetic energy")

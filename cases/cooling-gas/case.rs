@@ -38,14 +38,14 @@ fn run(variant: &'static str, solver: &'static str) -> Run {
 }
 
 /// Returns time and 1/√T of each sample, with T = E/N.
-fn course(done: &Done) -> Result<Vec<(f64, f64)>, Missing> {
+fn course(done: &FinishedRun) -> Result<Vec<(f64, f64)>, MissingData> {
     let count = done.scene.grains.len() as f64;
     let samples = done.series().time.iter().zip(done.column(ENERGY)?);
     Ok(samples.map(|(&time, energy)| (time, (energy / count).powf(-0.5))).collect())
 }
 
 /// Returns the slope of 1/√T over t by least squares, from [`FROM`] on.
-fn cooling_rate(done: &Done) -> Result<f64, Missing> {
+fn cooling_rate(done: &FinishedRun) -> Result<f64, MissingData> {
     let course: Vec<(f64, f64)> = course(done)?.into_iter().filter(|(time, _)| *time >= FROM).collect();
     let count = course.len() as f64;
     let (time, value) = course.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
@@ -94,7 +94,7 @@ fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
         .run(run)
         .equals(COOLING_RATE.source(), |done| {
-            Ok(Measured::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
+            Ok(Measurement::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
         })
         .within(computed(
             interval() + in_contact(stiffness),
@@ -141,7 +141,7 @@ fn claims() -> Vec<Claim> {
         let runs = pair.map(|solver| run(PLAIN, solver));
         claims.push(row("cooling rate", "1/(s √J)", allowed, runs, Control::ours(LIVELIER, livelier), |done| {
             let theirs = cooling_rate(&done[1])?;
-            Ok(Measured::new(cooling_rate(&done[0])?, theirs, theirs))
+            Ok(Measurement::new(cooling_rate(&done[0])?, theirs, theirs))
         }));
         let allowed = rounding(2.0, "the same cycle; of an energy twice that of velocities");
         let control = Control::ours("dashpots × 1.001 in ours", |scene| {
@@ -153,9 +153,10 @@ fn claims() -> Vec<Claim> {
         claims.push(row(&quantity, "J", allowed, runs, control, |done| {
             let theirs = samples(&done[1], ENERGY)?;
             let known = theirs.iter().take_while(|(time, _)| *time <= FORETOLD).count();
-            let values = |done: &Done| Ok(done.column(ENERGY)?.iter().take(known).copied().collect::<Vec<f64>>());
+            let values =
+                |done: &FinishedRun| Ok(done.column(ENERGY)?.iter().take(known).copied().collect::<Vec<f64>>());
             let (ours, theirs) = (values(&done[0])?, values(&done[1])?);
-            Ok(Measured::worst_of(&done[1].series().time[..known], &ours, &theirs, theirs[0]))
+            Ok(Measurement::worst_of(&done[1].series().time[..known], &ours, &theirs, theirs[0]))
         }));
     }
     claims

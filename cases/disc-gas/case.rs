@@ -34,9 +34,9 @@ fn run(fraction: f64) -> Run {
     })
 }
 
-fn energy(done: &Done) -> Result<Measured, Missing> {
+fn energy(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let energy = done.column("all.total_energy")?;
-    Ok(Measured::drift(&done.series().time, energy, energy[0]))
+    Ok(Measurement::drift(&done.series().time, energy, energy[0]))
 }
 
 fn claims() -> Vec<Claim> {
@@ -56,11 +56,11 @@ fn claims() -> Vec<Claim> {
     let kept_in = claim("number of discs in the box in the end", "1")
         .run(run(FINEST))
         .holds("walls keep the discs in", |done| {
-            let snapshot = done[0].record.snapshots.last().ok_or_else(|| Missing("snapshot".to_owned()))?;
+            let snapshot = done[0].record.snapshots.last().ok_or_else(|| MissingData("snapshot".to_owned()))?;
             let inside = |x: f64| (0.0..=40.0).contains(&x);
             let count =
                 snapshot.grains.iter().filter(|grain| inside(grain.position.x) && inside(grain.position.y)).count();
-            Ok(Measured::new(count as f64, done[0].scene.grains.len() as f64, 1.0))
+            Ok(Measurement::new(count as f64, done[0].scene.grains.len() as f64, 1.0))
         })
         .within(exactly("a count"))
         .refuses(Control::scene("one wall missing", |scene| {

@@ -62,16 +62,16 @@ fn threshold(scene: &Scene) -> f64 {
 }
 
 /// Returns the time at which a column first exceeds a threshold (s), interpolated between two samples.
-fn first_above(done: &Done, column: &str, threshold: f64) -> Result<f64, Missing> {
+fn first_above(done: &FinishedRun, column: &str, threshold: f64) -> Result<f64, MissingData> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = values.iter().position(|&value| value > threshold).filter(|&at| at > 0);
-    let at = at.ok_or_else(|| Missing(format!("`{column}` above its threshold")))?;
+    let at = at.ok_or_else(|| MissingData(format!("`{column}` above its threshold")))?;
     let share = (threshold - values[at - 1]) / (values[at] - values[at - 1]);
     Ok(time[at - 1] + share * (time[at] - time[at - 1]))
 }
 
 /// Returns the arrival time of force at the contact of a disc with the next one (s).
-fn arrival(done: &Done, first: usize) -> Result<f64, Missing> {
+fn arrival(done: &FinishedRun, first: usize) -> Result<f64, MissingData> {
     first_above(done, &format!("{first}-{}.normal_force", first + 1), threshold(&done.scene))
 }
 
@@ -109,7 +109,7 @@ fn exact(variant: &'static str, first: usize) -> Claim {
             let scene = &done[0].scene;
             let modes = Modes::from_scene(scene);
             let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
-            Ok(Measured::new(arrival(&done[0], first)?, exact, exact))
+            Ok(Measurement::new(arrival(&done[0], first)?, exact, exact))
         })
         .within(computed(
             0.02_f64.powi(2) / 24.0 + 2e-6,
@@ -133,7 +133,7 @@ fn glued() -> Claim {
             let (time, force) = (&done.series().time, done.column("1-2.normal_force")?);
             let count = time.iter().take_while(|&&time| time < opens).count();
             let exact = |time| modes.force(pair(scene, 1), time);
-            Ok(Measured::worst(&time[..count], &force[..count], exact, threshold(scene) / ARRIVED))
+            Ok(Measurement::worst(&time[..count], &force[..count], exact, threshold(scene) / ARRIVED))
         })
         .within(judged(
             1e-4,
@@ -169,7 +169,7 @@ fn rigid() -> Claim {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
             let exact = Modes::from_scene(scene).moving(pair(scene, 3)[1], speed, duration(scene));
-            Ok(Measured::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
+            Ok(Measurement::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
         })
         .within(judged(1e-3, "what a solver with springs reaches"))
         .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution))

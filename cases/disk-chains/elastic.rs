@@ -68,28 +68,28 @@ fn slower(solver: &'static str, resolution: Resolution) -> Run {
 }
 
 /// Returns the difference of the principal stresses at the centre of a disc (Pa), as a function of the sample.
-pub(super) fn principal_difference(done: &Done, disc: usize) -> Result<impl Fn(usize) -> f64, Missing> {
+pub(super) fn principal_difference(done: &FinishedRun, disc: usize) -> Result<impl Fn(usize) -> f64, MissingData> {
     let column = |part: &str| done.column(&format!("centre-{disc}.sigma_{part}"));
     let (xx, yy, xy) = (column("xx")?, column("yy")?, column("xy")?);
     Ok(move |at: usize| f64::hypot(xx[at] - yy[at], 2.0 * xy[at]))
 }
 
 /// Returns the arrival time of stress at the centre of a disc (d/c).
-fn arrival(done: &Done, disc: usize) -> Result<f64, Missing> {
+fn arrival(done: &FinishedRun, disc: usize) -> Result<f64, MissingData> {
     let scene = &done.scene;
     let difference = principal_difference(done, disc)?;
     let volume = std::f64::consts::PI * scene.grains[0].radius.powi(2);
     let speed = scene.walls[0].motion.phases[0].velocity.norm();
     let threshold = ARRIVED * scene.grains[0].mass / volume * WAVE_SPEED * speed;
     let at = (1..done.series().time.len()).find(|&at| difference(at) > threshold);
-    let at = at.ok_or_else(|| Missing(format!("stress above .1 ρcv in disc {disc}")))?;
+    let at = at.ok_or_else(|| MissingData(format!("stress above .1 ρcv in disc {disc}")))?;
     let time = &done.series().time;
     let share = (threshold - difference(at - 1)) / (difference(at) - difference(at - 1));
     Ok((time[at - 1] + share * (time[at] - time[at - 1])) * WAVE_SPEED / (2.0 * scene.grains[0].radius))
 }
 
 /// Returns the mean delay from one disc to the next (d/c), from the second to the fourth.
-fn delay(done: &Done) -> Result<f64, Missing> {
+fn delay(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(0.5 * (arrival(done, 4)? - arrival(done, 2)?))
 }
 

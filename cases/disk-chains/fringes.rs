@@ -67,14 +67,14 @@ pub(super) fn times(scene: &Scene, variant: &str) -> Vec<f64> {
 }
 
 /// Returns the snapshot nearest to a time in transits.
-fn at(done: &Done, transits: f64) -> Option<&Snapshot> {
+fn at(done: &FinishedRun, transits: f64) -> Option<&Snapshot> {
     let time = transits * transit(&done.scene);
     let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
     done.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// Returns the fringe constant (Pa) fitted to the line (see the head of this file).
-fn constant(line: &Done) -> f64 {
+fn constant(line: &FinishedRun) -> f64 {
     let time = CHAINS[0].frames[2] * transit(&line.scene);
     let sample = line.series().time.iter().position(|&sampled| sampled >= time).unwrap_or_default();
     principal_difference(line, 4).map_or(f64::NAN, |difference| difference(sample)) / FRAC_PI_2
@@ -132,7 +132,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 /// Returns the impact stress ρcv of the striker (Pa).
-fn impact_stress(done: &Done) -> f64 {
+fn impact_stress(done: &FinishedRun) -> f64 {
     let scene = &done.scene;
     let density = scene.grains[0].mass / (std::f64::consts::PI * scene.grains[0].radius.powi(2));
     density * WAVE_SPEED * scene.walls[0].motion.phases[0].velocity.norm()

@@ -9,8 +9,8 @@ mod zones;
 use crate::registry::made_of;
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::claim::Tolerated;
-use grainbench_harness::data::{Data, NotMade};
+use grainbench_harness::claim::ClaimWithTolerance;
+use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
 use grainbench_scene::scene::Duration;
@@ -50,15 +50,15 @@ static PUBLISHED: Data = Data {
 };
 
 /// Returns the scene of the drum with the start in a folder.
-fn published(folder: &Path) -> Result<Scene, NotMade> {
-    let start = start_in(folder).map_err(|error| NotMade::Wrong(format!("{}: {error}", folder.display())))?;
+fn published(folder: &Path) -> Result<Scene, SceneDataError> {
+    let start = start_in(folder).map_err(|error| SceneDataError::Wrong(format!("{}: {error}", folder.display())))?;
     let start = start.ok_or_else(|| {
         let expected = "expected the start of the drum, a file whose name ends in `.xyz`, found none";
-        NotMade::Absent(format!("{}: {expected}", folder.display()))
+        SceneDataError::Absent(format!("{}: {expected}", folder.display()))
     })?;
-    let files = read_start(&start).map_err(|error| NotMade::Wrong(error.to_string()))?.files();
+    let files = read_start(&start).map_err(|error| SceneDataError::Wrong(error.to_string()))?.files();
     let source = SceneSource::from_text("drum.toml", Path::new("."), DRUM_SCENE);
-    made_of(&source, &files).map_err(NotMade::Wrong)
+    made_of(&source, &files).map_err(SceneDataError::Wrong)
 }
 
 /// Tolerances that were required beforehand, with the time up to which they apply.
@@ -123,33 +123,33 @@ fn of_paper() -> Run {
 
 /// Claims the counts of M1 in zone 2 between two times. The worst one decides, against the code with the larger
 /// difference.
-fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> Tolerated {
+fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> ClaimWithTolerance {
     claim(quantity, "1")
         .run(of_paper())
         .equals(Source::Printed(&dosta::WORK, "derived: LIGGGHTS and MUSEN, run again"), move |done| {
             let rows = course(DRUM).into_iter().filter(|[time, ..]| (from - 1e-9..=to + 1e-9).contains(time));
-            let found: Result<Vec<Measured>, Missing> = rows
+            let found: Result<Vec<Measurement>, MissingData> = rows
                 .map(|[time, mean, half]| {
                     let count = counted(&done[0], time)?;
                     let code = if count > mean { mean - half } else { mean + half };
-                    Ok(Measured::new(count, code, code))
+                    Ok(Measurement::new(count, code, code))
                 })
                 .collect();
-            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
+            Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
         })
         .within(required(allowed, because))
 }
 
 /// Returns the count of M1 in zone 2 at a time.
-fn counted(done: &Done, time: f64) -> Result<f64, Missing> {
+fn counted(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
     let table = done.table(zones::NAME)?;
-    let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}`")));
+    let column = |name: &str| table.column(name).ok_or_else(|| MissingData(format!("column `{name}`")));
     let times = column("time")?;
     // A snapshot is taken at the nearest step.
     let place = times.iter().position(|at| (at - time).abs() < 1e-5);
     place
         .map(|place| column(COUNTED).map(|counts| counts[place]))
-        .unwrap_or_else(|| Err(Missing(format!("count at {time} s"))))
+        .unwrap_or_else(|| Err(MissingData(format!("count at {time} s"))))
 }
 
 /// Claims the position of one grain against LIGGGHTS before rounding errors have grown. Afterwards they grow tenfold in
@@ -192,7 +192,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(figures)
 }
 
-fn of_zone(done: &Done) -> Figure {
+fn of_zone(done: &FinishedRun) -> Figure {
     let zone_values =
         |name: &str| done.table(zones::NAME).ok().and_then(|table| table.column(name)).unwrap_or_default();
     let ours = zone_values("time").iter().copied().zip(zone_values(COUNTED).iter().map(|count| count / 1e3)).collect();

@@ -1,8 +1,8 @@
 //! Effect of half and twice the time step on the count, compared with the effect of rounding.
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
-use grainbench_harness::claim::Tolerated;
-use grainbench_harness::data::{Data, NotMade};
+use grainbench_harness::claim::ClaimWithTolerance;
+use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 use std::path::Path;
@@ -16,7 +16,7 @@ const TWICE: f64 = 6e-6;
 /// The paper's drum up to this time.
 static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
 
-fn shorter(folder: &Path) -> Result<Scene, NotMade> {
+fn shorter(folder: &Path) -> Result<Scene, SceneDataError> {
     Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? })
 }
 
@@ -30,18 +30,18 @@ pub(super) fn claims() -> Vec<Claim> {
     steps.into_iter().map(|(words, step)| worst(words, with(step)).refuses(beside())).collect()
 }
 
-fn worst(step: &str, run: Run) -> Tolerated {
+fn worst(step: &str, run: Run) -> ClaimWithTolerance {
     claim(format!("M1 in zone 2 to .5 s with {step}, worst"), "1")
         .runs([run, of_paper().aside()])
         .agrees(Source::Ourselves("the same with the step of the case"), |done| {
             let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
-            let found: Result<Vec<Measured>, Missing> = times
+            let found: Result<Vec<Measurement>, MissingData> = times
                 .map(|time| {
                     let expected = counted(&done[1], time)?;
-                    Ok(Measured::new(counted(&done[0], time)?, expected, expected))
+                    Ok(Measurement::new(counted(&done[0], time)?, expected, expected))
                 })
                 .collect();
-            Measured::worst_among(found?).ok_or_else(|| Missing("time to compare at".to_owned()))
+            Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
         })
         .within(required(EARLY.0, "what a count may be off either code to .5 s"))
 }

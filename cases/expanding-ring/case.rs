@@ -13,7 +13,7 @@ const THROUGH_THICK: Resolution = Resolution::grid(8.0, 2);
 
 const SOURCE: Source = Source::Derived("u = A J₁(kr) + B Y₁(kr), no traction at both radii (derivation)");
 
-const RADIAL: Plate = Plate {
+const RADIAL: ClaimFigure = ClaimFigure {
     name: "displacement",
     title: "Radial displacement of a ring that breathes",
     caption: "Two periods of the middle of the ring; cells through its thickness in the legend.",
@@ -130,14 +130,14 @@ impl Mode {
 
 /// Returns the radial displacement of the middle of the ring (m): the mean of a point along an axis and a point at the
 /// corner of a cell.
-fn radial(done: &Done) -> Result<Vec<f64>, Missing> {
+fn radial(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let [side, x, y] = ["side.ux", "corner.ux", "corner.uy"].map(|column| done.column(column));
     let corner = x?.iter().zip(y?).map(|(x, y)| (x + y) * FRAC_1_SQRT_2);
     Ok(side?.iter().zip(corner).map(|(side, corner)| 0.5 * (side + corner)).collect())
 }
 
 /// Returns the period (s), from the first to the last inward zero crossing of the displacement.
-fn period(done: &Done) -> Result<f64, Missing> {
+fn period(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, place) = (&done.series().time, radial(done)?);
     let inwards: Vec<f64> = (1..place.len())
         .filter(|&at| place[at - 1] > 0.0 && place[at] <= 0.0)
@@ -145,12 +145,12 @@ fn period(done: &Done) -> Result<f64, Missing> {
         .collect();
     match inwards[..] {
         [first, .., last] => Ok((last - first) / (inwards.len() - 1) as f64),
-        _ => Err(Missing("two passages inwards".to_owned())),
+        _ => Err(MissingData("two passages inwards".to_owned())),
     }
 }
 
-fn mode(done: &Done) -> Result<Mode, Missing> {
-    Mode::from_scene(&done.scene).ok_or_else(|| Missing("a ring".to_owned()))
+fn mode(done: &FinishedRun) -> Result<Mode, MissingData> {
+    Mode::from_scene(&done.scene).ok_or_else(|| MissingData("a ring".to_owned()))
 }
 
 fn softer() -> Control {
@@ -177,7 +177,7 @@ fn claims() -> Vec<Claim> {
             .equals(SOURCE, |done| {
                 // The expected value belongs to the ring of the claim, also under a control.
                 let exact = 2.0 * PI / mode(&done[0])?.frequency();
-                Ok(Measured::new(period(&done[0])?, exact, exact))
+                Ok(Measurement::new(period(&done[0])?, exact, exact))
             })
             .within(tolerance)
             .refuses(control)
@@ -225,7 +225,7 @@ fn claims() -> Vec<Claim> {
             .run(run(THIN, LEVELS[1].resolution))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
-                Ok(Measured::drift(&done[0].series().time, energy, energy[0]))
+                Ok(Measurement::drift(&done[0].series().time, energy, energy[0]))
             })
             .within(estimated(
                 3e-2,

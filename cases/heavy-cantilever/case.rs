@@ -7,7 +7,7 @@ const POINTS: u32 = 3;
 const LEVELS: &[Level] = &[cells("t/2", 2.0, POINTS), cells("t/3", 3.0, POINTS)];
 const SOURCE: Source = Source::Derived("EI θ'' = −w (L − s) cos θ by shooting (derivation)");
 
-const SINKING: Plate = Plate {
+const SINKING: ClaimFigure = ClaimFigure {
     name: "sinking",
     title: "Displacement of the tip",
     caption: "Let go level and damped; cells through the thickness in the legend.",
@@ -103,9 +103,9 @@ fn claims() -> Vec<Claim> {
             claim(format!("displacement of the tip at rest, cells of {}", level.name), "m")
                 .run(run)
                 .equals(SOURCE, |done| {
-                    let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| Missing("a strip".to_owned()))?;
+                    let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| MissingData("a strip".to_owned()))?;
                     let exact = -length * Elastica::under(weight).sinking;
-                    Ok(Measured::new(done[0].last("tip.uy")?, exact, exact))
+                    Ok(Measurement::new(done[0].last("tip.uy")?, exact, exact))
                 })
                 .within(computed(
                     allowed(level),

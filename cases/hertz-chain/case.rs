@@ -45,7 +45,7 @@ fn strike(speed: f64) -> Run {
 }
 
 /// Returns time and height of the peak of a force, by a parabola through the highest sample and its neighbours.
-fn peak(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
+fn peak(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
     let (left, top, right) = (values[at - 1], values[at], values[at + 1]);
@@ -55,7 +55,7 @@ fn peak(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
 }
 
 /// Returns the speed of the wave (m/s) and its force (N).
-fn wave(done: &Done) -> Result<(f64, f64), Missing> {
+fn wave(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     let (near, far) = (peak(done, "near.normal_force")?, peak(done, "far.normal_force")?);
     let distance = BEADS * 2.0 * done.scene.grains[0].radius;
     Ok((distance / (far.0 - near.0), 0.5 * (near.1 + far.1)))
@@ -70,7 +70,7 @@ fn scale(scene: &Scene) -> f64 {
 }
 
 /// Returns the wave speed over its scale and over the sixth root of the force.
-fn coefficient(done: &Done) -> Result<f64, Missing> {
+fn coefficient(done: &FinishedRun) -> Result<f64, MissingData> {
     let (speed, force) = wave(done)?;
     Ok(speed / (scale(&done.scene) * force.powf(1.0 / 6.0)))
 }
@@ -90,7 +90,7 @@ fn claims() -> Vec<Claim> {
     let of_speed = claim("coefficient of the speed", "1")
         .run(strike(1.0))
         .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
-            Ok(Measured::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
+            Ok(Measurement::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
         })
         .within(estimated(2e-5, "discretisation of the pulse; the long-wave limit is 1.2 % off"))
         .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))));

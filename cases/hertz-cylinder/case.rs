@@ -70,7 +70,7 @@ fn weight(scene: &Scene) -> f64 {
 
 /// A material point of the block: position along and below the surface (m), and pressure −σ_yy (Pa).
 #[derive(Clone, Copy, Debug)]
-struct Pressed {
+struct PressurePoint {
     x: f64,
     depth: f64,
     pressure: f64,
@@ -78,27 +78,27 @@ struct Pressed {
 
 /// Returns the material points of the block at the end. Their initial depth was between `from` and `to` cells, and
 /// their distance from the middle is below 1.5 b.
-fn pressed(done: &Done, from: f64, to: f64) -> Result<Vec<Pressed>, Missing> {
+fn pressed(done: &FinishedRun, from: f64, to: f64) -> Result<Vec<PressurePoint>, MissingData> {
     let snapshots = &done.record.snapshots;
     let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));
     let points = |at: Option<&Snapshot>| -> Vec<PointState> {
         at.into_iter().flat_map(|snapshot| &snapshot.points).filter(block).copied().collect()
     };
     let undeformed = points(snapshots.first()).first().map(|point| point.volume.sqrt());
-    let cell = undeformed.ok_or_else(|| Missing("points of the block".to_owned()))? * f64::from(POINTS);
+    let cell = undeformed.ok_or_else(|| MissingData("points of the block".to_owned()))? * f64::from(POINTS);
     let reach = 1.5 * Hertz::from_scene(&done.scene).half_width;
     let chosen = points(snapshots.last()).into_iter().filter_map(|point| {
         // The surface is y = 0 at the start.
         let start = (point.displacement.y - point.position.y) / cell;
         let seen = (from..to).contains(&start) && point.position.x.abs() < reach;
-        seen.then(|| Pressed { x: point.position.x, depth: start * cell, pressure: -point.stress[1] })
+        seen.then(|| PressurePoint { x: point.position.x, depth: start * cell, pressure: -point.stress[1] })
     });
     Ok(chosen.collect())
 }
 
 /// Fits half-width and peak pressure of the contact. The half-space solution is compared with the stress of the
 /// material points in two layers of cells below the uppermost. Least squares over both by Gauss–Newton.
-fn measured(done: &Done) -> Result<Hertz, Missing> {
+fn measured(done: &FinishedRun) -> Result<Hertz, MissingData> {
     let points = pressed(done, 1.0, 3.0)?;
     let mut found = Hertz::from_scene(&done.scene);
     for _ in 0..20 {
@@ -111,7 +111,7 @@ fn measured(done: &Done) -> Result<Hertz, Missing> {
             curvature += by * by.transpose();
             slope += by * (point.pressure - now);
         }
-        let inverse = curvature.try_inverse().ok_or_else(|| Missing("stressed points of the block".to_owned()))?;
+        let inverse = curvature.try_inverse().ok_or_else(|| MissingData("stressed points of the block".to_owned()))?;
         let change = inverse * slope;
         found.half_width *= 1.0 + change.x;
         found.peak *= 1.0 + change.y;
@@ -166,7 +166,7 @@ fn claims() -> Vec<Claim> {
                 .run(run.clone())
                 .equals(SOURCE, |done| {
                     let exact = Hertz::from_scene(&done[0].scene).half_width;
-                    Ok(Measured::new(measured(&done[0])?.half_width, exact, exact))
+                    Ok(Measurement::new(measured(&done[0])?.half_width, exact, exact))
                 })
                 .within(tolerance(COARSEST[0], cells))
                 .refuses(as_stiff()),
@@ -176,7 +176,7 @@ fn claims() -> Vec<Claim> {
                 .run(run)
                 .equals(SOURCE, |done| {
                     let exact = Hertz::from_scene(&done[0].scene).peak;
-                    Ok(Measured::new(measured(&done[0])?.peak, exact, exact))
+                    Ok(Measurement::new(measured(&done[0])?.peak, exact, exact))
                 })
                 .within(tolerance(COARSEST[1], cells))
                 .refuses(as_stiff()),
@@ -186,7 +186,7 @@ fn claims() -> Vec<Claim> {
         claim("order in the cell of the error of the half-width, 1 and 2 cells a half-width", "1")
             .runs(LEVELS[..2].iter().map(|level| Run::new(PLAIN, SOLVER, level.resolution).slow()))
             .converges_at_least(1.0, SOURCE, |done| {
-                let error = |done: &Done| -> Result<f64, Missing> {
+                let error = |done: &FinishedRun| -> Result<f64, MissingData> {
                     Ok((measured(done)?.half_width / Hertz::from_scene(&done.scene).half_width - 1.0).abs())
                 };
                 Ok((error(&done[0])? / error(&done[1])?).log2())
@@ -206,7 +206,7 @@ fn claims() -> Vec<Claim> {
                 let force =
                     last.and_then(|snapshot| snapshot.told_contacts().first()).map(|contact| contact.normal_force);
                 let weight = weight(&done[0].scene);
-                Ok(Measured::new(force.ok_or_else(|| Missing("contact".to_owned()))?, weight, weight))
+                Ok(Measurement::new(force.ok_or_else(|| MissingData("contact".to_owned()))?, weight, weight))
             })
             .within(computed(
                 swings(),

@@ -12,9 +12,9 @@ mod published;
 mod shared;
 
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::claim::Tolerated;
+use grainbench_harness::claim::ClaimWithTolerance;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 use published::{BEDS, Spread};
 
 const LEVELS: &[Level] = &[
@@ -90,22 +90,22 @@ fn on_all() -> [Run; 5] {
 }
 
 /// Returns the height of the ball at a time (mm).
-fn height(done: &Done, time: f64) -> Result<f64, Missing> {
+fn height(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
     let heights = done.column("ball.z")?;
     let place = done.series().time.iter().position(|sampled| (sampled - time).abs() < 1e-9);
-    place.map(|place| heights[place] * 1e3).ok_or_else(|| Missing(format!("sample at {time} s")))
+    place.map(|place| heights[place] * 1e3).ok_or_else(|| MissingData(format!("sample at {time} s")))
 }
 
-fn deepest(done: &Done) -> Result<f64, Missing> {
+fn deepest(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.column("ball.z")?.iter().copied().fold(f64::INFINITY, f64::min) * 1e3)
 }
 
 /// Returns the mean velocity of the rebound (m/s).
-fn rebound(done: &Done) -> Result<f64, Missing> {
+fn rebound(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok((height(done, REBOUND[1])? - height(done, REBOUND[0])?) * 1e-3 / (REBOUND[1] - REBOUND[0]))
 }
 
-fn all(done: &[Done], read: impl Fn(&Done) -> Result<f64, Missing>) -> Result<Vec<f64>, Missing> {
+fn all(done: &[FinishedRun], read: impl Fn(&FinishedRun) -> Result<f64, MissingData>) -> Result<Vec<f64>, MissingData> {
     done.iter().map(read).collect()
 }
 
@@ -184,12 +184,12 @@ fn claims() -> Vec<Claim> {
 
 /// Two functions for several beds: one combines their values, given the expected value; the other returns the
 /// tolerance.
-type Together = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
+type BedCombination = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
 /// The mean of five beds agrees with the codes.
-const MEAN: Together = (|values, _| mean(values), |spread| computed(spread.allowed(OWN.len()), BECAUSE_FIVE));
+const MEAN: BedCombination = (|values, _| mean(values), |spread| computed(spread.allowed(OWN.len()), BECAUSE_FIVE));
 /// Each of five beds is within the range of one bed of a code.
-const EACH: Together = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
+const EACH: BedCombination = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
 
 /// Known deviation: from single beds, the ball rebounds more slowly than from those of the codes.
 const SLOW: &str = "the ball leaves two of five beds at 1.11 and 1.19 m/s, below the range for one more code and bed; the \
@@ -198,11 +198,11 @@ const SLOW: &str = "the ball leaves two of five beds at 1.11 and 1.19 m/s, below
 fn of_beds(
     runs: [Run; 5],
     (quantity, unit): (&str, &'static str),
-    (together, tolerance): Together,
-    cited: Cited,
+    (together, tolerance): BedCombination,
+    cited: CitedNumber,
     spread: Spread,
-    read: fn(&Done) -> Result<f64, Missing>,
-) -> Tolerated {
+    read: fn(&FinishedRun) -> Result<f64, MissingData>,
+) -> ClaimWithTolerance {
     claim(quantity, unit)
         .runs(runs)
         .equals_cited(cited, 1.0, move |done| Ok(together(&all(done, read)?, cited.value)))
@@ -254,7 +254,7 @@ fn pair_of_m1() -> Control {
 
 /// Returns the figures of the height over time and of the deviation from the codes' mean.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let done: Vec<Done> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
+    let done: Vec<FinishedRun> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);
     figures.extend(ladders::figures(runner)?);
     figures.push(hundred_thousand::figure(runner)?);

@@ -14,7 +14,7 @@ fn on(variant: &'static str, step: f64) -> Run {
     Run::new(variant, "dem:liggghts", Resolution::TimeStep(step)).long().kept()
 }
 
-fn at_30_ms(done: &Done) -> Result<f64, Missing> {
+fn at_30_ms(done: &FinishedRun) -> Result<f64, MissingData> {
     height(done, DEEP - MET)
 }
 
@@ -34,16 +34,16 @@ pub(super) fn claims() -> Vec<Claim> {
 }
 
 /// Compares runs with their reference runs, in alternating order.
-fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::Tolerated {
+fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::ClaimWithTolerance {
     let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
         .runs(runs)
         .agrees(Source::Ourselves("the same with the step of the paper, or with steel"), |done| {
-            let pairs: Result<Vec<Measured>, Missing> = done
+            let pairs: Result<Vec<Measurement>, MissingData> = done
                 .chunks_exact(2)
-                .map(|pair| Ok(Measured::new(at_30_ms(&pair[0])?, at_30_ms(&pair[1])?, 1.0)))
+                .map(|pair| Ok(Measurement::new(at_30_ms(&pair[0])?, at_30_ms(&pair[1])?, 1.0)))
                 .collect();
-            Measured::worst_among(pairs?).ok_or_else(|| Missing("runs to compare".to_owned()))
+            Measurement::worst_among(pairs?).ok_or_else(|| MissingData("runs to compare".to_owned()))
         })
         .within(computed(allowed, because))
 }

@@ -2,7 +2,7 @@
 
 use super::{DEEP, FINE, MET, STEP, height, lighten, of_two_beds};
 use crate::rows::programs::row;
-use grainbench_harness::compare::perturbed::{self, PERTURBED, Parting, Sum};
+use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 use grainbench_scene::perturbed::move_one;
@@ -24,7 +24,7 @@ fn beginning() -> Claim {
         let (ours, theirs) = together(&done[0], &done[1], "ball.z")?;
         let until = done[1].series().time.partition_point(|time| *time < UNTIL + 1e-9);
         let radius = done[0].scene.grains[0].radius;
-        Ok(Measured::worst_of(&done[1].series().time[..until], &ours[..until], &theirs[..until], radius))
+        Ok(Measurement::worst_of(&done[1].series().time[..until], &ours[..until], &theirs[..until], radius))
     })
 }
 
@@ -36,7 +36,7 @@ fn after_the_horizon() -> Claim {
         unit: "1",
         logarithm: true,
     };
-    const PARTING: Parting = Parting { columns: &[MOTION.column] };
+    const PARTING: DivergenceColumns = DivergenceColumns { columns: &[MOTION.column] };
     let on = |solver| Run::new("thousand-deep", solver, STEP).slow();
     let perturbed = [on(SIDES[0]).aside(), on(SIDES[0]).adjusted(PERTURBED, move_one).aside()];
     let control = Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0));
@@ -49,6 +49,6 @@ fn on_the_bed() -> Claim {
     let (allowed, because) = of_two_beds();
     let control = Control::ours("half the density of the ball in ours", lighten);
     row("height of the ball at 30 ms, one bed", "mm", computed(allowed, because), runs, control, |done| {
-        Ok(Measured::new(height(&done[0], DEEP - MET)?, height(&done[1], DEEP - MET)?, 1.0))
+        Ok(Measurement::new(height(&done[0], DEEP - MET)?, height(&done[1], DEEP - MET)?, 1.0))
     })
 }

@@ -1,7 +1,7 @@
 //! Published results of seven codes on ten beds, and their comparison with our results.
 
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 /// Number of published beds.
 const PUBLISHED: usize = 10;
@@ -23,7 +23,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    pub(super) fn new(mean: Cited, code: Cited, bed: Cited) -> Self {
+    pub(super) fn new(mean: CitedNumber, code: CitedNumber, bed: CitedNumber) -> Self {
         let spread = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
         Self { mean: mean.value, of: spread }
     }
@@ -36,7 +36,7 @@ impl Spread {
 
 /// Returns time (ms) and deviation of our beds' mean from the codes' mean, in standard deviations. It covers each
 /// published time at which codes and beds differ.
-pub(super) fn scores(done: &[Done], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, Missing> {
+pub(super) fn scores(done: &[FinishedRun], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, MissingData> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let is_counted = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
     let score = |&[time, mean, code, bed]: &[f64; 4]| {
@@ -66,8 +66,8 @@ pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N]
 
 /// Returns the figures of the heights on our beds with the codes' mean, and of the deviation of our code in standard
 /// deviations.
-pub(super) fn figures(done: &[Done], published: &[[f64; 4]]) -> Vec<Figure> {
-    let course = |done: &Done| -> Vec<(f64, f64)> {
+pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figure> {
+    let course = |done: &FinishedRun| -> Vec<(f64, f64)> {
         let heights = done.column("ball.z").unwrap_or_default();
         done.series().time.iter().zip(heights).map(|(time, height)| (time * 1e3, height * 1e3)).collect()
     };

@@ -3,9 +3,9 @@
 use super::{DEEP, half_the_density, height};
 use crate::registry::made_of;
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::data::{Data, NotMade};
+use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
@@ -29,23 +29,23 @@ static HUNDRED: Data = Data {
 };
 
 /// Returns the scene of the case with the ball and the bed of a shared start, for a duration (s).
-fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, NotMade> {
+fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, SceneDataError> {
     let path = bed_in(folder, thousands).ok_or_else(|| {
         let [name, other] = bed_names(thousands);
-        NotMade::Absent(format!("{}: expected `{name}` or `{other}`, found neither", folder.display()))
+        SceneDataError::Absent(format!("{}: expected `{name}` or `{other}`, found neither", folder.display()))
     })?;
-    let bed = read_bed(&path, thousands).map_err(|error| NotMade::Wrong(error.to_string()))?;
+    let bed = read_bed(&path, thousands).map_err(|error| SceneDataError::Wrong(error.to_string()))?;
     let source = SceneSource::from_text("scene.toml", Path::new("."), super::CASE.scene)
         .set("duration", &duration.to_string())
         .set("grains.ball.position", &format!("{:?}", bed.ball))
         .set("grains.bed.state", "")
         .set("grains.bed.file", "{ path = \"bed.data\" }");
-    made_of(&source, &[("bed.data", bed.data())]).map_err(NotMade::Wrong)
+    made_of(&source, &[("bed.data", bed.data())]).map_err(SceneDataError::Wrong)
 }
 
 /// Claims agreement with LIGGGHTS and MUSEN on the same bed. One more code may differ by 2 s_code, because there is no
 /// spread between beds.
-fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (Cited, Cited)) -> Claim {
+fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (CitedNumber, CitedNumber)) -> Claim {
     let code = half.value * std::f64::consts::SQRT_2;
     let allowed = Spread { mean: cited.value, code, bed: 0.0 }.allowed(1, 1);
     claim(quantity, "mm")

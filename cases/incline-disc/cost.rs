@@ -2,9 +2,9 @@
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;
-use grainbench_harness::subject::Subject;
+use grainbench_harness::subject::TargetQuantity;
 
-pub(crate) fn subjects() -> Vec<Subject> {
+pub(crate) fn subjects() -> Vec<TargetQuantity> {
     const SOURCE: &str = "MPM 2000 eq. 25";
     displacement("incline-disc", &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, SOURCE)
 }

@@ -12,7 +12,7 @@ use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::{elastic_disc, nodal_contact_2000 as nodal};
 use grainbench_harness::measure::slope as fitted;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 /// One slope with the expected values of the elastic disc on it.
 #[derive(Clone, Copy)]
@@ -21,13 +21,13 @@ struct Elastic {
     /// Time of the reading (s).
     time: f64,
     /// Displacement of the converged elastic disc over the rigid one, minus one.
-    reference: Cited,
+    reference: CitedNumber,
     /// Largest deviation from the reference, in fractions of the rigid displacement, by cells per radius.
     allowed: &'static [(f64, f64)],
     /// True if these deviations were required before the solver existed.
     asked: bool,
     /// Results of the kinematic nodal contact of the 2000 paper, initially in contact, by cells per radius.
-    kinematic: [(f64, Cited); 3],
+    kinematic: [(f64, CitedNumber); 3],
     sticks: bool,
 }
 
@@ -94,7 +94,7 @@ fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> R
 const ROCKS: f64 = 0.1;
 
 /// Returns mean ΩR over mean v at the end.
-fn rolling(done: &Done) -> Result<f64, Missing> {
+fn rolling(done: &FinishedRun) -> Result<f64, MissingData> {
     let (end, _) = last(done)?;
     let states: Vec<State> =
         course(done)?.into_iter().filter(|(t, _)| *t > end - ROCKS).map(|(_, state)| state).collect();
@@ -171,8 +171,8 @@ fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
         .runs(LEVELS.map(|cells| run(slope, "mpm", cells)))
         .converges_at_least(1.5, slope.reference.source(), move |done| {
-            let off = |(done, cells): (&Done, f64)| Ok((1.0 / cells, excess(done)? - slope.reference.value));
-            let points: Result<Vec<(f64, f64)>, Missing> = done.iter().zip(LEVELS).map(off).collect();
+            let off = |(done, cells): (&FinishedRun, f64)| Ok((1.0 / cells, excess(done)? - slope.reference.value));
+            let points: Result<Vec<(f64, f64)>, MissingData> = done.iter().zip(LEVELS).map(off).collect();
             Ok(fitted(&points?))
         })
         .within(exactly(
@@ -197,7 +197,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
     )
     .run(run)
     .equals(Source::Derived("a rigid disc rolls or slips (derivation; MPM 2000 eq. 25)"), |done| {
-        Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))
+        Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0))
     })
     .within(judged(
         allowed,
@@ -208,7 +208,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
 }
 
 /// Claims that the contact of the 2000 paper gives its known result.
-fn reproduced(slope: Elastic, cells: f64, cited: Cited) -> Claim {
+fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
     let control = if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling(slope) };
     claim(excess_words(slope, cells), "1")
         .run(run(slope, "mpm:2000", cells))
@@ -275,7 +275,7 @@ fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .runs([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))
         .agrees(Source::Ourselves("the same disc at 16 cells a radius"), |done| {
-            Ok(Measured::new(rolling(&done[0])?, rolling(&done[1])?, 1.0))
+            Ok(Measurement::new(rolling(&done[0])?, rolling(&done[1])?, 1.0))
         })
         .within(judged(0.02, "discretisation"))
         .refuses(Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000"))

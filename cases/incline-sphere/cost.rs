@@ -2,9 +2,9 @@
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;
-use grainbench_harness::subject::Subject;
+use grainbench_harness::subject::TargetQuantity;
 
-pub(crate) fn subjects() -> Vec<Subject> {
+pub(crate) fn subjects() -> Vec<TargetQuantity> {
     const SOURCE: &str = "2001 paper, eqs. 23-26";
     displacement("incline-sphere", &["45deg-mu.495", "60deg-mu2_7"], 0.3, OneGrain::rigid_incline, SOURCE)
 }

@@ -9,14 +9,14 @@ use crate::rows::elastic::{Rest, excess, settle};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 /// One slope with the expected values of the elastic sphere on it.
 #[derive(Clone, Copy)]
 struct Elastic {
     variant: &'static str,
     /// Displacement after one second over the rigid one, minus one.
-    reference: Cited,
+    reference: CitedNumber,
     /// Deviations at R/4 and R/8 that were required before the solver existed.
     allowed: [f64; 2],
 }

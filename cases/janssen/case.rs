@@ -71,14 +71,14 @@ fn weight(scene: &Scene) -> f64 {
 }
 
 /// Returns a column of the series during the steady descent.
-fn descending(done: &Done, name: &str) -> Result<Vec<f64>, Missing> {
+fn descending(done: &FinishedRun, name: &str) -> Result<Vec<f64>, MissingData> {
     let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
     let values: Vec<f64> = values.map(|(_, value)| *value).collect();
-    if values.is_empty() { Err(Missing(format!("samples of `{name}`"))) } else { Ok(values) }
+    if values.is_empty() { Err(MissingData(format!("samples of `{name}`"))) } else { Ok(values) }
 }
 
 /// Returns the mean of a column during the steady descent.
-fn steady(done: &Done, name: &str) -> Result<f64, Missing> {
+fn steady(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     Ok(mean(&descending(done, name)?))
 }
 
@@ -87,7 +87,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Returns the part of the weight on the floor.
-fn on_floor(done: &Done) -> Result<f64, Missing> {
+fn on_floor(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(-steady(done, "floor.force_z")? / weight(&done.scene))
 }
 
@@ -99,25 +99,26 @@ fn top(heights: &[f64], weights: &[f64]) -> f64 {
 }
 
 /// Means of quantities over the slices in the middle of the column.
-struct Middle {
+struct MiddleMeans {
     vertical: f64,
     normal: f64,
     shear: f64,
     weight: f64,
 }
 
-impl Middle {
+impl MiddleMeans {
     /// Averages over the slices between a quarter and three quarters of the height of the filling.
-    fn from_run(done: &Done) -> Result<Self, Missing> {
+    fn from_run(done: &FinishedRun) -> Result<Self, MissingData> {
         let table = done.table("slices")?;
-        let column = |name: &str| table.column(name).ok_or_else(|| Missing(format!("column `{name}` of the slices")));
+        let column =
+            |name: &str| table.column(name).ok_or_else(|| MissingData(format!("column `{name}` of the slices")));
         let (heights, weights) = (column("height")?, column("weight")?);
         let top = top(heights, weights);
         let inside = |height: &f64| (0.25 * top..0.75 * top).contains(height);
-        let over = |name: &str| -> Result<f64, Missing> {
+        let over = |name: &str| -> Result<f64, MissingData> {
             let values = heights.iter().zip(column(name)?).filter(|(height, _)| inside(height));
             let values: Vec<f64> = values.map(|(_, value)| *value).collect();
-            if values.is_empty() { Err(Missing("slices in the middle".to_owned())) } else { Ok(mean(&values)) }
+            if values.is_empty() { Err(MissingData("slices in the middle".to_owned())) } else { Ok(mean(&values)) }
         };
         Ok(Self {
             vertical: over("vertical")?,
@@ -155,7 +156,7 @@ fn known() -> Tolerance {
 
 /// Sums some force columns over the weight and compares the mean over the steady descent with 1. The unit is half the
 /// confidence interval of the mean.
-fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
+fn all_borne(done: &FinishedRun, columns: &[&str]) -> Result<Measurement, MissingData> {
     let weight = weight(&done.scene);
     let mut borne = Vec::new();
     for name in columns {
@@ -164,8 +165,8 @@ fn all_borne(done: &Done, columns: &[&str]) -> Result<Measured, Missing> {
         borne.iter_mut().zip(forces).for_each(|(borne, force)| *borne -= force / weight);
     }
     let estimate = difference(&vec![1.0; borne.len()], &borne, BLOCKS);
-    let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples of {columns:?}")))?;
-    Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+    let estimate = estimate.ok_or_else(|| MissingData(format!("{BLOCKS} samples of {columns:?}")))?;
+    Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
 }
 
 /// Claims that floor and side carry the weight.
@@ -198,7 +199,7 @@ fn mobilised() -> Claim {
             1.0,
             Source::Derived("Coulomb: grains that slide bear μ of the normal force, those that roll less"),
             |done| {
-                let middle = Middle::from_run(&done[0])?;
+                let middle = MiddleMeans::from_run(&done[0])?;
                 Ok(middle.shear / (friction(&done[0].scene) * middle.normal))
             },
         )
@@ -221,9 +222,9 @@ fn law(variant: &'static str, about: &str) -> Claim {
     claim(format!("part of the weight on the floor, friction {about} at the side"), "1")
         .run(run(variant, "dem"))
         .equals(JANSSEN, |done| {
-            let middle = Middle::from_run(&done[0])?;
+            let middle = MiddleMeans::from_run(&done[0])?;
             let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
-            Ok(Measured::new(on_floor(&done[0])?, expected, expected))
+            Ok(Measurement::new(on_floor(&done[0])?, expected, expected))
         })
         .within(required(0.1, "asked for before: K is one number in the law, and the ends of the column have others"))
         .refuses(Control::misread(TWICE, twice))
@@ -238,7 +239,7 @@ fn saturates() -> Claim {
             Source::Derived("(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 where it rises as depth does"),
             |done| {
                 let table = done[0].table("slices")?;
-                let missing = || Missing("slices".to_owned());
+                let missing = || MissingData("slices".to_owned());
                 let (heights, stress) =
                     (table.column("height").ok_or_else(missing)?, table.column("vertical").ok_or_else(missing)?);
                 let weights = table.column("weight").ok_or_else(missing)?;
@@ -265,7 +266,7 @@ fn beside(variant: &'static str, about: &str) -> Claim {
     let control = Control::ours("a smooth side in ours", |scene| side_friction(scene, 0.0));
     let run = |solver| Run::new(variant, solver, LEVELS[0].resolution).long().kept();
     row(&quantity, "1", allowed, [run("dem:lammps"), run("lammps")], control, |done| {
-        Ok(Measured::new(on_floor(&done[0])?, on_floor(&done[1])?, 1.0))
+        Ok(Measurement::new(on_floor(&done[0])?, on_floor(&done[1])?, 1.0))
     })
 }
 
@@ -275,8 +276,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(profile(&done).into_iter().collect())
 }
 
-fn profile(done: &Done) -> Option<Figure> {
-    let (table, middle) = (done.table("slices").ok()?, Middle::from_run(done).ok()?);
+fn profile(done: &FinishedRun) -> Option<Figure> {
+    let (table, middle) = (done.table("slices").ok()?, MiddleMeans::from_run(done).ok()?);
     let (heights, vertical) = (table.column("height")?, table.column("vertical")?);
     let (_, _, radius) = side(&done.scene);
     let (area, height) = (PI * radius * radius, weight(&done.scene) / middle.weight);

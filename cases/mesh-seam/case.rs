@@ -52,7 +52,7 @@ fn level(floor: &'static str) -> Claim {
             let (scene, height) = (&done[0].scene, done[0].column("ball.z")?);
             let grain = &scene.grains[0];
             let overlap = grain.radius - grain.position.z;
-            Ok(Measured::worst(&done[0].series().time, height, |_| grain.position.z, overlap))
+            Ok(Measurement::worst(&done[0].series().time, height, |_| grain.position.z, overlap))
         })
         .within(computed(1e-9, "rounding: 1e-16 m/1e-4 m a step, which springs bring back; a thousand steps of it"))
         .refuses(control)
@@ -65,7 +65,7 @@ fn rolls(floor: &'static str) -> Claim {
         .equals(Source::Derived("5/7 of the velocity that it is set down with (derivation)"), |done| {
             let start = done[0].scene.grains[0].velocity.norm();
             let exact = 5.0 / 7.0 * start;
-            Ok(Measured::new(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact, exact))
+            Ok(Measurement::new(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact, exact))
         })
         .within(rounding(1.0, "momentum about the contact fixes it once the spring has come to rest"))
         .refuses(Control::scene("the inertia of a disc", |scene| {
@@ -84,7 +84,7 @@ fn as_plane(floor: &'static str) -> Claim {
 }
 
 /// A position of the sphere at the cube, and the contact points of the surface there.
-struct At {
+struct SeamPosition {
     words: &'static str,
     /// Centre (m).
     centre: [f64; 3],
@@ -92,12 +92,12 @@ struct At {
     away: &'static [[f64; 3]],
 }
 
-const PLACES: [At; 5] = [
-    At { words: "over the seam of a face", centre: [0.5, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
-    At { words: "over a face beside a ridge", centre: [0.97, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
-    At { words: "at a ridge", centre: [1.06, 0.4, 1.07], away: &[[0.06, 0.0, 0.07]] },
-    At { words: "at a corner", centre: [1.05, 1.04, 1.07], away: &[[0.05, 0.04, 0.07]] },
-    At {
+const PLACES: [SeamPosition; 5] = [
+    SeamPosition { words: "over the seam of a face", centre: [0.5, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
+    SeamPosition { words: "over a face beside a ridge", centre: [0.97, 0.5, 1.07], away: &[[0.0, 0.0, 0.07]] },
+    SeamPosition { words: "at a ridge", centre: [1.06, 0.4, 1.07], away: &[[0.06, 0.0, 0.07]] },
+    SeamPosition { words: "at a corner", centre: [1.05, 1.04, 1.07], away: &[[0.05, 0.04, 0.07]] },
+    SeamPosition {
         words: "within a corner",
         centre: [0.91, 0.92, 0.93],
         away: &[[-0.09, 0.0, 0.0], [0.0, -0.08, 0.0], [0.0, 0.0, -0.07]],
@@ -105,7 +105,7 @@ const PLACES: [At; 5] = [
 ];
 
 /// Claims the force on the sphere at a fixed position.
-fn held(at: &'static At) -> Claim {
+fn held(at: &'static SeamPosition) -> Claim {
     let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
         .run(Run::new("cube", "dem", STEP).adjusted(at.words, place))
@@ -125,7 +125,7 @@ fn held(at: &'static At) -> Claim {
                 .sum();
             let force =
                 Vector3::new(done.last("held.force_x")?, done.last("held.force_y")?, done.last("held.force_z")?);
-            Ok(Measured::new((force - exact).norm(), 0.0, exact.norm()))
+            Ok(Measurement::new((force - exact).norm(), 0.0, exact.norm()))
         })
         .within(computed(
             1e-13,

@@ -45,8 +45,8 @@ fn in_small_steps(solver: &'static str, points: u32) -> Vec<Run> {
 }
 
 /// Returns the order in the cell, fitted over three resolutions.
-fn order(done: &[Done]) -> Result<f64, Missing> {
-    let points: Result<Vec<(f64, f64)>, Missing> =
+fn order(done: &[FinishedRun]) -> Result<f64, MissingData> {
+    let points: Result<Vec<(f64, f64)>, MissingData> =
         done.iter().zip([16.0, 32.0, 64.0]).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
     Ok(slope(&points?))
 }
@@ -74,7 +74,7 @@ fn claims() -> Vec<Claim> {
             .refuses(Control::solver("uGIMP in their place", GIMP)),
         claim("root mean square error of the displacement, 64 cells, uGIMP", "m")
             .run(Run::new(PLAIN, GIMP, LEVELS[2].resolution))
-            .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 0.05)))
+            .equals(SOURCE, |done| Ok(Measurement::new(error(&done[0])?, 0.0, 0.05)))
             .within(estimated(2e-3, "discretisation; in units of the amplitude"))
             .refuses(wrong()),
     ]

@@ -46,8 +46,8 @@ fn run(solver: &'static str, level: Level) -> Run {
     Run::new(PLAIN, solver, level.resolution).adjusted("to .5 s", half)
 }
 
-fn order(done: &[Done]) -> Result<f64, Missing> {
-    let points: Result<Vec<(f64, f64)>, Missing> =
+fn order(done: &[FinishedRun]) -> Result<f64, MissingData> {
+    let points: Result<Vec<(f64, f64)>, MissingData> =
         done.iter().zip(CELLS).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
     Ok(slope(&points?))
 }
@@ -57,7 +57,7 @@ fn claims() -> Vec<Claim> {
     let off = |quantity: String, run: Run, tolerance, control| {
         claim(quantity, "m")
             .run(run)
-            .equals(SOURCE, |done| Ok(Measured::new(error(&done[0])?, 0.0, 1.0)))
+            .equals(SOURCE, |done| Ok(Measurement::new(error(&done[0])?, 0.0, 1.0)))
             .within(tolerance)
             .refuses(control)
     };

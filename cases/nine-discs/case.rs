@@ -15,7 +15,7 @@ use grainbench_harness::measure::{dominant_frequency, slope};
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::scene::Duration;
-use modal::{Inward, Modal, RAMP_TIME, law};
+use modal::{InwardDisplacements, Modal, RAMP_TIME, law};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
@@ -93,7 +93,7 @@ fn static_forces() -> Vec<Claim> {
                     let scene = &done[0].scene;
                     let unit = law(scene).normal_stiffness() * travel(&done[0]);
                     let value = done[0].last(&format!("{contact}.{kind}_force"))?.abs();
-                    Ok(Measured::new(value, force(&Modal::from_scene(scene)) * unit, unit))
+                    Ok(Measurement::new(value, force(&Modal::from_scene(scene)) * unit, unit))
                 })
                 .within(computed(
                     left_out(variant),
@@ -144,31 +144,37 @@ fn rounded(variant: &str) -> Tolerance {
 }
 
 /// Returns the travel of each wall in its first phase (m).
-fn travel(done: &Done) -> f64 {
+fn travel(done: &FinishedRun) -> f64 {
     let phase = &done.scene.walls[0].motion.phases[0];
     phase.velocity.norm() * phase.stop.seconds(done.record.provenance.time_step)
 }
 
 /// Returns the inward displacements at each sample as fractions of the walls' travel.
-fn inward(done: &Done) -> Result<Vec<Inward>, Missing> {
+fn inward(done: &FinishedRun) -> Result<Vec<InwardDisplacements>, MissingData> {
     let start = |at: usize| done.scene.grains[at].position;
     let travel = travel(done);
     let edge = done.column("edge.y")?.iter().map(|y| (y - start(1).y) / travel);
     let corner = done.column("corner.x")?.iter().map(|x| (x - start(0).x) / travel);
-    Ok(edge.zip(corner).map(|(edge, corner)| Inward { edge, corner }).collect())
+    Ok(edge.zip(corner).map(|(edge, corner)| InwardDisplacements { edge, corner }).collect())
 }
 
 /// Returns value and expected value of the disc and sample with the largest error.
-fn worst(time: &[f64], values: &[Inward], exact: &[Inward]) -> Result<Measured, Missing> {
-    let pick = |list: &[Inward], component: fn(&Inward) -> f64| list.iter().map(component).collect::<Vec<f64>>();
-    let judge = |component: fn(&Inward) -> f64| {
-        Measured::worst_of(time, &pick(values, component), &pick(exact, component), 1.0)
+fn worst(
+    time: &[f64],
+    values: &[InwardDisplacements],
+    exact: &[InwardDisplacements],
+) -> Result<Measurement, MissingData> {
+    let pick = |list: &[InwardDisplacements], component: fn(&InwardDisplacements) -> f64| {
+        list.iter().map(component).collect::<Vec<f64>>()
+    };
+    let judge = |component: fn(&InwardDisplacements) -> f64| {
+        Measurement::worst_of(time, &pick(values, component), &pick(exact, component), 1.0)
     };
     let both = [judge(|inward| inward.edge), judge(|inward| inward.corner)];
-    Measured::worst_among(both).ok_or_else(|| Missing("discs".to_owned()))
+    Measurement::worst_among(both).ok_or_else(|| MissingData("discs".to_owned()))
 }
 
-fn exact_cycles(done: &Done) -> Vec<Inward> {
+fn exact_cycles(done: &FinishedRun) -> Vec<InwardDisplacements> {
     let modal = Modal::from_scene(&done.scene);
     let time_step = done.record.provenance.time_step;
     done.series().step.iter().map(|&cycle| modal.discrete(cycle, RAMP, time_step)).collect()
@@ -186,14 +192,15 @@ const SPEEDS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Returns the inward displacements of one run, or the limit δ → 0 from runs at three speeds. Errors of first and
 /// second order in δ cancel in the sum with the weights 1/3, −2 and 8/3.
-fn without_geometry(done: &[Done]) -> Result<Vec<Inward>, Missing> {
-    let runs: Vec<Vec<Inward>> = done.iter().map(inward).collect::<Result<_, _>>()?;
+fn without_geometry(done: &[FinishedRun]) -> Result<Vec<InwardDisplacements>, MissingData> {
+    let runs: Vec<Vec<InwardDisplacements>> = done.iter().map(inward).collect::<Result<_, _>>()?;
     let weights: &[f64] = if runs.len() == 1 { &[1.0] } else { &[1.0 / 3.0, -2.0, 8.0 / 3.0] };
-    let sum = |component: fn(&Inward) -> f64, at: usize| -> f64 {
+    let sum = |component: fn(&InwardDisplacements) -> f64, at: usize| -> f64 {
         runs.iter().zip(weights).map(|(run, weight)| weight * component(&run[at])).sum()
     };
     let samples = runs.iter().map(Vec::len).min().unwrap_or(0);
-    let limit = |at| Inward { edge: sum(|inward| inward.edge, at), corner: sum(|inward| inward.corner, at) };
+    let limit =
+        |at| InwardDisplacements { edge: sum(|inward| inward.edge, at), corner: sum(|inward| inward.corner, at) };
     Ok((0..samples).map(limit).collect())
 }
 
@@ -259,10 +266,10 @@ fn modal_run(variant: &'static str, level: Level, speed: f64) -> Run {
 }
 
 /// Returns the largest deviation from the continuous solution over ten periods, for runs at one speed or at all three.
-fn modal_error(done: &[Done]) -> Result<Measured, Missing> {
+fn modal_error(done: &[FinishedRun]) -> Result<Measurement, MissingData> {
     let modal = Modal::from_scene(&done[0].scene);
     let ramp = done[0].scene.walls[0].motion.phases[0].stop.seconds(0.0);
-    let exact: Vec<Inward> = done[0].series().time.iter().map(|&t| modal.continuous(t, ramp)).collect();
+    let exact: Vec<InwardDisplacements> = done[0].series().time.iter().map(|&t| modal.continuous(t, ramp)).collect();
     worst(&done[0].series().time, &without_geometry(done)?, &exact)
 }
 
@@ -297,7 +304,7 @@ fn continuous() -> Vec<Claim> {
             claim("order in Δt of that deviation, δ → 0", "1")
                 .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
                 .converges(2.0, Source::Derived("central differences are of second order"), |done| {
-                    let error = |done: &[Done]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
+                    let error = |done: &[FinishedRun]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
                     Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
                 })
                 .within(computed(
@@ -317,7 +324,7 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// Returns mean and amplitude of a column after the walls have stopped.
-fn residual(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
+fn residual(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData> {
     let stop = match done.scene.walls[0].motion.phases[0].stop {
         Moment::Cycle(cycle) => cycle as usize,
         Moment::Seconds(_) | Moment::Never => 0,
@@ -327,7 +334,7 @@ fn residual(done: &Done, column: &str) -> Result<(f64, f64), Missing> {
     Ok((mean, largest(values.iter().map(|value| value - mean))))
 }
 
-fn frequency(done: &Done) -> Result<f64, Missing> {
+fn frequency(done: &FinishedRun) -> Result<f64, MissingData> {
     let [slow, fast] = Modal::from_scene(&done.scene).frequencies();
     let values = done.column("centre-edge.normal_force")?;
     Ok(dominant_frequency(&done.series().time[120..], &values[120..], 0.5 * slow, 1.2 * fast))
@@ -374,7 +381,7 @@ fn speed_of_loading() -> Vec<Claim> {
             claim(format!("frequency, slow over fast loading, {figure}"), "1")
                 .runs(pair(fast, slow))
                 .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
-                    Ok(Measured::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
+                    Ok(Measurement::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
                 })
                 .within(spectrum())
                 .refuses(Control::scene("stiffness × 1.05 under slow loading", |scene| {
@@ -390,7 +397,7 @@ fn speed_of_loading() -> Vec<Claim> {
                     let omega = Modal::from_scene(&done[0].scene).frequencies()[0];
                     let step = done[0].record.provenance.time_step;
                     let seen = 2.0 * (0.5 * omega * step).asin() / step;
-                    Ok(Measured::new(frequency(&done[0])?, seen, seen))
+                    Ok(Measurement::new(frequency(&done[0])?, seen, seen))
                 })
                 .within(spectrum())
                 .refuses(Control::forgets_history()),
@@ -414,7 +421,7 @@ fn damping() -> Vec<Claim> {
                     printed("Fig. 6 and the text: damping does not affect the equilibrium value of the force"),
                     |done| {
                         let (mean, _) = residual(&done[0], "centre-edge.normal_force")?;
-                        Ok(Measured::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
+                        Ok(Measurement::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
                     },
                 )
                 .within(computed(
@@ -433,7 +440,7 @@ fn damping() -> Vec<Claim> {
                 .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
                     let expected =
                         Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
-                    Ok(Measured::new(decay(&done[0])?, expected, expected))
+                    Ok(Measurement::new(decay(&done[0])?, expected, expected))
                 })
                 .within(judged(
                     5e-5,
@@ -447,13 +454,13 @@ fn damping() -> Vec<Claim> {
 
 /// Returns the decay rate (1/s) of the slow mode p = a + √2 b after the walls have stopped. Its distance x from the
 /// final value follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
-fn decay(done: &Done) -> Result<f64, Missing> {
+fn decay(done: &FinishedRun) -> Result<f64, MissingData> {
     let scene = &done.scene;
     let time_step = done.record.provenance.time_step;
     let first = (scene.walls[0].motion.phases[0].stop.seconds(time_step) / time_step).round() as usize + 1;
     let cycles = (2.0 * TAU / (Modal::from_scene(scene).frequencies()[0] * time_step)) as usize;
     let slow: Vec<f64> = inward(done)?.iter().map(|inward| inward.edge + SQRT_2 * inward.corner).collect();
-    let end = *slow.last().ok_or_else(|| Missing("samples".to_owned()))?;
+    let end = *slow.last().ok_or_else(|| MissingData("samples".to_owned()))?;
     let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for window in slow[first..first + cycles].windows(3) {
         let [before, now, after] = [0, 1, 2].map(|at: usize| window[at] - end);
@@ -485,7 +492,7 @@ fn slip_in_compression() -> Vec<Claim> {
                 Source::Derived("tan φ against κb/(δ − b): .4286 at κ = 2/3, .5556 at κ = 1 (derivation)"),
                 move |done| {
                     let slipping = &done[0].column("all.slipping_contacts")?[..TURN];
-                    Ok(Measured::new(largest(slipping.iter().copied()), expected, 1.0))
+                    Ok(Measurement::new(largest(slipping.iter().copied()), expected, 1.0))
                 },
             )
             .within(exactly("a count"))
@@ -495,17 +502,17 @@ fn slip_in_compression() -> Vec<Claim> {
 }
 
 /// Returns F_n between centre and edge from the cycle at which the walls begin to rotate.
-fn turning(done: &Done) -> Result<&[f64], Missing> {
+fn turning(done: &FinishedRun) -> Result<&[f64], MissingData> {
     Ok(&done.column("centre-edge.normal_force")?[TURN..])
 }
 
 /// Returns the largest F_n from that cycle on (N).
-fn largest_turning(done: &Done) -> Result<f64, Missing> {
+fn largest_turning(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(largest(turning(done)?.iter().copied()))
 }
 
 /// Returns the largest difference between the curves of two runs over the largest value of the first.
-fn apart(a: &Done, b: &Done) -> Result<f64, Missing> {
+fn apart(a: &FinishedRun, b: &FinishedRun) -> Result<f64, MissingData> {
     let differences = turning(a)?.iter().zip(turning(b)?).map(|(a, b)| a - b);
     Ok(largest(differences) / largest_turning(a)?)
 }
@@ -521,7 +528,7 @@ fn distortion() -> Vec<Claim> {
                 Source::Derived("static answer 3/7 over .456522 (derivation); the paper says less than 1"),
                 |done| {
                     let [of_2_3, of_1] = [0, 1].map(|at: usize| Modal::from_scene(&done[at].scene).at_rest().edge);
-                    Ok(Measured::new(turning(&done[1])?[0] / turning(&done[0])?[0], of_1 / of_2_3, 1.0))
+                    Ok(Measurement::new(turning(&done[1])?[0] / turning(&done[0])?[0], of_1 / of_2_3, 1.0))
                 },
             )
             .within(computed(

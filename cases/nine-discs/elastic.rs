@@ -5,12 +5,12 @@
 //! the force F(2d/3) in closed form. Their means vibrate against a wall and against a neighbour (derivation): ω² =
 //! 3πE'/(m (2u + v − w²/(2(u − v)))), reduced by the added mass of their deformation.
 
-use crate::rows::elastic::{Gives, Pressed};
-use crate::rows::ringing::{Ringing, Rung};
+use crate::rows::elastic::{DiscDisplacements, PressedDisc};
+use crate::rows::ringing::{FreeVibration, VibrationParameters};
 use std::f64::consts::PI;
 
 /// Discs of E' = 1.6 GPa, ν = 1/4, with a period of vibration of about 0.5 s.
-pub(super) const DISCS: Ringing = Ringing {
+pub(super) const DISCS: FreeVibration = FreeVibration {
     variant: "kappa-0",
     column: "wall-edge.normal_force",
     moduli: [1.0e9, 0.6e9],
@@ -21,9 +21,9 @@ pub(super) const DISCS: Ringing = Ringing {
     cells: 12.0,
     fine: 24.0,
     exact: |scene, squeeze| {
-        let disc = Pressed::from_scene(scene, 4)?;
+        let disc = PressedDisc::from_scene(scene, 4)?;
         let force = disc.force(2.0 / 3.0 * squeeze);
-        let Gives { u, v, w } = disc.gives(force);
+        let DiscDisplacements { u, v, w } = disc.gives(force);
         let compliance = 2.0 * u + v - w * w / (2.0 * (u - v));
         let restoring = 3.0 * PI * disc.modulus / compliance;
         // Unit force on a disc whose displacement is x: forces at wall and neighbour, in outer rows and in middle rows.
@@ -37,7 +37,7 @@ pub(super) const DISCS: Ringing = Ringing {
         // Four edge discs move along one axis, four corner discs along both.
         let stirred = (4.0 * (edge + corner) + centre) / (12.0 * x * x);
         // The neighbour's force is half of the wall's: (1 + 1/4)/(3/2)² of both contacts, of compliance/3.
-        Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
+        Some(VibrationParameters { force, restoring, stirred, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
     },
     springs: 2.0,
     share: 0.5,

@@ -50,7 +50,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 /// Returns the force between centre and edge over its static value, by cycles from the stop of the walls.
-fn after_stop(done: &Done, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
+fn after_stop(done: &FinishedRun, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
     let rest = Modal::from_scene(&done.scene).at_rest().edge * law(&done.scene).normal_stiffness() * travel;
@@ -146,7 +146,7 @@ fn convergence(runner: &Runner) -> Result<Figure, RunError> {
     for variant in MODAL {
         let mut points = Vec::new();
         for &level in ORDER {
-            let done: Vec<Done> =
+            let done: Vec<FinishedRun> =
                 SPEEDS.iter().map(|&speed| runner.run(&modal_run(variant, level, speed))).collect::<Result<_, _>>()?;
             let run = &done[0].record.provenance;
             if let (Ok(worst), Some(critical)) = (modal_error(&done), run.critical_time_step) {

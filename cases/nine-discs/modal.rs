@@ -18,7 +18,7 @@ pub(crate) struct Modal {
 
 /// Displacements of the edge disc (a) and of the corner disc along each axis (b), as fractions of the wall travel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Inward {
+pub(crate) struct InwardDisplacements {
     pub(crate) edge: f64,
     pub(crate) corner: f64,
 }
@@ -33,10 +33,10 @@ impl Modal {
     }
 
     /// Returns the displacements at rest.
-    pub(crate) fn at_rest(&self) -> Inward {
+    pub(crate) fn at_rest(&self) -> InwardDisplacements {
         let k = self.kappa;
         let below = 2.0 + 4.0 * k + k * k;
-        Inward { edge: (1.0 + 2.0 * k) / below, corner: (2.0 + 3.0 * k) / (2.0 * below) }
+        InwardDisplacements { edge: (1.0 + 2.0 * k) / below, corner: (2.0 + 3.0 * k) / (2.0 * below) }
     }
 
     /// Returns ω₋ and ω₊ (rad/s).
@@ -46,15 +46,15 @@ impl Modal {
     }
 
     /// Returns both displacements when each mode is at a fraction of its static value.
-    fn combine(&self, fractions: [f64; 2]) -> Inward {
+    fn combine(&self, fractions: [f64; 2]) -> InwardDisplacements {
         let rest = self.at_rest();
         let slow = (rest.edge + SQRT_2 * rest.corner) * fractions[0];
         let fast = (rest.edge - SQRT_2 * rest.corner) * fractions[1];
-        Inward { edge: 0.5 * (slow + fast), corner: (slow - fast) / (2.0 * SQRT_2) }
+        InwardDisplacements { edge: 0.5 * (slow + fast), corner: (slow - fast) / (2.0 * SQRT_2) }
     }
 
     /// Returns the continuous solution at t (s) for a ramp of duration `ramp` (s).
-    pub(crate) fn continuous(&self, t: f64, ramp: f64) -> Inward {
+    pub(crate) fn continuous(&self, t: f64, ramp: f64) -> InwardDisplacements {
         self.combine(self.frequencies().map(|omega| {
             if t < ramp {
                 t / ramp - (omega * t).sin() / (omega * ramp)
@@ -65,7 +65,7 @@ impl Modal {
     }
 
     /// Returns the solution of the discrete calculation cycle, for a ramp of `ramp` cycles of `time_step` (s).
-    pub(crate) fn discrete(&self, cycle: u64, ramp: u64, time_step: f64) -> Inward {
+    pub(crate) fn discrete(&self, cycle: u64, ramp: u64, time_step: f64) -> InwardDisplacements {
         self.combine(self.frequencies().map(|omega| {
             let theta = 2.0 * (0.5 * omega * time_step).asin();
             let r = |n: f64| if n > 0.0 { n - (n * theta).sin() / theta.sin() } else { 0.0 };

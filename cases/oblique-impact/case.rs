@@ -66,7 +66,7 @@ fn exact(scene: &Scene) -> Exit {
 }
 
 /// Errors due to finite steps and the lever arm of the torque.
-struct Off {
+struct StepErrors {
     /// Error of the normal impulse over the mass (m/s).
     impulse: f64,
     /// Error of the impulse along the wall over the mass and μ (m/s).
@@ -87,7 +87,7 @@ fn friction(scene: &Scene) -> f64 {
 /// Returns the tolerance for finite steps. Contact begins and ends within a step, which adds or removes half a step of
 /// the dashpot's force each time. The dashpot is half a step late, as in the collision of two discs. The remainder is
 /// of second order.
-fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
+fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
     let step_error = |scene: Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
         let omega = (law.normal_stiffness() / grain.mass).sqrt();
@@ -96,7 +96,7 @@ fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
         let (before, after) = (across(&scene), exact(&scene).across);
         let impulse = zeta * phase * (before + after) + lag(zeta) * phase * after + phase * phase * before;
         let (along, overlap) = (impulse + 2.0 * zeta * phase * before, before / omega / grain.radius);
-        allowed(&Off { impulse, along, overlap }, &exact(&scene), &scene).abs()
+        allowed(&StepErrors { impulse, along, overlap }, &exact(&scene), &scene).abs()
     };
     computed(
         CASE.variant(variant).map_or(f64::NAN, step_error),
@@ -107,9 +107,9 @@ fn within_a_step(variant: &str, allowed: Allowed) -> Tolerance {
     )
 }
 
-type Allowed = fn(&Off, &Exit, &Scene) -> f64;
-type Read = fn(&Done) -> Result<f64, Missing>;
-type Of = fn(&Exit) -> f64;
+type ErrorBound = fn(&StepErrors, &Exit, &Scene) -> f64;
+type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
+type ExitValue = fn(&Exit) -> f64;
 
 fn claims() -> Vec<Claim> {
     let stiffness_damping = || {
@@ -119,7 +119,7 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.stiffness_damping = beta);
         })
     };
-    let quantities: [(&str, &'static str, Allowed, Control, Read, Of); 3] = [
+    let quantities: [(&str, &'static str, ErrorBound, Control, RunReader, ExitValue); 3] = [
         (
             "velocity along the wall after the impact",
             "m/s",
@@ -154,7 +154,7 @@ fn claims() -> Vec<Claim> {
                     .run(Run::new(variant, solver, LEVELS[2].resolution))
                     .equals(Source::Derived("momentum and Coulomb's limit, by quadrature (derivation)"), move |done| {
                         let expected = exact_value(&exact(&done[0].scene));
-                        Ok(Measured::new(read(&done[0])?, expected, expected))
+                        Ok(Measurement::new(read(&done[0])?, expected, expected))
                     })
                     .within(within_a_step(variant, allowed))
                     .refuses(control.clone());

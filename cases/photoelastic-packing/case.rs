@@ -8,10 +8,10 @@ mod figures;
 use crate::rows::programs::{PAIRS, layer_of_spheres};
 use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_1969 as experiment};
 use crate::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
-use grainbench_harness::compare::perturbed::{self, Parting};
+use grainbench_harness::compare::perturbed::{self, DivergenceColumns};
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::Standing;
-use grainbench_harness::source::Cited;
+use grainbench_harness::run::ExpectedOutcome;
+use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{next_value, spread};
 use grainbench_scene::motion::Moment;
 use nalgebra::Vector3;
@@ -58,7 +58,7 @@ const TABLES: [&[&str]; 3] = [
 ];
 /// F_H/F_V that the paper prints for stage B with the parameters of Tables 1 and 2. In its Table 3, stage A is already
 /// at 0.46.
-const PRINTED: [Cited; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
+const PRINTED: [CitedNumber; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "how near the search for the motion of the walls ends";
 
@@ -68,21 +68,23 @@ fn run(variant: &'static str) -> Run {
 }
 
 /// Returns stages A and B.
-fn stages(done: &Done) -> Result<[Stage; 2], Missing> {
+fn stages(done: &FinishedRun) -> Result<[Stage; 2], MissingData> {
     match &done.record.snapshots[..] {
         [_, a, b] => Ok([Stage::from_snapshot(a), Stage::from_snapshot(b)]),
-        _ => Err(Missing("snapshots of stages A and B".to_owned())),
+        _ => Err(MissingData("snapshots of stages A and B".to_owned())),
     }
 }
 
 /// Function that reads a value from the stages of a packing.
-type Read = fn(&[Stage; 2]) -> f64;
+type StageReader = fn(&[Stage; 2]) -> f64;
 
 /// Returns the packing value with the largest difference from `from`. NaN counts as the largest.
-fn farthest(done: &[Done], from: f64, read: Read) -> Result<f64, Missing> {
-    let found: Vec<Measured> =
-        done.iter().map(|done| Ok(Measured::new(read(&stages(done)?), from, 1.0))).collect::<Result<_, Missing>>()?;
-    Measured::worst_among(found).map(|worst| worst.value).ok_or_else(|| Missing("packings".to_owned()))
+fn farthest(done: &[FinishedRun], from: f64, read: StageReader) -> Result<f64, MissingData> {
+    let found: Vec<Measurement> = done
+        .iter()
+        .map(|done| Ok(Measurement::new(read(&stages(done)?), from, 1.0)))
+        .collect::<Result<_, MissingData>>()?;
+    Measurement::worst_among(found).map(|worst| worst.value).ok_or_else(|| MissingData("packings".to_owned()))
 }
 
 fn ratio_at_b([_, b]: &[Stage; 2]) -> f64 {
@@ -115,7 +117,7 @@ fn further_to_b() -> Control {
 
 /// Claims that every packing on springs must satisfy; the worst of several decides.
 fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
-    let growth: Read = |[a, b]| b.vertical / a.vertical - 1.0;
+    let growth: StageReader = |[a, b]| b.vertical / a.vertical - 1.0;
     let mut claims = equilibrium(packings, words);
     claims.push(
         claim(format!("growth of F_V from stage A to stage B, {words}"), "1")
@@ -128,8 +130,8 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
 }
 
 /// Expects a quantity to have an imposed value, in units of a scale; the worst of several packings decides.
-fn held(expected: f64, scale: f64, read: Read) -> impl Fn(&[Done]) -> Result<Measured, Missing> {
-    move |done| Ok(Measured::new(farthest(done, expected, read)?, expected, scale))
+fn held(expected: f64, scale: f64, read: StageReader) -> impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> {
+    move |done| Ok(Measurement::new(farthest(done, expected, read)?, expected, scale))
 }
 
 /// Claims on the equilibrium at both stages; the worst of several packings decides.
@@ -141,7 +143,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 1.1);
     });
     let [seen, largest] = [experiment::RATIO_B.value, paper::RATIO_B_3.value];
-    let unbalanced = |stage, cited: Cited, because, read: Read| {
+    let unbalanced = |stage, cited: CitedNumber, because, read: StageReader| {
         quantity(&format!("largest unbalanced / largest contact force, stage {stage}"))
             .at_most(cited.value, cited.source(), move |done| farthest(done, 0.0, read))
             .within(exactly(because))
@@ -184,14 +186,15 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
 }
 
 /// Claims that the paper's printed value belongs to the distribution of our packings.
-fn as_printed(packings: Vec<Run>, words: &str, printed: Cited) -> Claim {
+fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
     claim(format!("F_H/F_V at stage B, mean of {words}"), "1")
         .runs(packings)
         .equals(printed.source(), move |done| {
             let values =
-                done.iter().map(|done| Ok(ratio_at_b(&stages(done)?))).collect::<Result<Vec<f64>, Missing>>()?;
-            let (mean, half_width) = next_value(&values).ok_or_else(|| Missing("packings that differ".to_owned()))?;
-            Ok(Measured::new(mean, printed.value, half_width))
+                done.iter().map(|done| Ok(ratio_at_b(&stages(done)?))).collect::<Result<Vec<f64>, MissingData>>()?;
+            let (mean, half_width) =
+                next_value(&values).ok_or_else(|| MissingData("packings that differ".to_owned()))?;
+            Ok(Measurement::new(mean, printed.value, half_width))
         })
         .within(one_interval("in units of the half-width of the 99 % interval in which one more packing lies"))
         .refuses(Control::without(Effect::Friction))
@@ -202,15 +205,16 @@ fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
         .runs([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
         .agrees(Source::Ourselves("the same at half the time step"), |done| {
-            Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
+            Ok(Measurement::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
         })
         .within(judged(0.01, "slip comes in jumps, and the step decides which comes first: by up to .005"))
         .refuses(Control::without(Effect::Friction))
 }
 
 /// Columns that compare perturbed runs and external solvers.
-const PARTING: Parting =
-    Parting { columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"] };
+const PARTING: DivergenceColumns = DivergenceColumns {
+    columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"],
+};
 
 /// The predictability horizon (steps). Discs at first contact separate and touch many times before they carry force.
 const HORIZON: u64 = 620;
@@ -247,7 +251,7 @@ fn programs() -> Vec<Claim> {
         pair.map(|solver| common("first", solver, pair[1])).into_iter().chain(perturbed).collect::<Vec<Run>>()
     };
     let mut known = program_runs(liggghts);
-    known[0].standing = Standing::Known(STALE_STRETCH);
+    known[0].standing = ExpectedOutcome::Known(STALE_STRETCH);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], STEP);
     let mut claims = vec![
         perturbed::pointwise(PARTING, program_runs(lammps), softer),
@@ -264,8 +268,8 @@ fn programs() -> Vec<Claim> {
                     .agrees(Source::Program, move |done| {
                         let perturbed =
                             done[2..].iter().map(|perturbed| ratio_in(perturbed, part)).collect::<Result<Vec<f64>, _>>()?;
-                        let interval = spread(&perturbed).ok_or_else(|| Missing("perturbed runs that differ".to_owned()))?;
-                        Ok(Measured::new(ratio_in(&done[0], part)?, ratio_in(&done[1], part)?, interval))
+                        let interval = spread(&perturbed).ok_or_else(|| MissingData("perturbed runs that differ".to_owned()))?;
+                        Ok(Measurement::new(ratio_in(&done[0], part)?, ratio_in(&done[1], part)?, interval))
                     })
                     .within(one_interval(
                         "in units of the 99 % interval of the difference of two perturbed runs, from the spread of four",
@@ -279,7 +283,7 @@ fn programs() -> Vec<Claim> {
 
 /// Returns F_H/F_V from the series at the end of the first of `parts` equal parts of the run, when all discs rest. It
 /// uses the last sample before that time, because a stored run does not contain each sample.
-fn ratio_in(done: &Done, parts: u64) -> Result<f64, Missing> {
+fn ratio_in(done: &FinishedRun, parts: u64) -> Result<f64, MissingData> {
     let steps = &done.series().step;
     let end = steps.last().map_or(0, |last| last / parts);
     let step = steps.iter().copied().take_while(|&step| step <= end).last().unwrap_or_default();
@@ -290,7 +294,7 @@ fn ratio_in(done: &Done, parts: u64) -> Result<f64, Missing> {
 
 /// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom over the initial
 /// height.
-fn vertical_strain(done: &Done, time: f64) -> f64 {
+fn vertical_strain(done: &FinishedRun, time: f64) -> f64 {
     let [_, _, bottom, top] = &done.scene.walls[..] else { return f64::NAN };
     let moved = |wall: &grainbench_scene::scene::Wall| wall.motion.displacement(time, 0.0).translation.y;
     let at = |wall: &grainbench_scene::scene::Wall| wall.shape.corners().0[0].y;
@@ -298,7 +302,7 @@ fn vertical_strain(done: &Done, time: f64) -> f64 {
 }
 
 /// Returns the time of stage A (s), when the walls start again.
-fn time_of_a(done: &Done) -> f64 {
+fn time_of_a(done: &FinishedRun) -> f64 {
     match done.scene.walls.first().and_then(|wall| wall.motion.phases.get(1)).map(|phase| phase.start) {
         Some(Moment::Seconds(time)) => time,
         _ => f64::NAN,

@@ -22,7 +22,7 @@ fn alone() -> Run {
 }
 
 /// Returns F_V at stages A and B.
-fn vertical(done: &Done) -> Result<[f64; 2], Missing> {
+fn vertical(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok(stages(done)?.map(|stage| stage.vertical))
 }
 
@@ -33,7 +33,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .runs([discs(), alone().aside()])
             .holds(IMPOSED, |done| {
                 let ([_, sheared], [_, alone]) = (vertical(&done[0])?, vertical(&done[1])?);
-                Ok(Measured::new(sheared / alone - 1.0, experiment::GROWTH.value, 1.0))
+                Ok(Measurement::new(sheared / alone - 1.0, experiment::GROWTH.value, 1.0))
             })
             .within(computed(NEAR_IN_GROWTH, FOUND))
             .refuses(further_to_b()),
@@ -45,7 +45,7 @@ pub(super) fn claims() -> Vec<Claim> {
             )
             .holds("elastic discs at rest go on bearing what they bear", |done| {
                 let [a, b] = vertical(&done[0])?;
-                Ok(Measured::new(b / a, 1.0, 1.0))
+                Ok(Measurement::new(b / a, 1.0, 1.0))
             })
             .within(judged(1e-4, "discs on springs lose 1e-5"))
             .refuses(Control::without_the_error("discs on springs", "dem:1979", LEVELS[0].resolution)),
@@ -53,7 +53,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .runs([discs(), run("fifty").aside()])
             .agrees(
                 Source::Ourselves("discs on springs from the same start, led to the same stage A and growth"),
-                |done| Ok(Measured::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0)),
+                |done| Ok(Measurement::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0)),
             )
             .within(judged(
                 0.018,

@@ -12,7 +12,7 @@ const PIXELS: u32 = 900;
 const FRINGES: f64 = 3.0;
 
 /// Returns F_H/F_V over the vertical strain (%).
-fn path(done: &Done) -> Vec<(f64, f64)> {
+fn path(done: &FinishedRun) -> Vec<(f64, f64)> {
     let force = |name: &str| done.series().column(name).unwrap_or_default();
     let sides = force("left.force_x").iter().zip(force("right.force_x"));
     let ends = force("bottom.force_y").iter().zip(force("top.force_y"));
@@ -25,7 +25,7 @@ fn path(done: &Done) -> Vec<(f64, f64)> {
 }
 
 /// Returns the figure of fringes in discs on springs and in elastic discs, at both stages.
-fn side_by_side(springs: &Done, elastic: &Done) -> Figure {
+fn side_by_side(springs: &FinishedRun, elastic: &FinishedRun) -> Figure {
     let mut shots = Vec::new();
     for (words, done) in [("on springs", springs), ("elastic", elastic)] {
         for (stage, snapshot) in ["A", "B"].into_iter().zip(done.record.snapshots.iter().skip(1)) {

@@ -103,19 +103,19 @@ fn width(scene: &Scene) -> f64 {
 }
 
 /// Returns the mean of a bulk quantity over the steady flow.
-fn bulk(done: &Done, name: &str) -> Result<f64, Missing> {
+fn bulk(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     let table = done.table("bulk")?;
-    let missing = || Missing(format!("column `{name}` of the bulk"));
+    let missing = || MissingData(format!("column `{name}` of the bulk"));
     let (times, values) = (table.column("time").ok_or_else(missing)?, table.column(name).ok_or_else(missing)?);
     let from = STEADY * times.last().copied().unwrap_or(0.0);
     mean(times, values, from).ok_or_else(missing)
 }
 
 /// Returns the mean of a column of the series over the steady flow.
-fn series(done: &Done, name: &str) -> Result<f64, Missing> {
+fn series(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     let times = &done.series().time;
     let from = STEADY * times.last().copied().unwrap_or(0.0);
-    mean(times, done.column(name)?, from).ok_or_else(|| Missing(format!("samples of `{name}`")))
+    mean(times, done.column(name)?, from).ok_or_else(|| MissingData(format!("samples of `{name}`")))
 }
 
 /// Returns the mean of the finite values. An external solver may omit the contacts of a step, which then has no stress;
@@ -129,26 +129,26 @@ fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
 }
 
 /// Returns the ratio of shear to normal stress in the bulk.
-fn friction(done: &Done) -> Result<f64, Missing> {
+fn friction(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(bulk(done, "shear")? / bulk(done, "normal")?)
 }
 
-fn packing(done: &Done) -> Result<f64, Missing> {
+fn packing(done: &FinishedRun) -> Result<f64, MissingData> {
     bulk(done, "packing")
 }
 
 /// Returns I = γ̇ √(m/P) of the bulk, with the mass of the disc of mean diameter, which is 1.
-fn inertia(done: &Done) -> Result<f64, Missing> {
+fn inertia(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(bulk(done, "rate")? / pressure(&done.scene).sqrt())
 }
 
 /// Returns the mean shear stress on both walls (N/m).
-fn of_walls(done: &Done) -> Result<f64, Missing> {
+fn of_walls(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(0.5 * (series(done, "on-bottom.force_x")? - series(done, "on-lid.force_x")?) / width(&done.scene))
 }
 
 /// Name of a quantity and the function that reads it from a run.
-type Quantity = (&'static str, fn(&Done) -> Result<f64, Missing>);
+type Quantity = (&'static str, fn(&FinishedRun) -> Result<f64, MissingData>);
 
 const FRICTION: Quantity = ("friction σ_xy/σ_yy", friction);
 const PACKING: Quantity = ("packing fraction", packing);
@@ -174,7 +174,7 @@ fn normal(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
-            Ok(Measured::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
+            Ok(Measurement::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
@@ -202,7 +202,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
-            Ok(Measured::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
+            Ok(Measurement::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::misread("tangential forces with the wrong sign in the stress", turned))
@@ -216,7 +216,7 @@ fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")
         .runs([ours(variant).aside(), pressed(variant)])
-        .agrees(Source::Ourselves(LAW), move |done| Ok(Measured::new(read(&done[0])?, read(&done[1])?, scale)))
+        .agrees(Source::Ourselves(LAW), move |done| Ok(Measurement::new(read(&done[0])?, read(&done[1])?, scale)))
         .within(allowed)
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
@@ -255,7 +255,7 @@ fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
         scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
     });
     row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
-        Ok(Measured::new(read(&done[0])?, read(&done[1])?, scale))
+        Ok(Measurement::new(read(&done[0])?, read(&done[1])?, scale))
     })
 }
 

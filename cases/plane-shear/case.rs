@@ -3,7 +3,7 @@
 
 use crate::rows::programs::{PAIRS, row};
 use crate::rows::rigid;
-use grainbench_harness::compare::perturbed::{self, PERTURBED, Parting, Sum};
+use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
 use grainbench_harness::compare::pointwise::{difference, largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_scene::perturbed::move_one;
@@ -66,7 +66,7 @@ fn long(solver: &'static str) -> Run {
 }
 
 /// Columns that compare perturbed runs of our solver in the convention of LAMMPS.
-const PARTING: Parting = Parting { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
+const PARTING: DivergenceColumns = DivergenceColumns { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
     let friction = Control::ours("friction .1 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
@@ -126,7 +126,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let line = Curve::new("predictability horizon", Stroke::Dashed, vec![(horizon, 1e-16), (horizon, 1.0)]);
     let parted = partings.iter().map(|(label, a, b)| Curve::new(label, Stroke::Line, difference(a, b, ENERGY)));
     let course = |column: &str| -> Vec<Curve> {
-        let curve = |(label, stroke, done): &(String, Stroke, Done)| {
+        let curve = |(label, stroke, done): &(String, Stroke, FinishedRun)| {
             let values = done.series().column(column).unwrap_or_default();
             Curve::new(label, *stroke, done.series().time.iter().copied().zip(values.iter().copied()).collect())
         };

@@ -82,18 +82,18 @@ fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
 }
 
 /// Returns an entry of the energy budget at the end (J).
-fn entry(done: &Done, name: &str) -> Result<f64, Missing> {
+fn entry(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     done.last(&format!("budget.{name}"))
 }
 
 /// Returns the increase of an entry of the energy budget since the start (J).
-fn gained(done: &Done, name: &str) -> Result<f64, Missing> {
+fn gained(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     let column = done.column(&format!("budget.{name}"))?;
     Ok(column[column.len() - 1] - column[0])
 }
 
 /// Compares the change of momentum with the impulse, in units of the largest impulse.
-fn momentum(done: &Done) -> Result<Measured, Missing> {
+fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let budget_column = |name: &str| done.column(&format!("budget.{name}"));
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for axis in ["x", "y"] {
@@ -104,5 +104,5 @@ fn momentum(done: &Done) -> Result<Measured, Missing> {
             largest = largest.max(impulse_now.abs());
         }
     }
-    Ok(Measured::new(worst, 0.0, largest))
+    Ok(Measurement::new(worst, 0.0, largest))
 }

@@ -27,13 +27,13 @@ fn slab(solver: &'static str) -> Run {
 }
 
 /// Returns the law and the two constants of the von Mises law in the scene without the control.
-fn yielding(done: &Done) -> Result<(Deformable, f64, f64), Missing> {
+fn yielding(done: &FinishedRun) -> Result<(Deformable, f64, f64), MissingData> {
     let deformable = done.scene.deformable.first().copied().flatten();
     match deformable.map(|deformable| (deformable, deformable.constitutive)) {
         Some((deformable, Constitutive::VonMises { yield_stress, hardening_modulus })) => {
             Ok((deformable, yield_stress, hardening_modulus))
         }
-        _ => Err(Missing("yield stress in its scene".to_owned())),
+        _ => Err(MissingData("yield stress in its scene".to_owned())),
     }
 }
 
@@ -64,7 +64,7 @@ fn with_yield(
 
 /// Compares the work of the walls with the energy balance, over the work. Elastic and plastic energy come from the
 /// state of each point with the constants of the scene: s:s/4G + σ_m²/2K and Y ε_p + H ε_p²/2 per volume.
-fn unaccounted(done: &Done) -> Result<Measured, Missing> {
+fn unaccounted(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let (deformable, yield_stress, hardening) = yielding(done)?;
     let snapshot = measures::end(done)?;
     let (mut elastic, mut plastic) = (0.0, 0.0);
@@ -76,14 +76,14 @@ fn unaccounted(done: &Done) -> Result<Measured, Missing> {
         plastic += point.volume * (yield_stress * strain + 0.5 * hardening * strain * strain);
     }
     if snapshot.points.is_empty() {
-        return Err(Missing("material points".to_owned()));
+        return Err(MissingData("material points".to_owned()));
     }
     let work = entry(done, "work")?;
     let mut sum = elastic + plastic + gained(done, "kinetic")?;
     for name in ["springs", "friction", "transfer", "contact"] {
         sum += entry(done, name)?;
     }
-    Ok(Measured::new(sum - work, 0.0, work))
+    Ok(Measurement::new(sum - work, 0.0, work))
 }
 
 /// Claims that the energy balance accounts for the work of the walls, in units of the work.
@@ -106,7 +106,7 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
             let budget_entry = |name| entry(&done[0], name);
             let kept = (gained(&done[0], "kinetic")? + budget_entry("elastic")? + budget_entry("plastic")?)
                 / budget_entry("work")?;
-            Ok(Measured::new(kept, Expected::Bound(Bound::AtMost(1.0)), 1.0))
+            Ok(Measurement::new(kept, ExpectedValue::Bound(Bound::AtMost(1.0)), 1.0))
         })
         .within(required(
             0.01,
@@ -116,39 +116,39 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
 }
 
 /// Returns the largest and the mean overlap of contacts at the end, in cells of this slab.
-fn overlaps(done: &Done) -> Result<[f64; 2], Missing> {
+fn overlaps(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     let cell = measures::width(done) / CELLS;
     let overlaps: Vec<f64> =
         measures::end(done)?.told_contacts().iter().map(|contact| contact.overlap / cell).collect();
     if overlaps.is_empty() {
-        return Err(Missing("contacts".to_owned()));
+        return Err(MissingData("contacts".to_owned()));
     }
     Ok([overlaps.iter().copied().fold(0.0, f64::max), overlaps.iter().sum::<f64>() / overlaps.len() as f64])
 }
 
 /// Returns the largest ratio of shear to normal force, over the contacts between grains with more than the mean normal
 /// force.
-fn steepest(done: &Done) -> Result<f64, Missing> {
+fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));
     let mean = contacts.iter().map(|contact| contact.normal_force).sum::<f64>() / contacts.len() as f64;
     let steep = between.filter(|contact| contact.normal_force > mean);
     let steepest = steep.map(|contact| contact.shear_force.norm() / contact.normal_force).reduce(f64::max);
-    steepest.ok_or_else(|| Missing("contacts between grains".to_owned()))
+    steepest.ok_or_else(|| MissingData("contacts between grains".to_owned()))
 }
 
 /// Returns the largest von Mises stress over the flow stress Y + H ε_p, of points with a plastic strain above 0.01.
-fn on_the_yield_surface(done: &Done) -> Result<f64, Missing> {
+fn on_the_yield_surface(done: &FinishedRun) -> Result<f64, MissingData> {
     let (_, yield_stress, hardening) = yielding(done)?;
     let flowed = measures::end(done)?.points.iter().filter(|point| point.plastic_strain > 0.01);
     let ratio =
         flowed.map(|point| (1.5 * deviator_squared(point)).sqrt() / (yield_stress + hardening * point.plastic_strain));
-    ratio.reduce(f64::max).ok_or_else(|| Missing("points that have flowed".to_owned()))
+    ratio.reduce(f64::max).ok_or_else(|| MissingData("points that have flowed".to_owned()))
 }
 
 /// Returns the mean over the points of the volume change without a pressure change, |ln J − σ_m/K| with J = V/V₀.
 /// Plastic flow does not change the volume.
-fn volume(done: &Done) -> Result<f64, Missing> {
+fn volume(done: &FinishedRun) -> Result<f64, MissingData> {
     let (deformable, ..) = yielding(done)?;
     let points = with_their_start(done, measures::end(done)?)?;
     let off = points
@@ -167,7 +167,7 @@ fn moved(scene: &mut Scene) {
 }
 
 /// Returns the plastic strain at the end.
-fn yielded(done: &Done) -> Result<f64, Missing> {
+fn yielded(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(plastic_strain(done, measures::end(done)?))
 }
 
@@ -195,7 +195,11 @@ pub(super) fn claims() -> Vec<Claim> {
         .run(slab("mpm"))
         .holds("the method's own energy budget", |done| {
             let budget_entry = |name| entry(&done[0], name);
-            Ok(Measured::new((budget_entry("transfer")? + budget_entry("contact")?) / budget_entry("work")?, 0.0, 1.0))
+            Ok(Measurement::new(
+                (budget_entry("transfer")? + budget_entry("contact")?) / budget_entry("work")?,
+                0.0,
+                1.0,
+            ))
         })
         .within(judged(0.02, "springs between surfaces and a transfer that keeps spin lose next to nothing"))
         .refuses(makes_energy()),
@@ -208,14 +212,14 @@ pub(super) fn claims() -> Vec<Claim> {
             .run(slab("mpm"))
             .holds("Coulomb's law: friction of the scene", |done| {
                 let friction = done[0].scene.laws[0].unwrap_or_default().friction;
-                Ok(Measured::new(steepest(&done[0])?, friction, friction))
+                Ok(Measurement::new(steepest(&done[0])?, friction, friction))
             })
             .within(judged(0.02, "forces of a patch are summed, whose normals differ a little"))
             .refuses(Control::scene(Effect::Friction.absence(), early(|scene| Effect::Friction.switch_off(scene)))),
         claim(format!("stress of von Mises over the flow stress where it has flowed, {percent}, largest"), "1")
             .run(slab("mpm"))
             .holds("radial return ends on the yield surface", |done| {
-                Ok(Measured::new(on_the_yield_surface(&done[0])?, 1.0, 1.0))
+                Ok(Measurement::new(on_the_yield_surface(&done[0])?, 1.0, 1.0))
             })
             .within(computed(
                 64.0 * f64::EPSILON,
@@ -224,7 +228,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .refuses(Control::scene("hardening off", early(with_yield(|_, hardening| *hardening = 0.0)))),
         claim(format!("change of volume that pressure does not account for, {percent}, mean"), "1")
             .run(slab("mpm"))
-            .holds("plastic flow keeps volume: σ_m = K ln J", |done| Ok(Measured::new(volume(&done[0])?, 0.0, 1.0)))
+            .holds("plastic flow keeps volume: σ_m = K ln J", |done| Ok(Measurement::new(volume(&done[0])?, 0.0, 1.0)))
             .within(computed(
                 1.0 / STEPS,
                 "deformation is summed to first order, so that a point that turns by θ in n steps swells by θ²/n: \
@@ -239,7 +243,7 @@ pub(super) fn claims() -> Vec<Claim> {
             }))
             .holds("the slab is periodic", |done| {
                 let (there, here) = (yielded(&done[1])?, yielded(&done[0])?);
-                Ok(Measured::new(there - here, 0.0, here))
+                Ok(Measurement::new(there - here, 0.0, here))
             })
             .within(judged(1e-9, "rounding of positions; nothing has become chaotic yet"))
             .refuses(Control::without(Effect::PeriodicAxes)),
@@ -252,7 +256,8 @@ pub(super) fn claims() -> Vec<Claim> {
                 grains.shear_modulus *= 0.001;
             }),
         );
-        let overlap_measurement = move |done: &[Done]| Ok(Measured::new(overlaps(&done[0])?[which], 0.0, 1.0));
+        let overlap_measurement =
+            move |done: &[FinishedRun]| Ok(Measurement::new(overlaps(&done[0])?[which], 0.0, 1.0));
         claims.push(
             claim(format!("{words} overlap of surfaces, {percent}"), "cell")
                 .run(slab("mpm"))

@@ -41,15 +41,16 @@ fn displacement(slabs: &[Slab]) -> Figure {
 
 /// Returns the figures of quantities over the mean shear, for each slab.
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
-    let graph = |name: &str, title: &str, caption: &str, label: &str, value: &dyn Fn(&Done, &Snapshot) -> f64| {
-        let curve = |(words, done): &Slab| {
-            let points =
-                done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), value(done, at))).collect();
-            Curve::new(*words, Stroke::Line, points)
+    let graph =
+        |name: &str, title: &str, caption: &str, label: &str, value: &dyn Fn(&FinishedRun, &Snapshot) -> f64| {
+            let curve = |(words, done): &Slab| {
+                let points =
+                    done.record.snapshots.iter().map(|at| (measures::shear(done, at.time), value(done, at))).collect();
+                Curve::new(*words, Stroke::Line, points)
+            };
+            let axes = [Axis::linear("mean shear (1)"), Axis::linear(label)];
+            Figure::graph(name, title, caption, axes, slabs.iter().map(curve).collect())
         };
-        let axes = [Axis::linear("mean shear (1)"), Axis::linear(label)];
-        Figure::graph(name, title, caption, axes, slabs.iter().map(curve).collect())
-    };
     let mut figures = vec![
         graph(
             "turned",
@@ -79,7 +80,7 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
 }
 
 /// Returns the figures of stress, energy and chains of grains on springs.
-fn of_springs(done: &Done) -> Vec<Figure> {
+fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     let mut all = Vec::new();
     let named = |name: &str| done.series().column(name).unwrap_or_default().to_vec();
     let shears: Vec<f64> = done.series().time.iter().map(|&time| measures::shear(done, time)).collect();
@@ -118,7 +119,7 @@ fn of_springs(done: &Done) -> Vec<Figure> {
 }
 
 /// Returns the figures of force chains over the mean shear.
-fn of_chains(done: &Done) -> [Figure; 3] {
+fn of_chains(done: &FinishedRun) -> [Figure; 3] {
     let looked: Vec<(f64, Chains)> = done
         .record
         .snapshots

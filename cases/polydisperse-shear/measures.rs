@@ -2,7 +2,7 @@
 //! all methods.
 
 use grainbench_fields::overlap::disc_in_box;
-use grainbench_harness::prelude::{Done, Missing};
+use grainbench_harness::prelude::{FinishedRun, MissingData};
 use grainbench_scene::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
@@ -10,45 +10,47 @@ use std::collections::HashMap;
 const COLUMNS: usize = 20;
 
 /// Returns the width of the slab (m).
-pub(crate) fn width(done: &Done) -> f64 {
+pub(crate) fn width(done: &FinishedRun) -> f64 {
     done.scene.domain.map_or(f64::NAN, |domain| domain.high.x - domain.low.x)
 }
 
 /// Returns the length of the slab's period (m).
-fn period(done: &Done) -> f64 {
+fn period(done: &FinishedRun) -> f64 {
     done.scene.domain.map_or(f64::NAN, |domain| domain.high.y - domain.low.y)
 }
 
 /// Returns the speed of the moving side (m/s).
-pub(crate) fn speed(done: &Done) -> f64 {
+pub(crate) fn speed(done: &FinishedRun) -> f64 {
     done.scene.driven.iter().map(|driven| driven.velocity.y).fold(0.0, f64::max)
 }
 
 /// Returns the mean shear at a time (s).
-pub(crate) fn shear(done: &Done, time: f64) -> f64 {
+pub(crate) fn shear(done: &FinishedRun, time: f64) -> f64 {
     speed(done) * time / width(done)
 }
 
 /// Returns the snapshot at a mean shear, within 0.005.
-pub(crate) fn at(done: &Done, wanted: f64) -> Result<&Snapshot, Missing> {
+pub(crate) fn at(done: &FinishedRun, wanted: f64) -> Result<&Snapshot, MissingData> {
     let off = |snapshot: &Snapshot| (shear(done, snapshot.time) - wanted).abs();
     let nearest = done.record.snapshots.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-    nearest.filter(|snapshot| off(snapshot) < 5e-3).ok_or_else(|| Missing(format!("snapshot at a shear of {wanted}")))
+    nearest
+        .filter(|snapshot| off(snapshot) < 5e-3)
+        .ok_or_else(|| MissingData(format!("snapshot at a shear of {wanted}")))
 }
 
 /// Returns the snapshot at the end.
-pub(crate) fn end(done: &Done) -> Result<&Snapshot, Missing> {
-    done.record.snapshots.last().ok_or_else(|| Missing("snapshot".to_owned()))
+pub(crate) fn end(done: &FinishedRun) -> Result<&Snapshot, MissingData> {
+    done.record.snapshots.last().ok_or_else(|| MissingData("snapshot".to_owned()))
 }
 
 /// Returns the grains without prescribed motion.
-pub(crate) fn free<'a>(done: &Done, snapshot: &'a Snapshot) -> Vec<&'a GrainState> {
+pub(crate) fn free<'a>(done: &FinishedRun, snapshot: &'a Snapshot) -> Vec<&'a GrainState> {
     let groups = done.scene.driven_group_of_grains();
     snapshot.grains.iter().zip(groups).filter(|(_, group)| group.is_none()).map(|(grain, _)| grain).collect()
 }
 
 /// Returns the plastic strain, averaged over the mass of free grains.
-pub(crate) fn plastic_strain(done: &Done, snapshot: &Snapshot) -> f64 {
+pub(crate) fn plastic_strain(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let grains = free(done, snapshot);
     let mass: f64 = grains.iter().map(|grain| grain.mass).sum();
     grains.iter().map(|grain| grain.plastic_strain * grain.mass).sum::<f64>() / mass
@@ -61,7 +63,7 @@ fn between(edges: [f64; 2], x: f64, radius: f64) -> f64 {
 
 /// Returns for each column its middle over the width, and the displacement of grains along the slab over the
 /// displacement of the moving side. The mean in a column is weighted by the area of grains in it.
-pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
+pub(crate) fn profile(done: &FinishedRun, snapshot: &Snapshot) -> Vec<(f64, f64)> {
     let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
     let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
         .map(|(now, start)| {
@@ -87,19 +89,19 @@ pub(crate) fn profile(done: &Done, snapshot: &Snapshot) -> Vec<(f64, f64)> {
 
 /// Returns the width of the shear band over the width of the slab: twice the mean of the profile. It is 1 for uniform
 /// shear, and b for a profile that rises linearly over the part b at the moving side.
-pub(crate) fn band(done: &Done, snapshot: &Snapshot) -> f64 {
+pub(crate) fn band(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let profile = profile(done, snapshot);
     2.0 * profile.iter().map(|(_, displacement)| displacement).sum::<f64>() / profile.len() as f64
 }
 
 /// Returns the part of the displacement that occurs in the half of the slab at the moving side.
-pub(crate) fn at_the_moving_side(done: &Done, snapshot: &Snapshot) -> f64 {
+pub(crate) fn at_the_moving_side(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let profile = profile(done, snapshot);
     profile[COLUMNS - 1].1 - 0.5 * (profile[COLUMNS / 2 - 1].1 + profile[COLUMNS / 2].1)
 }
 
 /// Returns the root mean square rotation of free grains since the start (degrees).
-pub(crate) fn rotation_deg(done: &Done, snapshot: &Snapshot) -> f64 {
+pub(crate) fn rotation_deg(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let grains = free(done, snapshot);
     (grains.iter().map(|grain| grain.angle.unwrap_or(f64::NAN).powi(2)).sum::<f64>() / grains.len() as f64)
         .sqrt()
@@ -114,7 +116,7 @@ const VOID: usize = 5;
 /// Counts the large voids: empty squares of five cells of the paper's grid, 40 µm, at any position of this grid within
 /// the slab. A square is empty if no material point lies in it, or no disc covers the centre of one of its cells.
 /// Squares may overlap.
-pub(crate) fn large_voids(done: &Done, snapshot: &Snapshot) -> usize {
+pub(crate) fn large_voids(done: &FinishedRun, snapshot: &Snapshot) -> usize {
     let empty = empty_cells(done, snapshot);
     let is_void =
         |column: usize, row: usize| (0..VOID).all(|i| (0..VOID).all(|j| empty[(row + j) % CELLS * CELLS + column + i]));
@@ -122,7 +124,7 @@ pub(crate) fn large_voids(done: &Done, snapshot: &Snapshot) -> usize {
 }
 
 /// Returns a flag for each cell of the paper's grid, row by row along the slab: true if the cell is empty.
-fn empty_cells(done: &Done, snapshot: &Snapshot) -> Vec<bool> {
+fn empty_cells(done: &FinishedRun, snapshot: &Snapshot) -> Vec<bool> {
     let low = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.low.y]);
     let cells = [width(done), period(done)].map(|length| length / CELLS as f64);
     let mut empty = vec![true; CELLS * CELLS];
@@ -157,7 +159,7 @@ fn empty_cells(done: &Done, snapshot: &Snapshot) -> Vec<bool> {
 const STARTED: f64 = 0.2;
 
 /// Returns the standard deviation over the mean of a force, for example on the fixed side, in blocks of 0.5 % of shear.
-pub(crate) fn fluctuation(done: &Done, force: &str) -> Result<f64, Missing> {
+pub(crate) fn fluctuation(done: &FinishedRun, force: &str) -> Result<f64, MissingData> {
     let (mut blocks, mut from) = (vec![Vec::new()], STARTED);
     for (&time, force) in done.series().time.iter().zip(done.column(force)?) {
         let now = shear(done, time);
@@ -194,21 +196,21 @@ pub(crate) fn deviator_squared(point: &PointState) -> f64 {
 
 /// Returns the points of a snapshot with their initial states, matched by their initial positions.
 pub(crate) fn with_their_start<'a>(
-    done: &'a Done,
+    done: &'a FinishedRun,
     snapshot: &'a Snapshot,
-) -> Result<Vec<(&'a PointState, &'a PointState)>, Missing> {
+) -> Result<Vec<(&'a PointState, &'a PointState)>, MissingData> {
     // Initial positions are exact to rounding, and the distance of points is a thousand times this pitch.
     let pitch = 1e-6 * width(done);
     let key = |point: &PointState| {
         let start = (point.position - point.displacement) / pitch;
         (format!("{:?}", point.owner), start.x.round() as i64, start.y.round() as i64)
     };
-    let first = done.record.snapshots.first().ok_or_else(|| Missing("snapshot".to_owned()))?;
+    let first = done.record.snapshots.first().ok_or_else(|| MissingData("snapshot".to_owned()))?;
     let at_start: HashMap<_, _> = first.points.iter().map(|point| (key(point), point)).collect();
     let found: Vec<_> = snapshot.points.iter().filter_map(|point| Some((point, *at_start.get(&key(point))?))).collect();
     // Rounding may move a few points to the next key.
     if found.len() * 100 < snapshot.points.len() * 99 || found.is_empty() {
-        return Err(Missing("material points of the start".to_owned()));
+        return Err(MissingData("material points of the start".to_owned()));
     }
     Ok(found)
 }

@@ -49,33 +49,33 @@ fn at_rest(scene: &mut Scene) {
 }
 
 /// Returns the lower end of the confidence interval of a value over packings.
-fn lower(values: &[f64]) -> Result<f64, Missing> {
-    let (mean, half) = interval(values).ok_or_else(|| Missing("packings enough for an interval".to_owned()))?;
+fn lower(values: &[f64]) -> Result<f64, MissingData> {
+    let (mean, half) = interval(values).ok_or_else(|| MissingData("packings enough for an interval".to_owned()))?;
     Ok(mean - half)
 }
 
 /// Returns the lower end of the confidence interval of a ratio over packings. It is the interval of the logarithm,
 /// because a ratio is positive and symmetric to its inverse.
-fn lower_of_ratios(ratios: &[f64]) -> Result<f64, Missing> {
+fn lower_of_ratios(ratios: &[f64]) -> Result<f64, MissingData> {
     Ok(lower(&ratios.iter().map(|ratio| ratio.ln()).collect::<Vec<f64>>())?.exp())
 }
 
 /// Returns the smallest value.
-fn least(values: &[f64]) -> Result<f64, Missing> {
+fn least(values: &[f64]) -> Result<f64, MissingData> {
     Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }
 
 /// Returns the part of the force chain links that no longer exist in a later snapshot.
-fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, Missing> {
+fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, MissingData> {
     let first = chains(first);
     if first.links.is_empty() {
-        return Err(Missing("force chains".to_owned()));
+        return Err(MissingData("force chains".to_owned()));
     }
     Ok(1.0 - first.surviving(&chains(second)))
 }
 
 /// Returns the part of the links that disappear between the moments that the paper shows.
-fn gone_in_the_paper(done: &Done) -> Result<f64, Missing> {
+fn gone_in_the_paper(done: &FinishedRun) -> Result<f64, MissingData> {
     gone(at(done, CHAINS[0])?, at(done, CHAINS[1])?)
 }
 
@@ -84,20 +84,20 @@ const LIFE: f64 = 0.075;
 
 /// Returns the part of the links that disappear over a shear of [`LIFE`], averaged over all times from 20 % of shear
 /// on.
-fn gone_in_the_mean(done: &Done) -> Result<f64, Missing> {
+fn gone_in_the_mean(done: &FinishedRun) -> Result<f64, MissingData> {
     let snapshots = &done.record.snapshots;
     let started = snapshots.iter().filter(|snapshot| shear(done, snapshot.time) >= 0.2);
     let pairs = started.filter_map(|first| Some((first, at(done, shear(done, first.time) + LIFE).ok()?)));
-    let gone = pairs.map(|(first, second)| gone(first, second)).collect::<Result<Vec<f64>, Missing>>()?;
+    let gone = pairs.map(|(first, second)| gone(first, second)).collect::<Result<Vec<f64>, MissingData>>()?;
     Ok(gone.iter().sum::<f64>() / gone.len() as f64)
 }
 
 /// Function that reduces the values of all packings to the value compared with the bound, and the reason.
-type Held = (fn(&[f64]) -> Result<f64, Missing>, &'static str);
-const VALUES: Held =
+type PackingReduction = (fn(&[f64]) -> Result<f64, MissingData>, &'static str);
+const VALUES: PackingReduction =
     (lower, "the lower end of the interval (99 %, Student's t) over the packings holds the bound, which is ours");
-const EACH: Held = (least, "each packing holds the bound, which is ours; chains that stay would lose none");
-const RATIOS: Held = (
+const EACH: PackingReduction = (least, "each packing holds the bound, which is ours; chains that stay would lose none");
+const RATIOS: PackingReduction = (
     lower_of_ratios,
     "the lower end of the interval (99 %, Student's t, of logarithms) over the packings holds the bound, which is ours",
 );
@@ -106,16 +106,16 @@ const RATIOS: Held = (
 fn over_packings(
     (quantity, source): (&str, Source),
     runs: Vec<Run>,
-    (held, because): Held,
+    (held, because): PackingReduction,
     bound: f64,
     control: Control,
-    read: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
+    read: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
 ) -> Claim {
     let each = runs.len() / PACKINGS.len();
     claim(format!("{quantity}, 5 packings"), "1")
         .runs(runs)
         .at_least(bound, source, move |done| {
-            held(&done.chunks_exact(each).map(&read).collect::<Result<Vec<f64>, Missing>>()?)
+            held(&done.chunks_exact(each).map(&read).collect::<Result<Vec<f64>, MissingData>>()?)
         })
         .within(exactly(because))
         .refuses(control)
@@ -135,7 +135,7 @@ fn chains_of_the_paper(runs: Vec<Run>, words: &str, control: Control) -> Claim {
 }
 
 /// Returns the band width at the end of the first run over the band width at the end of the second run.
-pub(super) fn bands(done: &[Done]) -> Result<f64, Missing> {
+pub(super) fn bands(done: &[FinishedRun]) -> Result<f64, MissingData> {
     Ok(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?))
 }
 
@@ -158,7 +158,7 @@ fn on_springs() -> Vec<Claim> {
         chains_of_the_paper(runs(), ", grains on springs", staying()),
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
             .runs([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
-            .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measured::new(bands(done)?, slower, slower)))
+            .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::new(bands(done)?, slower, slower)))
             .within(judged(0.4, "packings, and contacts of another kind: the prototype's grains deform"))
             .refuses(Control::scene("grains of three hundredths of the mass", |scene| {
                 for grain in &mut scene.grains {
@@ -190,7 +190,7 @@ fn yielding() -> Vec<Claim> {
         .into_iter()
         .map(|shear| {
             let quantity = format!("plastic strain without slip over that with friction, {:.0} % shear", 100.0 * shear);
-            let ratio = move |done: &[Done]| over(done, shear, plastic_strain);
+            let ratio = move |done: &[FinishedRun]| over(done, shear, plastic_strain);
             over_packings((&quantity, FIGURE_6), beside(glued_first), RATIOS, 5.0, glued(), ratio)
         })
         .collect();

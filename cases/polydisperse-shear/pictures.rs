@@ -23,7 +23,7 @@ const PRESSURES: (f64, f64) = (0.0, 1e8);
 const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 
 /// A slab with a description of its grains.
-pub(super) type Slab = (&'static str, Done);
+pub(super) type Slab = (&'static str, FinishedRun);
 
 /// Returns the slab of grains on springs; in the long tier also those of plastic grains, with friction and without
 /// slip.
@@ -47,7 +47,7 @@ fn shots<'a>(slabs: &[&'a Slab], shears: &[f64]) -> Vec<Shot<'a>> {
 }
 
 /// Returns snapshots at equal steps of shear.
-fn frames(done: &Done) -> Vec<(f64, &Snapshot)> {
+fn frames(done: &FinishedRun) -> Vec<(f64, &Snapshot)> {
     let shears = (0..=FRAMES + 1).map(|frame| 0.8 * f64::from(frame) / f64::from(FRAMES + 1));
     shears.filter_map(|shear| Some((shear, at(done, shear).ok()?))).collect()
 }
@@ -72,7 +72,7 @@ fn within((words, done): &Slab) -> Slab {
         }
         snapshot.points.retain(|point| !matches!(point.owner, Owner::Grain(id) if out[id as usize - 1]));
     }
-    (*words, Done::new(Arc::clone(&done.scene), Arc::new(record)))
+    (*words, FinishedRun::new(Arc::clone(&done.scene), Arc::new(record)))
 }
 
 pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
@@ -162,6 +162,6 @@ fn moving(slabs: &[&Slab]) -> Figure {
     )
 }
 
-fn has_points(done: &Done) -> bool {
+fn has_points(done: &FinishedRun) -> bool {
     done.record.snapshots.iter().any(|snapshot| !snapshot.points.is_empty())
 }

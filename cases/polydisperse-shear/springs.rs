@@ -28,12 +28,12 @@ pub(super) fn slab() -> Run {
 
 /// Compares the momentum increase of the grains along the slab with the impulse of the grains with prescribed motion.
 /// The masses are those of the scene without the control.
-fn momentum(done: &Done) -> Result<Measured, Missing> {
+fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let start: f64 = done.scene.grains.iter().map(|grain| grain.mass * grain.velocity.y).sum();
     let masses = done.scene.grains.iter().map(|grain| grain.mass);
     let now: f64 = measures::end(done)?.grains.iter().zip(masses).map(|(grain, mass)| mass * grain.velocity.y).sum();
     let impulse = entry(done, "impulse_y")?;
-    Ok(Measured::new(now - start - impulse, 0.0, impulse))
+    Ok(Measurement::new(now - start - impulse, 0.0, impulse))
 }
 
 pub(super) fn claims() -> Vec<Claim> {
@@ -44,7 +44,7 @@ pub(super) fn claims() -> Vec<Claim> {
         )
         .run(slab())
         .holds("conservation of energy", |done| {
-            Ok(Measured::new(gained(&done[0], "unbalanced")? / entry(&done[0], "work")?, 0.0, 1.0))
+            Ok(Measurement::new(gained(&done[0], "unbalanced")? / entry(&done[0], "work")?, 0.0, 1.0))
         })
         .within(judged(1e-3, "second order in the step"))
         .refuses(Control::run("steps four times as long", "dem", Resolution::CriticalFraction(0.2))),

@@ -31,15 +31,15 @@ fn on_the_papers_grid() -> Run {
     to_shear(Run::new("seed-1", "mpm", grid(150.0)), 0.8, 15).long()
 }
 
-type Of = fn(&Done, &Snapshot) -> f64;
+type SnapshotValue = fn(&FinishedRun, &Snapshot) -> f64;
 
 /// Returns a quantity of the first run at a mean shear, over the quantity of the second run.
-pub(super) fn over(done: &[Done], shear: f64, value: Of) -> Result<f64, Missing> {
-    let ratio_at = |done: &Done| Ok(value(done, at(done, shear)?));
+pub(super) fn over(done: &[FinishedRun], shear: f64, value: SnapshotValue) -> Result<f64, MissingData> {
+    let ratio_at = |done: &FinishedRun| Ok(value(done, at(done, shear)?));
     Ok(ratio_at(&done[0])? / ratio_at(&done[1])?)
 }
 
-fn voids(done: &Done, snapshot: &Snapshot) -> f64 {
+fn voids(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     large_voids(done, snapshot) as f64
 }
 
@@ -138,7 +138,7 @@ fn motion() -> Vec<Claim> {
                 |done| {
                     let snapshot = at(&done[0], super::CHAINS[0])?;
                     if snapshot.told_contacts().is_empty() {
-                        return Err(Missing("contacts that press".to_owned()));
+                        return Err(MissingData("contacts that press".to_owned()));
                     }
                     Ok(chains::chains(snapshot).stressed)
                 },
@@ -151,7 +151,7 @@ fn motion() -> Vec<Claim> {
 
 /// Claims on the effect of a finer grid.
 fn refined() -> Vec<Claim> {
-    type Quantity = (&'static str, Of, f64, Option<&'static str>);
+    type Quantity = (&'static str, SnapshotValue, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =
         [("plastic strain", plastic_strain, 0.1, Some(PATCHES)), ("rotation of grains", rotation_deg, 0.15, None)];
     let finer = |(words, read, allowed, known): Quantity, coarse: f64, [run, finer]: [Run; 2], shear: f64| {
@@ -165,7 +165,7 @@ fn refined() -> Vec<Claim> {
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
             .runs([run, finer.aside()])
             .agrees(Source::Ourselves("the same packing on a grid twice as fine"), move |done| {
-                Ok(Measured::new(over(done, shear, read)?, 1.0, 1.0))
+                Ok(Measurement::new(over(done, shear, read)?, 1.0, 1.0))
             })
             .within(required(
                 allowed,

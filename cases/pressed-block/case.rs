@@ -32,7 +32,7 @@ pub(crate) static CASE: Case = Case {
 
 /// Means over the points in the middle half of the block at the end. All points have the same mass.
 #[derive(Default)]
-struct Middle {
+struct MiddleMeans {
     /// True strain e = −ln(V/V₀).
     strain: f64,
     /// Equivalent plastic strain.
@@ -41,9 +41,9 @@ struct Middle {
     stress: [f64; 3],
 }
 
-impl Middle {
-    fn from_run(done: &Done) -> Result<Self, Missing> {
-        let missing = || Missing("points in the middle of the block in the end".to_owned());
+impl MiddleMeans {
+    fn from_run(done: &FinishedRun) -> Result<Self, MissingData> {
+        let missing = || MissingData("points in the middle of the block in the end".to_owned());
         let snapshot = done.record.snapshots.last().ok_or_else(missing)?;
         // All points of the block, 1 m², have the same initial volume.
         let start = 1.0 / snapshot.points.len() as f64;
@@ -92,8 +92,8 @@ fn claims() -> Vec<Claim> {
         claim("equivalent plastic strain of the middle", "1")
             .run(run())
             .equals(Source::Derived("ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)"), |done| {
-                let middle = Middle::from_run(&done[0])?;
-                Ok(Measured::new(middle.plastic, middle.flowed(), middle.flowed()))
+                let middle = MiddleMeans::from_run(&done[0])?;
+                Ok(Measurement::new(middle.plastic, middle.flowed(), middle.flowed()))
             })
             .within(computed(
                 front * 2.0 * SHEAR / (3.0 * SHEAR + HARDENING) / 0.0095,
@@ -103,9 +103,9 @@ fn claims() -> Vec<Claim> {
         claim("yield stress of the middle", "Pa")
             .run(run())
             .equals(Source::Derived("σ_xx − σ_yy = Y + H ε_p (derivation)"), |done| {
-                let middle = Middle::from_run(&done[0])?;
+                let middle = MiddleMeans::from_run(&done[0])?;
                 let [across, along, _] = middle.stress;
-                Ok(Measured::new(across - along, middle.yielded(), middle.yielded()))
+                Ok(Measurement::new(across - along, middle.yielded(), middle.yielded()))
             })
             .within(computed(
                 2.0 * SHEAR * front / 0.476,
@@ -117,9 +117,9 @@ fn claims() -> Vec<Claim> {
             .equals(
                 Source::Derived("(σ_xx + σ_yy + σ_zz)/3 = −K e, e of its own volumes: flow keeps them (derivation)"),
                 |done| {
-                    let middle = Middle::from_run(&done[0])?;
+                    let middle = MiddleMeans::from_run(&done[0])?;
                     let expected = BULK * middle.strain;
-                    Ok(Measured::new(-middle.stress.iter().sum::<f64>() / 3.0, expected, expected))
+                    Ok(Measurement::new(-middle.stress.iter().sum::<f64>() / 3.0, expected, expected))
                 },
             )
             .within(computed(
@@ -138,10 +138,10 @@ fn claims() -> Vec<Claim> {
                     "F = K e + ⅔ (Y + H ε_p), ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)",
                 ),
                 |done| {
-                    let middle = Middle::from_run(&done[0])?;
+                    let middle = MiddleMeans::from_run(&done[0])?;
                     let yielded = YIELD + HARDENING * middle.flowed();
                     let expected = BULK * middle.strain + 2.0 / 3.0 * yielded;
-                    Ok(Measured::new(done[0].last("ram.force_y")?, expected, expected))
+                    Ok(Measurement::new(done[0].last("ram.force_y")?, expected, expected))
                 },
             )
             .within(computed(DENSITY * sound * SPEED / 1.934, "a front of ρcV; of 1.934 Pa on 1 m"))
@@ -161,7 +161,7 @@ fn follows_the_ram(level: &Level) -> Claim {
         .run(Run::new(PLAIN, "mpm", level.resolution).known(LAG).up_to(0.2))
         .equals(Source::Derived("e = −ln(1 − V t/L): the block is as high as the ram stands (derivation)"), |done| {
             let expected = -(1.0 - SPEED * TIME).ln();
-            Ok(Measured::new(Middle::from_run(&done[0])?.strain, expected, expected))
+            Ok(Measurement::new(MiddleMeans::from_run(&done[0])?.strain, expected, expected))
         })
         .within(judged(
             0.03,

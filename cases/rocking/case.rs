@@ -21,7 +21,7 @@ pub(crate) static CASE: Case = Case {
 };
 
 /// Parameters of a sphere that rolls to rest.
-struct ToRest {
+struct RollToRest {
     radius: f64,
     /// Angle at which the rolling spring yields (rad).
     yields: f64,
@@ -31,7 +31,7 @@ struct ToRest {
     off: [f64; 2],
 }
 
-impl ToRest {
+impl RollToRest {
     fn from_scene(scene: &Scene) -> Self {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
         let (radius, gravity, speed) = (grain.radius, scene.gravity.norm(), grain.velocity.norm());
@@ -50,7 +50,7 @@ impl ToRest {
 }
 
 /// Returns the largest position, and the smallest one after it (m).
-fn turning_points(done: &Done) -> Result<[f64; 2], Missing> {
+fn turning_points(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     let places = done.column("grain.x")?;
     let farthest = (0..places.len()).max_by(|&a, &b| places[a].total_cmp(&places[b])).unwrap_or(0);
     Ok([places[farthest], places[farthest..].iter().copied().fold(f64::INFINITY, f64::min)])
@@ -69,12 +69,12 @@ fn back() -> Claim {
         .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("2Rθ_y, θ_y = μ_r R F_n/k_r (derivation)"), |done| {
             let [stop, back] = turning_points(&done[0])?;
-            let rest = ToRest::from_scene(&done[0].scene);
+            let rest = RollToRest::from_scene(&done[0].scene);
             let exact = 2.0 * rest.radius * rest.yields;
-            Ok(Measured::new(stop - back, exact, exact))
+            Ok(Measurement::new(stop - back, exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| ToRest::from_scene(scene).off[0]),
+            number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
             "the tangential spring gives way, k_r/k_tR²; its swing at the start; a turning point between samples, (ω_rΔt)²/8",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {
@@ -87,11 +87,11 @@ fn way() -> Claim {
     claim("way to rest", "m")
         .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("(7/10) m v₀² = μ_r m g (x_s/R − θ_y/2) R (derivation)"), |done| {
-            let exact = ToRest::from_scene(&done[0].scene).way;
-            Ok(Measured::new(turning_points(&done[0])?[0], exact, exact))
+            let exact = RollToRest::from_scene(&done[0].scene).way;
+            Ok(Measurement::new(turning_points(&done[0])?[0], exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| ToRest::from_scene(scene).off[1]),
+            number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
             "the tangential spring's swing at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {

@@ -2,7 +2,7 @@
 
 use crate::sources::prototype::elastic_disc;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 
@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
 struct Slope {
     variant: &'static str,
     /// Displacement of the converged elastic disc on a rigid plane over the rigid one, minus one.
-    reference: Cited,
+    reference: CitedNumber,
     /// Deviations by level that were required before the solver existed.
     allowed: [f64; 3],
 }
@@ -37,7 +37,7 @@ const SLOPES: [Slope; 2] = [
 ];
 
 /// Returns the displacement over (1/3) g t² sin θ, minus one.
-fn excess(done: &Done) -> Result<f64, Missing> {
+fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, x) = (&done.series().time, done.column("grain.x")?);
     let end = x.len() - 1;
     Ok(3.0 * (x[end] - x[0]) / (done.scene.gravity.x * time[end] * time[end]) - 1.0)

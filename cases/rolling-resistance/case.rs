@@ -76,7 +76,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
             .run(Run::new(variant, "dem", STEP.resolution))
             .equals(Source::Derived("dv/dt = g (sin θ − μ_r cos θ)/(1 + i) (derivation)"), move |done| {
                 let exact = acceleration(&done[0].scene);
-                Ok(Measured::new(slowing(&done[0], of_spin)?, exact, exact))
+                Ok(Measurement::new(slowing(&done[0], of_spin)?, exact, exact))
             })
             .within(computed(
                 CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).rung(0.5)),
@@ -99,7 +99,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
 }
 
 /// Returns the mean acceleration over the second half of the run (m/s²), of the centre or of the surface RΩ.
-fn slowing(done: &Done, of_spin: bool) -> Result<f64, Missing> {
+fn slowing(done: &FinishedRun, of_spin: bool) -> Result<f64, MissingData> {
     let course = course(done)?;
     let (half, end) = (&course[course.len() / 2], &course[course.len() - 1]);
     let radius = done.scene.grains[0].radius;
@@ -128,7 +128,7 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
                     let scene = &done[0].scene;
                     let grain = OneGrain::from_scene(scene);
                     let unit = rolling_friction(scene) * grain.onto / (1.0 + grain.inertia_factor);
-                    Ok(Measured::new(slowing(&done[0], false)?, acceleration(scene).max(0.0), unit))
+                    Ok(Measurement::new(slowing(&done[0], false)?, acceleration(scene).max(0.0), unit))
                 },
             )
             .within(allowed)

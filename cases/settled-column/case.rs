@@ -33,18 +33,18 @@ fn run(solver: &'static str) -> Run {
 }
 
 /// Returns the mean of a column over the last fifth of the run.
-fn settled(done: &Done, column: &str) -> Result<f64, Missing> {
+fn settled(done: &FinishedRun, column: &str) -> Result<f64, MissingData> {
     let values = done.column(column)?;
     let last = &values[values.len() - values.len().div_ceil(5)..];
     Ok(last.iter().sum::<f64>() / last.len() as f64)
 }
 
-fn weight(done: &Done) -> f64 {
+fn weight(done: &FinishedRun) -> f64 {
     let mass: f64 = done.scene.grains.iter().map(|grain| grain.mass).sum();
     mass * done.scene.gravity.norm()
 }
 
-fn packing_fraction(done: &Done) -> Result<f64, Missing> {
+fn packing_fraction(done: &FinishedRun) -> Result<f64, MissingData> {
     let height = settled(done, "all.gravitational_energy")? / weight(done);
     let volume: f64 =
         done.scene.grains.iter().map(|grain| 4.0 / 3.0 * std::f64::consts::PI * grain.radius.powi(3)).sum();
@@ -55,32 +55,33 @@ fn packing_fraction(done: &Done) -> Result<f64, Missing> {
     Ok(volume / (base * 2.0 * height))
 }
 
-fn coordination(done: &Done) -> Result<f64, Missing> {
+fn coordination(done: &FinishedRun) -> Result<f64, MissingData> {
     settled(done, "packing.coordination")
 }
 
 /// Returns the vertical force on all walls (N).
-fn carried(done: &Done) -> Result<f64, Missing> {
+fn carried(done: &FinishedRun) -> Result<f64, MissingData> {
     ["floor", "left", "right", "front", "back"]
         .iter()
         .map(|wall| Ok(-settled(done, &format!("{wall}.force_z"))?))
-        .sum::<Result<f64, Missing>>()
+        .sum::<Result<f64, MissingData>>()
 }
 
-type Read = fn(&Done) -> Result<f64, Missing>;
+type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
 
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
         claim("weight carried by floor and walls", "N")
             .run(run(PAIRS[0][0]))
             .equals(Source::Derived("balance of forces at rest"), |done| {
-                Ok(Measured::new(carried(&done[0])?, weight(&done[0]), weight(&done[0])))
+                Ok(Measurement::new(carried(&done[0])?, weight(&done[0]), weight(&done[0])))
             })
             .within(judged(2e-3, "what still moves at the end, by convention 1e-4 to 1.1e-3; relative to the weight"))
             .refuses(Control::scene("a run that ends while they fall", |scene| scene.duration = Duration::Seconds(4.0)))
             .fair_to_any(),
     ];
-    let quantities: [(&str, Read); 2] = [("packing fraction", packing_fraction), ("coordination number", coordination)];
+    let quantities: [(&str, RunReader); 2] =
+        [("packing fraction", packing_fraction), ("coordination number", coordination)];
     for [ours, program] in PAIRS {
         for (quantity, read) in quantities {
             let columns = COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside());
@@ -91,8 +92,8 @@ fn claims() -> Vec<Claim> {
                     .runs(columns)
                     .agrees(Source::Program, move |done| {
                         let columns: Vec<f64> = done[2..].iter().map(read).collect::<Result<_, _>>()?;
-                        let interval = spread(&columns).ok_or_else(|| Missing("columns that differ".to_owned()))?;
-                        Ok(Measured::new(read(&done[0])?, read(&done[1])?, interval))
+                        let interval = spread(&columns).ok_or_else(|| MissingData("columns that differ".to_owned()))?;
+                        Ok(Measurement::new(read(&done[0])?, read(&done[1])?, interval))
                     })
                     .within(one_interval(
                         "in units of the 99 % interval of the difference of two columns, from the spread of four \
@@ -116,8 +117,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             runs.push((program, Stroke::Markers, theirs));
         }
     }
-    let figure = |name: &str, title: &str, y: &str, column: &str, factor: fn(&Done) -> f64| {
-        let curve = |(label, stroke, done): &(&str, Stroke, Done)| {
+    let figure = |name: &str, title: &str, y: &str, column: &str, factor: fn(&FinishedRun) -> f64| {
+        let curve = |(label, stroke, done): &(&str, Stroke, FinishedRun)| {
             let values = done.series().column(column).unwrap_or_default().iter().map(|value| value * factor(done));
             Curve::new(*label, *stroke, done.series().time.iter().copied().zip(values).collect())
         };

@@ -3,7 +3,7 @@
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 use grainbench_reference::round_robin::{EARLY, SILO, STEADY, course};
 
 const LEVELS: &[Level] = &[
@@ -69,24 +69,24 @@ const SLACK: f64 = 1e-5;
 
 /// Returns the number of remaining grains at a time of flow, which begins when the plug is removed; interpolated
 /// between samples.
-fn left(done: &Done, time: f64) -> Result<f64, Missing> {
-    let begun = begins(&done.scene).ok_or_else(|| Missing("plug".to_owned()))?;
+fn left(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
+    let begun = begins(&done.scene).ok_or_else(|| MissingData("plug".to_owned()))?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
     let after = times.partition_point(|sampled| sampled - begun < time - SLACK);
     if after == 0 || after == times.len() {
-        return Err(Missing(format!("count at {time} s of flow")));
+        return Err(MissingData(format!("count at {time} s of flow")));
     }
     let part = (time + begun - times[after - 1]) / (times[after] - times[after - 1]);
     Ok(counts[after - 1] + part * (counts[after] - counts[after - 1]))
 }
 
 /// Returns the discharge rate in thousands of grains per second, between two times of flow.
-fn rate(done: &Done, [from, to]: [f64; 2]) -> Result<f64, Missing> {
+fn rate(done: &FinishedRun, [from, to]: [f64; 2]) -> Result<f64, MissingData> {
     Ok((left(done, from)? - left(done, to)?) / (to - from) / 1e3)
 }
 
 /// Returns the rate of steady flow, up to the end if the run is shorter.
-fn steady(done: &Done) -> Result<f64, Missing> {
+fn steady(done: &FinishedRun) -> Result<f64, MissingData> {
     let end = done.series().time.last().copied().unwrap_or_default() - begins(&done.scene).unwrap_or_default();
     rate(done, [STEADY[0], STEADY[1].min(end)])
 }
@@ -132,7 +132,7 @@ fn claims() -> Vec<Claim> {
             .runs([low(), half_the_step()])
             .agrees(Source::Ourselves("half the time step"), |done| {
                 let fine = rate(&done[1], EARLY)?;
-                Ok(Measured::new(rate(&done[0], EARLY)?, fine, fine))
+                Ok(Measurement::new(rate(&done[0], EARLY)?, fine, fine))
             })
             .within(judged(0.01, "a fifth of what rates may be off"))
             .refuses(smooth()),
@@ -156,9 +156,9 @@ fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
 /// Expects the value of a work, within the tolerance of rates.
 fn near(
     quantity: grainbench_harness::claim::Quantity,
-    cited: Cited,
-    value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-) -> grainbench_harness::claim::Tolerated {
+    cited: CitedNumber,
+    value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+) -> grainbench_harness::claim::ClaimWithTolerance {
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }
 

@@ -6,7 +6,7 @@ use crate::silo::ensemble::Flow;
 use crate::silo::paper::PaperSize;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 pub(crate) static CASE: Case = Case {
     name: "silo-push",
@@ -26,7 +26,7 @@ pub(crate) static CASE: Case = Case {
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
 
 /// Packing fractions in the first bins of |I₀|, for the figure.
-static BINS: &[Cited] =
+static BINS: &[CitedNumber] =
     &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3];
 
 fn silo() -> Silo {

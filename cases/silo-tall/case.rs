@@ -1,7 +1,7 @@
 //! A tall silo that drains through a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{Drained, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
+use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::{self, PaperSize};
 use crate::silo::{collapse, flows};
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
 
 static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };
 
-static DRAINED: Drained = Drained {
+static DRAINED: DrainNumbers = DrainNumbers {
     plateau: prototype::TALL_PLATEAU,
     onset: prototype::TALL_ONSET,
     angles: [prototype::TALL_LARGEST, prototype::TALL_WINDOW],
@@ -50,7 +50,7 @@ fn silo() -> Silo {
 }
 
 fn full_size() -> PaperSize {
-    let drained = paper::Drained {
+    let drained = paper::DrainExpectations {
         plateau: DRAINED.plateau,
         onset: DRAINED.onset,
         bins: DRAINED.bins.len(),

@@ -1,7 +1,7 @@
 //! A wide silo that drains through a slit, read as granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{Drained, LEVELS, Numbers, Silo, WEAKNESS};
+use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, WEAKNESS};
 use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::{self, PaperSize};
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
 
 static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };
 
-static DRAINED: Drained = Drained {
+static DRAINED: DrainNumbers = DrainNumbers {
     plateau: prototype::WIDE_PLATEAU,
     onset: prototype::WIDE_ONSET,
     angles: [prototype::WIDE_LARGEST, prototype::WIDE_WINDOW],
@@ -56,7 +56,7 @@ fn full_size() -> PaperSize {
         label: "wide silo, drained",
         step: LEVELS[0],
         bins: DRAINED.bins,
-        drained: Some(paper::Drained {
+        drained: Some(paper::DrainExpectations {
             plateau: DRAINED.plateau,
             onset: DRAINED.onset,
             // Up to 14 τ, 33 elements have been in the last bin, so its mean is uncertain by at least 0.003.

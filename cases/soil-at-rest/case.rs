@@ -35,13 +35,13 @@ fn claims() -> Vec<Claim> {
         claim(format!("largest displacement, {law}, cells of {}", level.name), "m")
             .run(Run::new(law, "mpm", level.resolution))
             .equals(SOURCE, |done| {
-                let [_, sinking] = soil(&done[0].scene).ok_or_else(|| Missing("soil in a box".to_owned()))?;
+                let [_, sinking] = soil(&done[0].scene).ok_or_else(|| MissingData("soil in a box".to_owned()))?;
                 let columns = ["middle.ux", "middle.uy", "top.ux", "top.uy"].map(|name| done[0].column(name));
                 let mut most = 0.0_f64;
                 for column in columns {
                     most = column?.iter().fold(most, |most, now| most.max(now.abs()));
                 }
-                Ok(Measured::new(most, 0.0, sinking))
+                Ok(Measurement::new(most, 0.0, sinking))
             })
             .within(required(
                 1e-9,

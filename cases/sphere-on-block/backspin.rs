@@ -18,7 +18,7 @@ pub(super) fn claims() -> Vec<Claim> {
             claim("displacement at .8 s over the rigid one, less 1, touching at the start, R/4", "1")
                 .run(set_down(VARIANT, solver).long().known(FLAT).up_to(AT_REST))
                 .equals(Source::Derived("a rigid sphere slides, then rolls (derivation of backspin)"), |done| {
-                    Ok(Measured::new(excess(&done[0])?, 0.0, 1.0))
+                    Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0))
                 })
                 .within(judged(0.035, "what a contact that acts at the surface reaches at this resolution"))
                 .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),

@@ -6,7 +6,7 @@ mod backspin;
 use crate::exact::one_grain::{OneGrain, last};
 use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contact_2001};
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 const LEVELS: &[Level] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
 /// Largest error of nodal contact: at −1 the sphere does not move.
@@ -35,11 +35,11 @@ pub(crate) static CASE: Case = Case {
 struct Slope {
     variant: &'static str,
     /// Displacement of the converged elastic sphere on a rigid plane after one second over the rigid one, minus one.
-    reference: Cited,
+    reference: CitedNumber,
     /// Largest deviations at R/4 and R/8.
     allowed: [f64; 2],
     /// Results of the 2000 and the 2001 contact at R/4, initially in contact.
-    papers: [(&'static str, Cited); 2],
+    papers: [(&'static str, CitedNumber); 2],
 }
 
 const SLOPES: [Slope; 2] = [
@@ -58,7 +58,7 @@ const SLOPES: [Slope; 2] = [
 ];
 
 /// Returns the displacement over the displacement of a rigid sphere, minus one.
-fn excess(done: &Done) -> Result<f64, Missing> {
+fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }

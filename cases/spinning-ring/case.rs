@@ -79,17 +79,17 @@ fn growth(snapshot: &Snapshot) -> f64 {
 }
 
 /// Returns the mean of this increase over the run, with a Hann window.
-fn mean_growth(done: &Done) -> Result<f64, Missing> {
+fn mean_growth(done: &FinishedRun) -> Result<f64, MissingData> {
     let snapshots = &done.record.snapshots;
     let end = snapshots.last().map(|last| last.time).filter(|_| snapshots.iter().all(|now| !now.points.is_empty()));
-    let end = end.ok_or_else(|| Missing("snapshots of material points".to_owned()))?;
+    let end = end.ok_or_else(|| MissingData("snapshots of material points".to_owned()))?;
     let weighed = snapshots.iter().map(|now| ((PI * now.time / end).sin().powi(2), growth(now)));
     let (sum, weights) = weighed.fold((0.0, 0.0), |(sum, all), (weight, growth)| (sum + weight * growth, all + weight));
     Ok(sum / weights)
 }
 
-fn ring(scene: &Scene) -> Result<Ring, Missing> {
-    Ring::from_scene(scene).ok_or_else(|| Missing("a ring".to_owned()))
+fn ring(scene: &Scene) -> Result<Ring, MissingData> {
+    Ring::from_scene(scene).ok_or_else(|| MissingData("a ring".to_owned()))
 }
 
 fn claims() -> Vec<Claim> {
@@ -102,7 +102,7 @@ fn claims() -> Vec<Claim> {
                 .run(run(law))
                 .equals(SOURCE, |done| {
                     let exact = ring(&done[0].scene)?.growth();
-                    Ok(Measured::new(mean_growth(&done[0])?, exact, exact))
+                    Ok(Measurement::new(mean_growth(&done[0])?, exact, exact))
                 })
                 .within(computed(
                     0.01 + 2.0 * growth,
@@ -119,7 +119,7 @@ fn claims() -> Vec<Claim> {
             .run(run("hypoelastic"))
             .holds("conservation of angular momentum", |done| {
                 let momentum = done[0].column("all.angular_momentum")?;
-                Ok(Measured::drift(&done[0].series().time, momentum, momentum[0]))
+                Ok(Measurement::drift(&done[0].series().time, momentum, momentum[0]))
             })
             .within(required(1e-3, "what conformance asks of the default setting at two cells a radius"))
             .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01))

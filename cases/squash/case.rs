@@ -12,7 +12,7 @@ const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
 /// step, 1e-3 R.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
-const FORCES: Plate = Plate {
+const FORCES: ClaimFigure = ClaimFigure {
     name: "forces",
     title: "Forces at the walls and between the discs",
     caption: "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force leads; the \
@@ -42,7 +42,7 @@ fn run() -> Run {
 }
 
 /// Returns q = kΔt²/m and the unit of force k v Δt, from the scene and the time step of the run.
-fn units(done: &Done) -> (f64, f64) {
+fn units(done: &FinishedRun) -> (f64, f64) {
     let stiffness = done.scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let time_step = done.record.provenance.time_step;
     let speed = done.scene.walls[0].motion.phases[0].velocity.norm();
@@ -75,7 +75,7 @@ fn claims() -> Vec<Claim> {
                         let (q, unit) = units(&done[0]);
                         let (side, middle) = first_cycles(cycle, q);
                         let expected = if contact == "B" { middle } else { side };
-                        Ok(Measured::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
+                        Ok(Measurement::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
                     })
                     .within(computed(ROUNDING, "positions up to 4 R round by ε; in units of k v Δt with v Δt = 1e-3 R"))
                     .refuses(match (cycle, contact) {
@@ -92,7 +92,7 @@ fn claims() -> Vec<Claim> {
         }
     }
     for (contact, column, force) in [
-        ("A", "A.normal_force", force_at_a as fn(&Done, f64) -> f64),
+        ("A", "A.normal_force", force_at_a as fn(&FinishedRun, f64) -> f64),
         ("B", "B.normal_force", |done, time| 2.0 * moved(done, time)),
     ] {
         claims.push(
@@ -122,18 +122,18 @@ fn late(name: &'static str, wall: usize) -> Control {
 }
 
 /// Returns the number of the cycle that ends at a time (s).
-fn cycle(done: &Done, time: f64) -> f64 {
+fn cycle(done: &FinishedRun, time: f64) -> f64 {
     (time / done.record.provenance.time_step).round()
 }
 
 /// Returns the displacement of disc x at a time (s), times k (N).
-fn moved(done: &Done, time: f64) -> f64 {
+fn moved(done: &FinishedRun, time: f64) -> f64 {
     let (q, unit) = units(done);
     displacement(cycle(done, time), q) * unit
 }
 
 /// Returns the force of the left wall (N) at a time (s).
-fn force_at_a(done: &Done, time: f64) -> f64 {
+fn force_at_a(done: &FinishedRun, time: f64) -> f64 {
     let (q, unit) = units(done);
     let n = cycle(done, time);
     (n - displacement(n, q)) * unit

@@ -6,7 +6,7 @@
 
 use crate::registry;
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{Lane, Subject};
+use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
 use grainbench_scene::solver::Method;
 use std::sync::Arc;
@@ -14,9 +14,9 @@ use std::sync::Arc;
 /// Duration of several periods of the pair (s); the period is 2π/√3 = 3.63 s.
 const SECONDS: f64 = 20.0;
 
-pub(crate) fn subjects() -> Vec<Subject> {
+pub(crate) fn subjects() -> Vec<TargetQuantity> {
     let Some(case) = registry::by_name("squash") else { return Vec::new() };
-    let lane = |method, about| Lane {
+    let lane = |method, about| SolverSetup {
         method,
         knobs: String::new(),
         prepare: Some(Arc::new(|scene: &mut Scene| {
@@ -26,14 +26,14 @@ pub(crate) fn subjects() -> Vec<Subject> {
         })),
         about,
     };
-    vec![Subject {
+    vec![TargetQuantity {
         case,
         variant: PLAIN,
         quantity: "displacement of disc x over 20 s, worst".to_owned(),
         unit: "m",
         source: "u = vt/3 − (v/3W) sin Wt, W = √(3k/m) (derivation)".to_owned(),
         measure: Arc::new(|done| {
-            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let scene = &done.scene;
             let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
             let speed = scene.walls[0].motion.phases[0].velocity.x;
@@ -41,7 +41,7 @@ pub(crate) fn subjects() -> Vec<Subject> {
             let start = scene.grains[0].position.x;
             let moved: Vec<f64> = done.column("x.x")?.iter().map(|x| x - start).collect();
             let exact = |t: f64| speed / 3.0 * (t - (frequency * t).sin() / frequency);
-            Ok(Measured::worst(&done.series().time, &moved, exact, speed / frequency / 3.0))
+            Ok(Measurement::worst(&done.series().time, &moved, exact, speed / frequency / 3.0))
         }),
         lanes: vec![lane(Method::Dem, Resolution::CriticalFraction(0.1)), lane(Method::Rigid, Resolution::substeps(8))],
     }]

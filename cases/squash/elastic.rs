@@ -6,13 +6,13 @@
 //! it decreases at the other. The disc's mean moves by x, where ΔF (u + v)/(πE') = x. Hence ω² = 2πE'/(m (u + v)),
 //! reduced by the added mass of the deformation.
 
-use crate::rows::elastic::{Gives, Pressed};
-use crate::rows::ringing::{Ringing, Rung};
+use crate::rows::elastic::{DiscDisplacements, PressedDisc};
+use crate::rows::ringing::{FreeVibration, VibrationParameters};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
 /// Discs of E' = 16 Pa, ν = 1/4, with the mass of the example and a period of vibration of about 1.6 s.
-pub(super) const DISCS: Ringing = Ringing {
+pub(super) const DISCS: FreeVibration = FreeVibration {
     variant: PLAIN,
     column: "A.normal_force",
     moduli: [10.0, 6.0],
@@ -23,13 +23,13 @@ pub(super) const DISCS: Ringing = Ringing {
     cells: 8.0,
     fine: 32.0,
     exact: |scene, squeeze| {
-        let disc = Pressed::from_scene(scene, 2)?;
+        let disc = PressedDisc::from_scene(scene, 2)?;
         let force = disc.force(squeeze);
-        let Gives { u, v, .. } = disc.gives(force);
+        let DiscDisplacements { u, v, .. } = disc.gives(force);
         let restoring = 2.0 * PI * disc.modulus / (u + v);
         // Each disc has half of the springs between the discs: (1 + 1/2)/2² of both contacts, of (u + v)/2.
         let stirred = disc.stirred([1.0, -1.0, 0.0, 0.0]) / (u + v).powi(2);
-        Some(Rung { force, restoring, stirred, patch: disc.patch(force), share: 0.75 / (u + v) })
+        Some(VibrationParameters { force, restoring, stirred, patch: disc.patch(force), share: 0.75 / (u + v) })
     },
     springs: 3.0,
     share: 2.0 / 3.0,

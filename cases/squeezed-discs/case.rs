@@ -1,6 +1,6 @@
 //! Nine elastic discs compressed by four walls: the stiffness of contacts.
 
-use crate::rows::elastic::{Pressed, stiffen};
+use crate::rows::elastic::{PressedDisc, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
@@ -43,12 +43,12 @@ fn squeeze(scene: &Scene) -> f64 {
 
 /// Returns the contact force (N per metre) in closed form: both walls shorten a row of three diameters.
 fn exact(scene: &Scene) -> f64 {
-    Pressed::from_scene(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
+    PressedDisc::from_scene(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
 /// Returns the mean contact force at the walls (N per metre), with three discs on each. The mean is over the last
 /// quarter of the run, because material points continue to oscillate by one per cent.
-fn mean_force(done: &Done) -> Result<f64, Missing> {
+fn mean_force(done: &FinishedRun) -> Result<f64, MissingData> {
     let mut sum = 0.0;
     for wall in WALLS {
         let force = done.column(wall)?;
@@ -60,14 +60,14 @@ fn mean_force(done: &Done) -> Result<f64, Missing> {
 
 /// Returns the number of contacts, and the largest deviation of a contact force from the mean. It covers the last
 /// quarter of the run, which all snapshots except the first belong to.
-fn spread(done: &Done) -> Result<(usize, f64), Missing> {
+fn spread(done: &FinishedRun) -> Result<(usize, f64), MissingData> {
     let late = done.record.snapshots.iter().filter(|snapshot| snapshot.time > 0.0);
     let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
     for contact in late.flat_map(Snapshot::told_contacts) {
         *forces.entry((contact.grain, format!("{:?}", contact.partner))).or_default() += contact.normal_force;
     }
     if forces.is_empty() {
-        return Err(Missing("contacts".to_owned()));
+        return Err(MissingData("contacts".to_owned()));
     }
     let mean = forces.values().sum::<f64>() / forces.len() as f64;
     Ok((forces.len(), forces.values().map(|force| (force / mean - 1.0).abs()).fold(0.0, f64::max)))
@@ -78,8 +78,8 @@ fn phases(level: Level) -> [Run; 3] {
 }
 
 /// Returns the mean over the shifts of the grid.
-fn over_phases(done: &[Done]) -> Result<f64, Missing> {
-    let forces: Result<Vec<f64>, Missing> = done.iter().map(mean_force).collect();
+fn over_phases(done: &[FinishedRun]) -> Result<f64, MissingData> {
+    let forces: Result<Vec<f64>, MissingData> = done.iter().map(mean_force).collect();
     Ok(forces?.iter().sum::<f64>() / done.len() as f64)
 }
 
@@ -88,8 +88,8 @@ fn claims() -> Vec<Claim> {
         claim("largest deviation of the 24 contact forces from their mean", "1")
             .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
             .holds("equilibrium and symmetry: all are equal (derivation)", |done| match spread(&done[0])? {
-                (24, spread) => Ok(Measured::new(spread, 0.0, 1.0)),
-                (count, _) => Err(Missing(format!("24 contacts, but {count}"))),
+                (24, spread) => Ok(Measurement::new(spread, 0.0, 1.0)),
+                (count, _) => Err(MissingData(format!("24 contacts, but {count}"))),
             })
             .within(required(5e-3, "what is left of the swinging, and tracers that stand in for surfaces"))
             .refuses(Control::scene("the left wall moves in twice as far", |scene| {
@@ -109,7 +109,7 @@ fn claims() -> Vec<Claim> {
                 .runs(runs)
                 .equals(SOURCE, |done| {
                     let exact = exact(&done[0].scene);
-                    Ok(Measured::new(over_phases(done)?, exact, exact))
+                    Ok(Measurement::new(over_phases(done)?, exact, exact))
                 })
                 .within(tolerance)
                 .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9))),
@@ -132,7 +132,7 @@ fn claims() -> Vec<Claim> {
                 .up_to(2.0))
             .equals(SOURCE, |done| {
                 let exact = exact(&done[0].scene);
-                Ok(Measured::new(mean_force(&done[0])?, exact, exact))
+                Ok(Measurement::new(mean_force(&done[0])?, exact, exact))
             })
             .within(judged(0.2, "what springs at the surface reach at any position of the grid"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[0].resolution)),

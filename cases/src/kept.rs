@@ -7,13 +7,13 @@ use crate::solvers::is_program;
 use flate2::read::GzDecoder;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
-use grainbench_harness::control::Wrong;
+use grainbench_harness::control::WrongPhysics;
 use grainbench_harness::reading::Table;
-use grainbench_harness::run::{Done, Made, Run, Set};
-use grainbench_harness::solvers::Kept;
+use grainbench_harness::run::{FinishedRun, ResultOrigin, Run, Set};
+use grainbench_harness::solvers::StoredResult;
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::stored::{compressed, is_scene_of, scene_hash_by_bits};
-use grainbench_scene::record::{Cost, Provenance as OfRecord, Record, Series};
+use grainbench_scene::record::{Cost, Provenance as RecordProvenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, RunError};
@@ -67,14 +67,14 @@ pub struct Provenance {
     /// BLAKE3 hash of each file, by file name.
     pub blake3: BTreeMap<String, String>,
     /// Summary of the run.
-    pub run: OfRecord,
+    pub run: RecordProvenance,
     /// Cost of the run.
     pub cost: Cost,
 }
 
 /// A run of a claim whose tables are stored: the run itself or its negative control.
 #[derive(Clone)]
-pub struct Wanted {
+pub struct StorableRun {
     /// Case of the claim.
     pub case: &'static Case,
     /// Claim that reads the run.
@@ -87,7 +87,7 @@ pub struct Wanted {
     pub id: String,
 }
 
-impl Wanted {
+impl StorableRun {
     /// Returns the lowest run tier that does this run.
     #[must_use]
     pub fn set(&self) -> Set {
@@ -110,20 +110,20 @@ impl Wanted {
 
 /// Returns all stored runs that claims of a case read, each once.
 #[must_use]
-pub fn all(case: &'static Case) -> Vec<Wanted> {
-    let mut all: Vec<Wanted> = Vec::new();
+pub fn all(case: &'static Case) -> Vec<StorableRun> {
+    let mut all: Vec<StorableRun> = Vec::new();
     for claim in (case.claims)() {
         for run in claim.runs.iter().filter(|run| run.kept) {
             let changes = match claim.control.wrong {
-                Wrong::Scene(_) => true,
-                Wrong::Ours(_) => !is_program(run.solver),
+                WrongPhysics::Scene(_) => true,
+                WrongPhysics::Ours(_) => !is_program(run.solver),
                 _ => false,
             };
             for wrong in [false, true] {
                 let control = wrong.then_some(claim.control.name);
                 let id = id(run, control);
                 if (!wrong || (changes && !run.aside)) && all.iter().all(|known| known.id != id) {
-                    all.push(Wanted { case, claim: claim.clone(), run: run.clone(), wrong, id });
+                    all.push(StorableRun { case, claim: claim.clone(), run: run.clone(), wrong, id });
                 }
             }
         }
@@ -156,7 +156,12 @@ fn folder(case: &Case, id: &str) -> PathBuf {
 
 /// Reads the stored result of a run of a scene, under a control of this name; `None` if there is none.
 #[must_use]
-pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+pub(crate) fn load(
+    case: &Case,
+    run: &Run,
+    scene: &Scene,
+    control: Option<&str>,
+) -> Option<Result<StoredResult, RunError>> {
     let folder = folder(case, &id(run, control));
     if !folder.is_dir() {
         return None;
@@ -167,42 +172,43 @@ pub(crate) fn load(case: &Case, run: &Run, scene: &Scene, control: Option<&str>)
         last_lines: Vec::new(),
     };
     Some(read(&folder, run, scene).map_err(|error| match error {
-        Unusable::Stale(reason) => RunError::Stale { solver: run.solver.to_owned(), reason },
-        Unusable::Broken(reason) => broken(reason),
+        StoredResultError::Stale(reason) => RunError::Stale { solver: run.solver.to_owned(), reason },
+        StoredResultError::Broken(reason) => broken(reason),
     }))
 }
 
 /// Reason why a stored result cannot be used.
-enum Unusable {
+enum StoredResultError {
     /// It belongs to another scene or another reading.
     Stale(String),
     /// A file is missing, damaged or changed.
     Broken(String),
 }
 
-fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<Kept, Unusable> {
-    let text = fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| Unusable::Broken(error.to_string()))?;
-    let provenance: Provenance = toml::from_str(&text).map_err(|error| Unusable::Broken(error.to_string()))?;
+fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, StoredResultError> {
+    let text =
+        fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| StoredResultError::Broken(error.to_string()))?;
+    let provenance: Provenance = toml::from_str(&text).map_err(|error| StoredResultError::Broken(error.to_string()))?;
     let reading = run.reading.map_or("", |reading| reading.name);
-    let stepping = Stepping::new(scene, &run.resolution).map_err(Unusable::Broken)?;
+    let stepping = Stepping::new(scene, &run.resolution).map_err(StoredResultError::Broken)?;
     if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let reason =
             format!("`{name}` is of another scene, time step or reading; `grainbench reference keep` does it anew");
-        return Err(Unusable::Stale(reason));
+        return Err(StoredResultError::Stale(reason));
     }
     let mut tables = Vec::new();
     for (file, expected) in &provenance.blake3 {
-        tables.push(table(folder, file, expected).map_err(Unusable::Broken)?);
+        tables.push(table(folder, file, expected).map_err(StoredResultError::Broken)?);
     }
     let place = tables.iter().position(|table| table.name == SERIES);
     let series = place.map(|place| series(scene, &tables.remove(place))).unwrap_or_default();
     let words = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
     let is_current = is_program(run.solver) || provenance.sources == sources(run.solver);
-    Ok(Kept {
+    Ok(StoredResult {
         record: Record { provenance: provenance.run, series, snapshots: Vec::new(), cost: provenance.cost },
         tables,
-        made: Made { words, is_current },
+        made: ResultOrigin { words, is_current },
     })
 }
 
@@ -250,7 +256,12 @@ fn series(scene: &Scene, table: &Table) -> Series {
 ///
 /// # Errors
 /// When the provenance cannot be serialised. The error is a message.
-pub fn files(wanted: &Wanted, done: &Done, given: &Scene, made: [&str; 2]) -> Result<Vec<(String, Vec<u8>)>, String> {
+pub fn files(
+    wanted: &StorableRun,
+    done: &FinishedRun,
+    given: &Scene,
+    made: [&str; 2],
+) -> Result<Vec<(String, Vec<u8>)>, String> {
     let record = &done.record;
     let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&text_of_series(&record.series)))];
     for table in done.tables.iter() {

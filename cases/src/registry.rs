@@ -1,8 +1,8 @@
 //! The registry of cases: one for each folder with a `scene.toml`.
 
-use grainbench_harness::case::{Case, Home, Made};
+use grainbench_harness::case::{Case, Home, SceneCache};
 use grainbench_harness::runner::Runner;
-use grainbench_harness::subject::{Subject, from_claims};
+use grainbench_harness::subject::{TargetQuantity, from_claims};
 use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::resolve::FileGrain;
 use grainbench_scene::scene::Scene;
@@ -12,13 +12,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Name of a case and the function that returns its target quantities of accuracy.
-type Own = (&'static str, fn() -> Vec<Subject>);
+type TargetFunction = (&'static str, fn() -> Vec<TargetQuantity>);
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
 /// Folders of the cases and their reader of grains.
 pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains, made: Some(&MADE) };
-static MADE: Made = Made::new(Vec::new());
+static MADE: SceneCache = SceneCache::new(Vec::new());
 
 /// Returns the case of a name.
 #[must_use]
@@ -34,7 +34,7 @@ pub fn runner(case: &'static Case) -> Runner {
 
 /// Returns the target quantities that measure accuracy in a case: its own list, or the quantities of its claims.
 #[must_use]
-pub fn subjects(case: &'static Case) -> Vec<Subject> {
+pub fn subjects(case: &'static Case) -> Vec<TargetQuantity> {
     match COSTS.iter().find(|(name, _)| *name == case.name) {
         Some((_, subjects)) => subjects(),
         None => from_claims(case),

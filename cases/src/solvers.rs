@@ -6,10 +6,10 @@ use grainbench_dem::solver::Dem;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
-use grainbench_harness::solvers::{Kept, Solvers};
+use grainbench_harness::solvers::{Solvers, StoredResult};
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::deck::Program;
-use grainbench_reference::live::Live;
+use grainbench_reference::live::LiveProgram;
 use grainbench_rigid::solver::Rigid;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -29,7 +29,7 @@ pub fn all() -> Vec<Box<dyn Solver>> {
 /// Returns all external solvers, installed or not.
 #[must_use]
 pub fn programs() -> Vec<Box<dyn Solver>> {
-    Program::ALL.into_iter().map(|program| Box::new(Live::find(program)) as Box<dyn Solver>).collect()
+    Program::ALL.into_iter().map(|program| Box::new(LiveProgram::find(program)) as Box<dyn Solver>).collect()
 }
 
 /// Returns the names of our solvers and of the external solvers.
@@ -77,7 +77,7 @@ impl Solvers for Registry {
 
     fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
         match Program::by_name(name) {
-            Some(program) => Some(Arc::new(Live::find(program).with_time_limit(limit))),
+            Some(program) => Some(Arc::new(LiveProgram::find(program).with_time_limit(limit))),
             None => self.find(name),
         }
     }
@@ -92,14 +92,20 @@ impl Solvers for Registry {
     }
 
     fn edition(&self, name: &str) -> String {
-        Program::by_name(name).map_or_else(String::new, |program| Live::find(program).edition())
+        Program::by_name(name).map_or_else(String::new, |program| LiveProgram::find(program).edition())
     }
 
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
     }
 
-    fn kept(&self, case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+    fn kept(
+        &self,
+        case: &Case,
+        run: &Run,
+        scene: &Scene,
+        control: Option<&str>,
+    ) -> Option<Result<StoredResult, RunError>> {
         kept::load(case, run, scene, control)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::registry::CASES;
 use grainbench_harness::case::{Case, PLAIN};
-use grainbench_harness::run::{Run, Standing};
+use grainbench_harness::run::{ExpectedOutcome, Run};
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, folder, unusable};
 use grainbench_scene::error::SceneError;
@@ -30,7 +30,8 @@ pub fn all() -> Vec<Reference> {
     for &case in CASES {
         // `kept` makes the runs that are stored in the folder of their case.
         for run in (case.claims)().into_iter().flat_map(|claim| claim.runs).filter(|run| !run.kept) {
-            let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != Standing::Refused) else {
+            let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != ExpectedOutcome::Refused)
+            else {
                 continue;
             };
             let id = id(case, &run);

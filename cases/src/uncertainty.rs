@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 /// Stored estimates of a case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stored {
+pub struct StoredEstimates {
     /// Name and version of the program that made them.
     pub program: String,
     /// Commit that the program was built from; empty for old estimates.
@@ -33,7 +33,7 @@ pub fn file(case: &str) -> PathBuf {
 }
 
 /// Loads the stored estimates of a case; empty if the file is missing or unreadable.
-fn load(case: &str) -> Stored {
+fn load(case: &str) -> StoredEstimates {
     let text = std::fs::read_to_string(file(case)).unwrap_or_default();
     toml::from_str(&text).unwrap_or_default()
 }
@@ -41,7 +41,7 @@ fn load(case: &str) -> Stored {
 /// Returns the stored estimate of a claim.
 #[must_use]
 pub fn find(case: &Case, claim: &Claim) -> Option<Estimate> {
-    static CASES: OnceLock<BTreeMap<&'static str, Stored>> = OnceLock::new();
+    static CASES: OnceLock<BTreeMap<&'static str, StoredEstimates>> = OnceLock::new();
     let all = CASES.get_or_init(|| crate::registry::CASES.iter().map(|case| (case.name, load(case.name))).collect());
     let [run] = &claim.runs[..] else { return None };
     let (scene, resolution) = (run.scene_words(), run.resolution.to_string());

@@ -15,7 +15,7 @@ pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     for word in words.split('+') {
         change(&mut mpm.setting, word)?;
     }
-    Some(Box::new(Varied { name: name.to_owned(), mpm }))
+    Some(Box::new(VariedMpm { name: name.to_owned(), mpm }))
 }
 
 /// Changes a setting by a word; `None` if the word is unknown.
@@ -46,12 +46,12 @@ fn change(setting: &mut Setting, word: &str) -> Option<()> {
 }
 
 /// The material point method with the settings in its name.
-struct Varied {
+struct VariedMpm {
     name: String,
     mpm: Mpm,
 }
 
-impl Varied {
+impl VariedMpm {
     fn named(&self, record: Record) -> Record {
         let mut record = record;
         record.provenance.solver.clone_from(&self.name);
@@ -59,7 +59,7 @@ impl Varied {
     }
 }
 
-impl Solver for Varied {
+impl Solver for VariedMpm {
     fn name(&self) -> String {
         self.name.clone()
     }

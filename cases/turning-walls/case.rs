@@ -63,7 +63,7 @@ fn slower() -> Control {
 }
 
 /// Returns the angle of the grain's path around the origin (rad), from its positions at all samples.
-fn gone_round(done: &Done) -> Result<f64, Missing> {
+fn gone_round(done: &FinishedRun) -> Result<f64, MissingData> {
     let angles: Vec<f64> =
         done.column("grain.x")?.iter().zip(done.column("grain.y")?).map(|(x, y)| y.atan2(*x)).collect();
     let nearest = |change: f64| change - TAU * (change / TAU).round();
@@ -75,7 +75,7 @@ fn orbit() -> Claim {
     claim("angle that the sphere has gone round in the drum", "rad")
         .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it stays at rest relative to the drum: ΩT (derivation)"), move |done| {
-            Ok(Measured::new(gone_round(&done[0])?, exact, exact))
+            Ok(Measurement::new(gone_round(&done[0])?, exact, exact))
         })
         .within(computed(
             number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].position.norm() + scheme(scene)),
@@ -90,7 +90,7 @@ fn spin_in_drum() -> Claim {
     claim("spin of the sphere in the drum", "rad/s")
         .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it turns with the drum: Ω (derivation)"), move |done| {
-            Ok(Measured::new(done[0].last("grain.omega_z")?, exact, exact))
+            Ok(Measurement::new(done[0].last("grain.omega_z")?, exact, exact))
         })
         .within(computed(
             number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].radius + scheme(scene)),
@@ -126,7 +126,7 @@ fn tray() -> Claim {
             // The tray tilts down towards +x.
             let way = done[0].last("grain.x")? * angle.cos() - done[0].last("grain.y")? * angle.sin();
             let exact = grain.mass * scene.gravity.norm() * angle.sin() * softness(scene);
-            Ok(Measured::new(way, exact, grain.radius * angle))
+            Ok(Measurement::new(way, exact, grain.radius * angle))
         })
         .within(computed(
             number("tray", tray_off),
@@ -160,7 +160,7 @@ fn clamped() -> Claim {
             let time = scene.duration.seconds().unwrap_or(f64::NAN);
             let exact = sprung(start, spin(scene), frequency(scene), time);
             let end = Vector3::new(done[0].last("grain.x")?, done[0].last("grain.y")?, 0.0);
-            Ok(Measured::new((end - exact).norm(), 0.0, start.norm()))
+            Ok(Measurement::new((end - exact).norm(), 0.0, start.norm()))
         })
         .within(computed(allowed, "(ΩΔt)² (1 + ΩT)² and 2 (Ω/ω)² ωT (ωΔt)²/24, of r₀"))
         .refuses(Control::scene("the upper plate turns slower by a hundredth", |scene| {

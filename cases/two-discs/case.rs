@@ -33,34 +33,34 @@ const fn grid(cells: f64) -> Resolution {
     Resolution::Grid { cells, points: 3, courant: COURANT }
 }
 
-fn speed(done: &Done) -> f64 {
+fn speed(done: &FinishedRun) -> f64 {
     done.scene.grains[0].velocity.norm()
 }
 
 /// Returns the speed along the line of approach after the impact over the speed before.
-fn restitution(done: &Done) -> Result<f64, Missing> {
+fn restitution(done: &FinishedRun) -> Result<f64, MissingData> {
     let velocity = done.scene.grains[0].velocity;
     let (vx, vy) = (done.last("left.vx")?, done.last("left.vy")?);
     Ok(-(vx * velocity.x + vy * velocity.y) / velocity.norm_squared())
 }
 
 /// Returns the total energy at the end over the initial energy.
-fn energy(done: &Done) -> Result<f64, Missing> {
+fn energy(done: &FinishedRun) -> Result<f64, MissingData> {
     let energy = done.column("all.total_energy")?;
     Ok(done.last("all.total_energy")? / energy[0])
 }
 
 /// Returns the mean ΩR/v₀ of the two discs.
-fn spin(done: &Done) -> Result<f64, Missing> {
+fn spin(done: &FinishedRun) -> Result<f64, MissingData> {
     let radius = done.scene.grains[0].radius;
     Ok(0.5 * (done.last("left.omega")? + done.last("right.omega")?) * radius / speed(done))
 }
 
 /// Returns the gap of the surfaces (m) at the first contact force, from the undeformed radii.
-fn first_gap(done: &Done) -> Result<f64, Missing> {
+fn first_gap(done: &FinishedRun) -> Result<f64, MissingData> {
     let force = done.column("contact.normal_force")?;
     // The force of a step belongs to the positions at its start.
-    let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| Missing("contact".to_owned()))?.max(1) - 1;
+    let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?.max(1) - 1;
     let along = |axis: &str| Ok(done.column(&format!("right.{axis}"))?[at] - done.column(&format!("left.{axis}"))?[at]);
     Ok(f64::hypot(along("x")?, along("y")?) - 2.0 * done.scene.grains[0].radius)
 }
@@ -78,7 +78,7 @@ fn claims() -> Vec<Claim> {
         claims.push(
             claim(format!("energy after over before, {cells} cells a radius"), "1")
                 .run(run.clone())
-                .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
+                .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
                 .within(required(5e-3, "damping by the grid, and half a step between velocities and springs"))
                 .refuses(energetic()),
         );
@@ -112,7 +112,7 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("spurious spin ΩR/v₀, frictionless, 30° to the grid", "1")
             .run(run("inclined", "mpm"))
-            .holds("no torque without friction", |done| Ok(Measured::new(spin(&done[0])?, 0.0, 1.0)))
+            .holds("no torque without friction", |done| Ok(Measurement::new(spin(&done[0])?, 0.0, 1.0)))
             .within(estimated(5e-3, "frictionless surfaces of tracers are not quite smooth"))
             .refuses(Control::solver("nodal contact on approach (2000)", "mpm:2000")),
     );
@@ -137,7 +137,7 @@ fn claims() -> Vec<Claim> {
                     .known("contact ends on separation, for any traction: each release adds energy")
                     .up_to(0.2),
             )
-            .holds("conservation of energy", |done| Ok(Measured::new(energy(&done[0])?, 1.0, 1.0)))
+            .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
             .within(required(5e-3, "what springs at the surface reach"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
     );
@@ -145,10 +145,10 @@ fn claims() -> Vec<Claim> {
 }
 
 /// Compares the final momentum with zero, in units of the momentum of one disc.
-fn momentum(done: &Done) -> Result<Measured, Missing> {
+fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let (x, y) = (done.last("all.momentum_x")?, done.last("all.momentum_y")?);
     let scale = done.scene.grains[0].mass * speed(done);
-    Ok(Measured::new(f64::hypot(x, y), 0.0, scale))
+    Ok(Measurement::new(f64::hypot(x, y), 0.0, scale))
 }
 
 /// Claims on three discs that collide at one point: contacts act in pairs, independent of the number of bodies at a
@@ -161,7 +161,7 @@ fn three() -> Vec<Claim> {
                 let at_start = |axis: &str| Ok(done[0].column(&format!("all.momentum_{axis}"))?[0]);
                 let gained = momentum(&done[0])?;
                 let before = f64::hypot(at_start("x")?, at_start("y")?);
-                Ok(Measured::new((gained.value - before).abs(), 0.0, gained.scale))
+                Ok(Measurement::new((gained.value - before).abs(), 0.0, gained.scale))
             })
             .within(required(1e-12, "rounding, of the start too; in units of m v₀"))
             .refuses(control)
@@ -220,7 +220,7 @@ fn touching() -> Vec<Claim> {
             .run(run("sulsky", "mpm"))
             .equals(SURFACES_MEET, |done| {
                 let cell = done[0].scene.grains[0].radius / 8.0;
-                Ok(Measured::new(first_gap(&done[0])?, 0.0, cell))
+                Ok(Measurement::new(first_gap(&done[0])?, 0.0, cell))
             })
             .within(computed(
                 CLOSING * STEP / CELL,
@@ -236,8 +236,9 @@ fn touching() -> Vec<Claim> {
             .run(run("sulsky", "mpm"))
             .equals(SURFACES_MEET, |done| {
                 let force = done[0].column("contact.normal_force")?;
-                let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| Missing("contact".to_owned()))?;
-                Ok(Measured::new(done[0].series().time[at], TOUCH, TOUCH))
+                let at =
+                    force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
+                Ok(Measurement::new(done[0].series().time[at], TOUCH, TOUCH))
             })
             .within(computed(
                 2.0 * STEP / TOUCH,

@@ -132,7 +132,7 @@ fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
         .run(Run::new(variant, "dem", LEVELS[1].resolution))
         .equals(Source::Derived("momentum, restitution 1 and Coulomb's limit throughout (derivation)"), move |done| {
             let exact = (quantity.exact)(&Impact::from_scene(&done[0].scene));
-            Ok(Measured::new(done[0].last(&column)?, exact, exact))
+            Ok(Measurement::new(done[0].last(&column)?, exact, exact))
         })
         .within(computed(
             allowed,

@@ -19,7 +19,7 @@ const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivati
 const DISPERSED: Source =
     Source::Derived("u_tt = (E/ρ) u_xx, fixed-free, slowed by the dispersion of cells of this size (derivation)");
 
-const VELOCITY: Plate = Plate {
+const VELOCITY: ClaimFigure = ClaimFigure {
     name: "velocity",
     title: "Mean velocity of the bar",
     caption: "Two periods; cells along the length in the legend.",
@@ -27,14 +27,14 @@ const VELOCITY: Plate = Plate {
     logarithmic: false,
 };
 
-const VISCOUS_VELOCITY: Plate = Plate {
+const VISCOUS_VELOCITY: ClaimFigure = ClaimFigure {
     name: "viscous",
     title: "Mean velocity of a bar of viscous material",
     caption: "Two periods, in which it loses six tenths of its amplitude.",
     ..VELOCITY
 };
 
-const STRETCHED_VELOCITY: Plate = Plate {
+const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     name: "stretched",
     title: "Mean velocity of a stretched bar that is let go at one end",
     caption: "A period: a front runs to the held end and back, twice. Cells along the length in the legend.",
@@ -90,7 +90,7 @@ fn rest(squared: f64, strain: f64) -> f64 {
 pub(crate) const HELD_PERIOD: f64 = 8.618_916_073_713_347;
 
 /// Returns the mean period between zero crossings (s).
-pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn period(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, velocity) = (&done.series().time, done.column("bar.vx")?);
     let crossings: Vec<f64> = (1..velocity.len())
         .filter(|&at| velocity[at - 1] * velocity[at] < 0.0)
@@ -101,19 +101,19 @@ pub(crate) fn period(done: &Done) -> Result<f64, Missing> {
         .collect();
     match (crossings.first(), crossings.last()) {
         (Some(first), Some(last)) if crossings.len() > 2 => Ok(2.0 * (last - first) / (crossings.len() - 1) as f64),
-        _ => Err(Missing("crossings of zero".to_owned())),
+        _ => Err(MissingData("crossings of zero".to_owned())),
     }
 }
 
 /// A mode of a bar of viscous material: its frequency without viscosity ω (rad/s), its decay rate δ (1/s), and its mean
 /// initial velocity (m/s).
-struct Damped {
+struct DampedMode {
     frequency: f64,
     decay: f64,
     amplitude: f64,
 }
 
-impl Damped {
+impl DampedMode {
     fn from_scene(scene: &Scene) -> Self {
         let (frequency, amplitude) = mode(scene);
         let bar = &scene.bodies[0];
@@ -131,7 +131,7 @@ impl Damped {
 
 /// Returns the largest error of the mode over `time` (s), in units of the initial amplitude (derivation).
 fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
-    let ((squared, strain), Damped { frequency, decay, .. }) = (small(resolution), Damped::from_scene(scene));
+    let ((squared, strain), DampedMode { frequency, decay, .. }) = (small(resolution), DampedMode::from_scene(scene));
     let step = resolution.steps_on_grid(scene).map_or(f64::NAN, |(step, _)| step);
     let (phase, lost, lag) = (frequency * time, decay * time, decay * step);
     25.0 / 96.0 * squared * (phase + 2.0 * lost) + (0.5 * phase + lost) * lag + 0.355 * strain
@@ -166,8 +166,8 @@ fn of_others() -> Vec<Claim> {
             .series(|done| samples(done, "bar.vx"))
             .follows(
                 Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
-                |done, time| Damped::from_scene(&done.scene).velocity(time),
-                |done| Damped::from_scene(&done.scene).amplitude,
+                |done, time| DampedMode::from_scene(&done.scene).velocity(time),
+                |done| DampedMode::from_scene(&done.scene).amplitude,
             )
             .within(computed(
                 off,
@@ -221,7 +221,7 @@ fn claims() -> Vec<Claim> {
                 .run(run(level))
                 .equals(DISPERSED, move |done| {
                     let exact = 2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared));
-                    Ok(Measured::new(period(&done[0])?, exact, exact))
+                    Ok(Measurement::new(period(&done[0])?, exact, exact))
                 })
                 .within(computed(rest(squared, strain), REST))
                 .refuses(softer())
@@ -235,7 +235,7 @@ fn claims() -> Vec<Claim> {
                 Source::Derived("u_tt = ((K + 4G/3)/ρ) u_xx, fixed-free, slowed by the grid's dispersion (derivation)"),
                 move |done| {
                     let exact = HELD_PERIOD * (1.0 + slower(squared));
-                    Ok(Measured::new(period(&done[0])?, exact, exact))
+                    Ok(Measurement::new(period(&done[0])?, exact, exact))
                 },
             )
             .within(computed(rest(squared, strain), REST))
@@ -273,7 +273,7 @@ fn claims() -> Vec<Claim> {
             .run(run(LEVELS[1]))
             .holds("conservation of energy", |done| {
                 let energy = done[0].column("all.total_energy")?;
-                Ok(Measured::drift(&done[0].series().time, energy, energy[0]))
+                Ok(Measurement::drift(&done[0].series().time, energy, energy[0]))
             })
             .within(computed(
                 8.0 / (9.0 * PI) * strain + Resolution::COURANT.powi(2) * squared,

@@ -3,25 +3,30 @@
 use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use crate::registry;
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{Lane, Subject};
+use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::solver::Method;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-pub(crate) fn subjects() -> Vec<Subject> {
+pub(crate) fn subjects() -> Vec<TargetQuantity> {
     let Some(case) = registry::by_name("vibrating-bar") else { return Vec::new() };
-    let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| Subject {
+    let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| TargetQuantity {
         case,
         variant,
         quantity: quantity.to_owned(),
         unit: "s",
         source: source.to_owned(),
         measure: Arc::new(move |done| {
-            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let exact = exact(&done.scene);
-            Ok(Measured::new(period(done)?, exact, exact))
+            Ok(Measurement::new(period(done)?, exact, exact))
         }),
-        lanes: vec![Lane { method: Method::Grid, knobs: String::new(), prepare: None, about: LEVELS[1].resolution }],
+        lanes: vec![SolverSetup {
+            method: Method::Grid,
+            knobs: String::new(),
+            prepare: None,
+            about: LEVELS[1].resolution,
+        }],
     };
     vec![
         target(PLAIN, "period", "2π/(β√(E/ρ)) (derivation)", |scene| 2.0 * PI / mode(scene).0),

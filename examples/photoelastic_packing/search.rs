@@ -27,7 +27,7 @@ struct Times {
 
 /// Wall motion as strains of the initial box.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Imposed {
+pub(crate) struct WallStrains {
     /// Inward vertical strain up to stage A.
     pub(crate) strain: f64,
     /// Outward horizontal strain over the vertical strain.
@@ -79,7 +79,7 @@ impl<'s> Search<'s> {
     }
 
     /// Returns the scene with this wall motion.
-    pub(crate) fn driven(&self, imposed: &Imposed) -> Scene {
+    pub(crate) fn driven(&self, imposed: &WallStrains) -> Scene {
         let mut scene = self.scene.clone();
         let ([width, height], times) = (size(self.scene), self.times);
         let ends = 0.5 * imposed.strain * height / times.stop;
@@ -96,18 +96,18 @@ impl<'s> Search<'s> {
     }
 
     /// Finds the wall motion.
-    pub(crate) fn impose(&self) -> Result<Imposed, Box<dyn Error>> {
+    pub(crate) fn impose(&self) -> Result<WallStrains, Box<dyn Error>> {
         let a = self.to_a()?;
         self.to_b(a)
     }
 
     /// Finds stage A at a strain ratio: the strain with the required mean overlap.
-    fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(Imposed, Stage)>, Box<dyn Error>> {
-        let at = |strain: f64| -> Result<(Imposed, Stage), Box<dyn Error>> {
-            let imposed = Imposed { strain, ratio, further: 0.0 };
+    fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(WallStrains, Stage)>, Box<dyn Error>> {
+        let at = |strain: f64| -> Result<(WallStrains, Stage), Box<dyn Error>> {
+            let imposed = WallStrains { strain, ratio, further: 0.0 };
             Ok((imposed, Stage::from_snapshot(&(self.manner.run)(&self.driven(&imposed), self.times.a)?)))
         };
-        let off = |(_, stage): &(Imposed, Stage)| stage.overlap - OVERLAP;
+        let off = |(_, stage): &(WallStrains, Stage)| stage.overlap - OVERLAP;
         let (mut low, mut of_low, mut high) = (0.0, -OVERLAP, at(guess)?);
         while off(&high) < 0.0 {
             (low, of_low) = (high.0.strain, off(&high));
@@ -133,8 +133,8 @@ impl<'s> Search<'s> {
 
     /// Finds stage A. The strain ratio increases from the first one until F_H/F_V falls below the required value; an
     /// interpolation between the last two ratios follows.
-    fn to_a(&self) -> Result<(Imposed, Stage), Box<dyn Error>> {
-        let mut before: Option<(Imposed, Stage)> = None;
+    fn to_a(&self) -> Result<(WallStrains, Stage), Box<dyn Error>> {
+        let mut before: Option<(WallStrains, Stage)> = None;
         for fifth in self.manner.first..10 {
             let guess = before.map_or(1e-3, |(imposed, _)| imposed.strain);
             let Some(now) = self.at_overlap(0.2 * f64::from(fifth), guess)? else { break };
@@ -151,10 +151,10 @@ impl<'s> Search<'s> {
 
     fn between(
         &self,
-        mut above: (Imposed, Stage),
-        mut below: (Imposed, Stage),
-    ) -> Result<(Imposed, Stage), Box<dyn Error>> {
-        let off = |(_, stage): &(Imposed, Stage)| (stage.ratio() - RATIO).abs();
+        mut above: (WallStrains, Stage),
+        mut below: (WallStrains, Stage),
+    ) -> Result<(WallStrains, Stage), Box<dyn Error>> {
+        let off = |(_, stage): &(WallStrains, Stage)| (stage.ratio() - RATIO).abs();
         let mut best = if off(&above) < off(&below) { above } else { below };
         for _ in 0..10 {
             if off(&best) < NEAR_IN_RATIO {
@@ -174,7 +174,7 @@ impl<'s> Search<'s> {
     }
 
     /// Finds the strain from stage A at which F_V has the required growth: first while the walls move, then at rest.
-    fn to_b(&self, (a, of_a): (Imposed, Stage)) -> Result<Imposed, Box<dyn Error>> {
+    fn to_b(&self, (a, of_a): (WallStrains, Stage)) -> Result<WallStrains, Box<dyn Error>> {
         let alone = if self.manner.relaxes {
             Stage::from_snapshot(&(self.manner.run)(&self.driven(&a), self.times.b)?)
         } else {
@@ -186,7 +186,7 @@ impl<'s> Search<'s> {
             None => self.on_the_way(&a, &grown)?,
         };
         let at = |further: f64| -> Result<(f64, f64), Box<dyn Error>> {
-            let scene = self.driven(&Imposed { further, ..a });
+            let scene = self.driven(&WallStrains { further, ..a });
             Ok((further, grown(&Stage::from_snapshot(&(self.manner.run)(&scene, self.times.b)?))))
         };
         let (mut low, mut high) = ((0.0, 1.0 - GROWTH), at(guess)?);
@@ -209,15 +209,15 @@ impl<'s> Search<'s> {
             }
             if middle.1 < 0.0 { low = middle } else { high = middle }
         }
-        Ok(Imposed { further: best.0, ..a })
+        Ok(WallStrains { further: best.0, ..a })
     }
 
     /// Returns the strain from stage A at which F_V has the required growth while the walls move.
-    fn on_the_way(&self, a: &Imposed, grown: &dyn Fn(&Stage) -> f64) -> Result<f64, Box<dyn Error>> {
+    fn on_the_way(&self, a: &WallStrains, grown: &dyn Fn(&Stage) -> f64) -> Result<f64, Box<dyn Error>> {
         let times = self.times;
         let mut found = None;
         for most in [0.002, 0.01, 0.05] {
-            let scene = self.driven(&Imposed { further: most, ..*a });
+            let scene = self.driven(&WallStrains { further: most, ..*a });
             let every = 2e-3 * (times.stop_again - times.a);
             watch(&scene, times.stop_again, every, |snapshot| {
                 let part = (snapshot.time - times.a) / (times.stop_again - times.a);

@@ -5,7 +5,7 @@ use crate::column::{COLUMNS, Column, Grains};
 use crate::contact_stress::{Stress, tells_interval};
 use crate::element::{Element, elements_moving, interpolated, mean_grain};
 use crate::grid::Grid;
-use crate::mask::{Masked, Masks};
+use crate::mask::{MaskReasons, Masks};
 use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
 use grainbench_scene::record::Snapshot;
@@ -22,7 +22,7 @@ pub struct Frame {
     /// Elements in the order of [`Grid::place`].
     pub elements: Vec<Element>,
     /// For each element, the reasons for its exclusion from means, if any.
-    pub masked: Vec<Masked>,
+    pub masked: Vec<MaskReasons>,
     /// Number of grains or points whose centre is in no cell.
     pub outside: usize,
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// Reasons for the exclusion of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Masked {
+pub struct MaskReasons {
     /// The cell has too few members.
     pub few: bool,
     /// The cell is at the free surface: the packing fraction of it or of the cell above is below that of the bulk.
@@ -19,7 +19,7 @@ pub struct Masked {
     pub still: bool,
 }
 
-impl Masked {
+impl MaskReasons {
     /// Returns true if the cell is excluded for any reason.
     #[must_use]
     pub const fn any(self) -> bool {
@@ -80,7 +80,7 @@ impl Orifice {
 impl Masks {
     /// Returns the masks of all cells of a snapshot.
     #[must_use]
-    pub fn apply(&self, elements: &[Element], grid: &Grid) -> Vec<Masked> {
+    pub fn apply(&self, elements: &[Element], grid: &Grid) -> Vec<MaskReasons> {
         let (up, high) = self.up;
         let bulk = |cell: usize| elements[cell].packing_fraction >= self.surface;
         let above = |at: [usize; 3]| {
@@ -92,7 +92,7 @@ impl Masks {
             let at = grid.at(cell);
             let at_side = |axis: usize| at[axis] == 0 || at[axis] + 1 == grid.count[axis];
             let top = if high { at[up] + 1 == grid.count[up] } else { at[up] == 0 };
-            Masked {
+            MaskReasons {
                 few: elements[cell].motion.members < self.fewest,
                 surface: !bulk(cell) || above(at).is_some_and(|over| !bulk(over)),
                 // The upper end of the grid is not a wall: it is a free surface, or a lid that applies pressure.

@@ -13,7 +13,7 @@ const BLUR: f64 = 1.3;
 
 /// Point that is nearest to a pixel.
 #[derive(Clone, Copy)]
-struct Nearest {
+struct NearestPoint {
     /// Squared distance, in widths of the point.
     distance: f64,
     point: u32,
@@ -38,10 +38,10 @@ pub(crate) fn at_pixels(
     value: impl Fn(&PointState) -> [f64; 3],
 ) -> Vec<Option<Material>> {
     let pixels = view.width as usize * view.height as usize;
-    let mut nearest = vec![Nearest { distance: REACH * REACH, point: u32::MAX }; pixels];
+    let mut nearest = vec![NearestPoint { distance: REACH * REACH, point: u32::MAX }; pixels];
     lay(snapshot, view, |at, distance, point| {
         if distance < nearest[at].distance {
-            nearest[at] = Nearest { distance, point };
+            nearest[at] = NearestPoint { distance, point };
         }
     });
     let owner = |at: usize| snapshot.points.get(nearest[at].point as usize).map(|point| point.owner);

@@ -156,9 +156,9 @@ fn a_lattice_under_strain_has_its_stress() {
 }
 
 /// Generator of pseudo-random numbers, uniform from 0 to 1 and normal.
-struct Odd(u64);
+struct RandomNumbers(u64);
 
-impl Odd {
+impl RandomNumbers {
     fn even(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 11) as f64) / (1_u64 << 53) as f64
@@ -176,7 +176,7 @@ impl Odd {
 
 #[test]
 fn a_field_that_is_linear_has_its_gradient_and_leaves_nothing() {
-    let mut odd = Odd(1);
+    let mut odd = RandomNumbers(1);
     let size = Vector3::new(7.5, 8.0, 7.5);
     let gradient = Matrix3::new(0.3, -1.2, 0.4, 0.7, -0.4, 0.1, 0.2, -0.6, 0.15);
     let grid = Grid::filling((Vector3::zeros(), size), Vector3::new(2.5, 8.0, 2.5));
@@ -202,7 +202,7 @@ fn noise_gives_the_rate_of_shear_that_it_must() {
         let (a, b) = (12.0 / (count * size.x * size.x), 12.0 / (count * size.y * size.y));
         let exact = ((10.0 / 3.0 * a + 5.0 / 3.0 * b) * count / (count - 5.0)).sqrt();
         assert!((exact - known).abs() < 1e-3);
-        let (mut square, mut residual, mut odd) = (0.0, 0.0, Odd(7));
+        let (mut square, mut residual, mut odd) = (0.0, 0.0, RandomNumbers(7));
         const TIMES: i32 = 4000;
         for _ in 0..TIMES {
             let mover =
@@ -222,7 +222,7 @@ fn noise_gives_the_rate_of_shear_that_it_must() {
 /// Σ φ V = N π/6, Σ n = N, Σ V T = Σ over grains, for any grid and origin.
 #[test]
 fn no_choice_of_cells_gains_or_loses_anything() {
-    let mut odd = Odd(3);
+    let mut odd = RandomNumbers(3);
     let high = Vector3::new(10.0, 8.0, 12.0);
     let mut grains: Vec<GrainState> = (1..=300).map(|id| grain(id, odd.place(high))).collect();
     grains.iter_mut().for_each(|grain| grain.radius = 0.3 + 0.4 * odd.even());
@@ -275,7 +275,7 @@ fn without_contacts_there_is_no_stress() {
 /// F = exp(L t).
 #[test]
 fn tracers_move_and_deform_with_the_flow() {
-    let mut odd = Odd(5);
+    let mut odd = RandomNumbers(5);
     let (high, rate, step) = (Vector3::new(10.0, 8.0, 10.0), 0.08, 0.05);
     let at = |start: &Vector3<f64>, time: f64| {
         let stretch = (rate * time).exp();

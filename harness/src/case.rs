@@ -67,11 +67,11 @@ pub struct Home {
     /// Reads grains for a scene from a data file.
     pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
     /// Cache of scenes with many grains, shared by all callers. None if the scene files can change during the process.
-    pub made: Option<&'static Made>,
+    pub made: Option<&'static SceneCache>,
 }
 
 /// Cache of scenes with many grains, by case and variant. Cases read each other's scenes, and parsing one takes time.
-pub type Made = Mutex<Vec<(&'static str, String, Scene)>>;
+pub type SceneCache = Mutex<Vec<(&'static str, String, Scene)>>;
 
 /// Smallest number of grains for which a scene is cached.
 const MANY: usize = 1000;

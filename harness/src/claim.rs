@@ -21,19 +21,19 @@
 //!     .refuses(Control::scene("gravity a hundredth too large", |scene| scene.gravity *= 1.01));
 //! ```
 
-use crate::control::{Control, Red};
-use crate::course::{Plate, Trace};
+use crate::control::{Control, FailureMode};
+use crate::course::{ClaimFigure, Trace};
 use crate::evidence::Evidence;
-use crate::expect::{Bound, Expected, Measured};
-use crate::run::{Done, Missing, Run, Set, Standing};
+use crate::expect::{Bound, ExpectedValue, Measurement};
+use crate::run::{ExpectedOutcome, FinishedRun, MissingData, Run, Set};
 use crate::scope::Scope;
-use crate::source::{Cited, Source};
+use crate::source::{CitedNumber, Source};
 use crate::tolerance::{Tolerance, exactly};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
 /// Reads the measured value from the records of a claim's runs, in the order of the runs.
-pub type Measure = Arc<dyn Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync>;
+pub type Measure = Arc<dyn Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync>;
 
 /// Kind of expectation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,14 +76,14 @@ pub struct Claim {
     /// Measured and expected curves, if the claim compares curves.
     pub trace: Option<Trace>,
     /// Figure that shows the claim, and the label of its curve.
-    pub drawn: Option<(&'static Plate, String)>,
+    pub drawn: Option<(&'static ClaimFigure, String)>,
     /// Tolerance for scenes of the same kind with other parameters; none if it is not known.
-    pub elsewhere: Option<Elsewhere>,
+    pub elsewhere: Option<ParameterVariation>,
 }
 
 /// A claim about every scene of one kind, whatever its parameters. The tolerance is computed from the scene.
 #[derive(Clone)]
-pub struct Elsewhere {
+pub struct ParameterVariation {
     /// Measured quantity, in words.
     pub quantity: &'static str,
     /// Largest |error| that passes.
@@ -107,7 +107,7 @@ pub struct Quantity {
 
 /// A claim with an expectation and without a tolerance.
 #[must_use = "a claim ends with what it refuses"]
-pub struct Expecting {
+pub struct ClaimWithExpectation {
     pub(crate) quantity: Quantity,
     pub(crate) expectation: Expectation,
     pub(crate) source: Source,
@@ -117,8 +117,8 @@ pub struct Expecting {
 
 /// A claim without a negative control.
 #[must_use = "a claim ends with what it refuses"]
-pub struct Tolerated {
-    expecting: Expecting,
+pub struct ClaimWithTolerance {
+    expecting: ClaimWithExpectation,
     tolerance: Tolerance,
 }
 
@@ -139,28 +139,28 @@ impl Quantity {
         self,
         expectation: Expectation,
         source: Source,
-        measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
-        Expecting { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
+        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
+        ClaimWithExpectation { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
     }
 
     /// Expects the value that the source gives for the scene, at one time or over time.
     pub fn equals(
         self,
         source: Source,
-        measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         self.expects(Expectation::Equals, source, measure)
     }
 
     /// Expects a number from a cited work. The error is in units of `scale`.
     pub fn equals_cited(
         self,
-        cited: Cited,
+        cited: CitedNumber,
         scale: f64,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
-        let measure = move |done: &[Done]| Ok(Measured::new(value(done)?, cited.value, scale));
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
+        let measure = move |done: &[FinishedRun]| Ok(Measurement::new(value(done)?, cited.value, scale));
         self.expects(Expectation::Equals, cited.source(), measure)
     }
 
@@ -168,8 +168,8 @@ impl Quantity {
     pub fn holds(
         self,
         law: &'static str,
-        measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         self.expects(Expectation::Holds, Source::Derived(law), measure)
     }
 
@@ -177,8 +177,8 @@ impl Quantity {
     pub fn agrees(
         self,
         source: Source,
-        measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         self.expects(Expectation::Agrees, source, measure)
     }
 
@@ -187,9 +187,11 @@ impl Quantity {
         expectation: Expectation,
         bound: Bound,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
-        let measure = move |done: &[Done]| Ok(Measured::new(value(done)?, Expected::Bound(bound), scale_of(bound)));
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
+        let measure = move |done: &[FinishedRun]| {
+            Ok(Measurement::new(value(done)?, ExpectedValue::Bound(bound), scale_of(bound)))
+        };
         self.expects(expectation, source, measure)
     }
 
@@ -198,8 +200,8 @@ impl Quantity {
         self,
         bound: f64,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::AtLeast(bound);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
@@ -209,8 +211,8 @@ impl Quantity {
         self,
         bound: f64,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::AtMost(bound);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
@@ -220,8 +222,8 @@ impl Quantity {
         self,
         band: [f64; 2],
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::Between(band);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
@@ -231,8 +233,8 @@ impl Quantity {
         self,
         order: f64,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::Order(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
@@ -242,8 +244,8 @@ impl Quantity {
         self,
         order: f64,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::AtLeast(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
@@ -253,8 +255,8 @@ impl Quantity {
         self,
         order: f64,
         source: Source,
-        value: impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static,
-    ) -> Expecting {
+        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let bound = Bound::AtMost(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
@@ -264,10 +266,12 @@ impl Quantity {
     /// The control changes the scene to one that the solver can run. The result is then red.
     #[must_use]
     pub fn refused(self, because: &'static str, control: Control) -> Claim {
-        let refused = |run| Run { standing: Standing::Refused, ..run };
+        let refused = |run| Run { standing: ExpectedOutcome::Refused, ..run };
         let quantity = Self { runs: self.runs.into_iter().map(refused).collect(), ..self };
         quantity
-            .expects(Expectation::Refusal, Source::Derived("what the method is"), |_| Ok(Measured::new(1.0, 0.0, 1.0)))
+            .expects(Expectation::Refusal, Source::Derived("what the method is"), |_| {
+                Ok(Measurement::new(1.0, 0.0, 1.0))
+            })
             .within(exactly(because))
             .refuses(control)
     }
@@ -282,22 +286,23 @@ fn scale_of(bound: Bound) -> f64 {
     }
 }
 
-impl Expecting {
+impl ClaimWithExpectation {
     pub(crate) fn traced(self, trace: Trace) -> Self {
         Self { trace: Some(trace), ..self }
     }
 
     /// Sets the tolerance.
-    pub fn within(self, tolerance: Tolerance) -> Tolerated {
-        Tolerated { expecting: self, tolerance }
+    pub fn within(self, tolerance: Tolerance) -> ClaimWithTolerance {
+        ClaimWithTolerance { expecting: self, tolerance }
     }
 }
 
-impl Tolerated {
+impl ClaimWithTolerance {
     /// Sets the negative control, which must make the claim fail by value.
     #[must_use]
     pub fn refuses(self, control: Control) -> Claim {
-        let Self { expecting: Expecting { quantity, expectation, source, measure, trace }, tolerance } = self;
+        let Self { expecting: ClaimWithExpectation { quantity, expectation, source, measure, trace }, tolerance } =
+            self;
         let Quantity { quantity, unit, runs } = quantity;
         let (scope, drawn, elsewhere) = (Scope::Named, None, None);
         Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn, elsewhere }
@@ -307,7 +312,7 @@ impl Tolerated {
     /// measured.
     #[must_use]
     pub fn breaks(self, control: Control) -> Claim {
-        self.refuses(Control { red: Red::Breaking, ..control })
+        self.refuses(Control { red: FailureMode::Breaking, ..control })
     }
 }
 
@@ -338,12 +343,12 @@ impl Claim {
         because: &'static str,
         allowed: impl Fn(&Scene) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Self { elsewhere: Some(Elsewhere { quantity, allowed: Arc::new(allowed), because }), ..self }
+        Self { elsewhere: Some(ParameterVariation { quantity, allowed: Arc::new(allowed), because }), ..self }
     }
 
     /// Plots the measured and the expected curve of the claim in a figure.
     #[must_use]
-    pub fn drawn(self, plate: &'static Plate, label: impl Into<String>) -> Self {
+    pub fn drawn(self, plate: &'static ClaimFigure, label: impl Into<String>) -> Self {
         Self { drawn: Some((plate, label.into())), ..self }
     }
 
@@ -372,7 +377,7 @@ impl Claim {
 
     /// Returns the expected outcome, which is the expected outcome of the first run.
     #[must_use]
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> ExpectedOutcome {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Wrong physics of a negative control.
 #[derive(Clone)]
-pub enum Wrong {
+pub enum WrongPhysics {
     /// The solver gets a wrong scene.
     Scene(Change),
     /// In a comparison with another program, only our solver gets a wrong scene.
@@ -30,14 +30,14 @@ pub enum Wrong {
 /// Way in which a claim fails under wrong physics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Red {
+pub enum FailureMode {
     /// By value: the value is finite and outside the tolerance.
     Value,
     /// By error: wrong physics ends the run with an error, or the quantity cannot be measured.
     Breaking,
 }
 
-impl Red {
+impl FailureMode {
     /// Returns the way as one word.
     #[must_use]
     pub const fn word(self) -> &'static str {
@@ -54,16 +54,16 @@ pub struct Control {
     /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
     /// Wrong physics.
-    pub wrong: Wrong,
+    pub wrong: WrongPhysics,
     /// Way in which the claim must fail.
-    pub red: Red,
+    pub red: FailureMode,
     /// Smallest tier in which a stored run is repeated under this control.
     pub set: Set,
 }
 
 impl Control {
-    const fn new(name: &'static str, wrong: Wrong) -> Self {
-        Self { name, wrong, red: Red::Value, set: Set::Main }
+    const fn new(name: &'static str, wrong: WrongPhysics) -> Self {
+        Self { name, wrong, red: FailureMode::Value, set: Set::Main }
     }
 
     /// Repeats stored runs under this control only in the long tier.
@@ -75,13 +75,13 @@ impl Control {
     /// Returns a control that changes the tables read from snapshots, such as swapped stresses or rotated angles.
     #[must_use]
     pub const fn misread(name: &'static str, change: fn(&mut [Table])) -> Self {
-        Self::new(name, Wrong::Misread(change))
+        Self::new(name, WrongPhysics::Misread(change))
     }
 
     /// Returns a control with a wrong scene.
     #[must_use]
     pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
-        Self::new(name, Wrong::Scene(Arc::new(change)))
+        Self::new(name, WrongPhysics::Scene(Arc::new(change)))
     }
 
     /// Returns a control that switches off an effect of the scene.
@@ -93,19 +93,19 @@ impl Control {
     /// Returns a control with a wrong scene for our own side of a comparison with another program.
     #[must_use]
     pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
-        Self::new(name, Wrong::Ours(Arc::new(change)))
+        Self::new(name, WrongPhysics::Ours(Arc::new(change)))
     }
 
     /// Returns a control with a solver whose contacts lose their history.
     #[must_use]
     pub const fn forgets_history() -> Self {
-        Self::new("contacts forget their history", Wrong::Solver(Defect::ForgetsHistory))
+        Self::new("contacts forget their history", WrongPhysics::Solver(Defect::ForgetsHistory))
     }
 
     /// Returns a control with another solver.
     #[must_use]
     pub const fn solver(name: &'static str, solver: &'static str) -> Self {
-        Self::new(name, Wrong::OtherSolver(solver))
+        Self::new(name, WrongPhysics::OtherSolver(solver))
     }
 
     /// Returns the control of a known error: a solver without this error, at its own resolution. The claim must then
@@ -118,12 +118,12 @@ impl Control {
     /// Returns a control with another variant of the scene.
     #[must_use]
     pub const fn variant(name: &'static str, variant: &'static str) -> Self {
-        Self::new(name, Wrong::OtherVariant(variant))
+        Self::new(name, WrongPhysics::OtherVariant(variant))
     }
 
     /// Returns a control with another solver at its own resolution.
     #[must_use]
     pub const fn run(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
-        Self::new(name, Wrong::OtherRun(solver, resolution))
+        Self::new(name, WrongPhysics::OtherRun(solver, resolution))
     }
 }

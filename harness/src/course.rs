@@ -3,11 +3,11 @@
 //! The figure of such a claim plots the data that the claim compares.
 
 use crate::case::Case;
-use crate::claim::{Claim, Expectation, Expecting, Quantity};
-use crate::expect::{Bound, Expected, Measured};
+use crate::claim::{Claim, ClaimWithExpectation, Expectation, Quantity};
+use crate::expect::{Bound, ExpectedValue, Measurement};
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::measure::slope;
-use crate::run::{Done, Missing};
+use crate::run::{FinishedRun, MissingData};
 use crate::runner::Runner;
 use crate::source::Source;
 use grainbench_scene::solver::RunError;
@@ -21,7 +21,7 @@ const DRAWN: usize = 300;
 
 /// The curves of a claim: measured points, and expected points if the expectation is a curve.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Traced {
+pub struct ClaimCurves {
     /// Measured points.
     pub measured: Points,
     /// Expected points.
@@ -31,11 +31,11 @@ pub struct Traced {
 }
 
 /// Reads both curves from the runs of a claim.
-pub type Trace = Arc<dyn Fn(&[Done]) -> Result<Traced, Missing> + Send + Sync>;
+pub type Trace = Arc<dyn Fn(&[FinishedRun]) -> Result<ClaimCurves, MissingData> + Send + Sync>;
 
 /// Figure in which a claim is plotted. Claims with the same figure share its graph.
 #[derive(Debug)]
-pub struct Plate {
+pub struct ClaimFigure {
     /// Name of the figure.
     pub name: &'static str,
     /// Title.
@@ -52,7 +52,7 @@ pub struct Plate {
 ///
 /// # Errors
 /// When the record lacks the column.
-pub fn samples(done: &Done, column: &str) -> Result<Points, Missing> {
+pub fn samples(done: &FinishedRun, column: &str) -> Result<Points, MissingData> {
     Ok(done.series().time.iter().copied().zip(done.column(column)?.iter().copied()).collect())
 }
 
@@ -60,7 +60,7 @@ pub fn samples(done: &Done, column: &str) -> Result<Points, Missing> {
 ///
 /// # Errors
 /// When the record lacks the column.
-pub fn from_start(done: &Done, column: &str) -> Result<Points, Missing> {
+pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingData> {
     let mut points = samples(done, column)?;
     let start = points[0].1;
     points.iter_mut().for_each(|(_, value)| *value -= start);
@@ -68,30 +68,33 @@ pub fn from_start(done: &Done, column: &str) -> Result<Points, Missing> {
 }
 
 /// Reads a value from a run.
-type Read<T> = Arc<dyn Fn(&Done) -> Result<T, Missing> + Send + Sync>;
+type RunReader<T> = Arc<dyn Fn(&FinishedRun) -> Result<T, MissingData> + Send + Sync>;
 
 /// A claim about a time series, without an expectation.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Series {
     quantity: Quantity,
-    read: Read<Points>,
+    read: RunReader<Points>,
 }
 
 /// A claim about an error over resolution levels, without an expectation.
 #[must_use = "a claim ends with what it refuses"]
 pub struct Sweep {
     quantity: Quantity,
-    read: Read<(f64, f64)>,
+    read: RunReader<(f64, f64)>,
 }
 
 impl Quantity {
     /// Reads a value at every sample of the first run.
-    pub fn series(self, read: impl Fn(&Done) -> Result<Points, Missing> + Send + Sync + 'static) -> Series {
+    pub fn series(self, read: impl Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync + 'static) -> Series {
         Series { quantity: self, read: Arc::new(read) }
     }
 
     /// Reads from every run the swept parameter, such as a time step or a cell size, and the error.
-    pub fn sweep(self, read: impl Fn(&Done) -> Result<(f64, f64), Missing> + Send + Sync + 'static) -> Sweep {
+    pub fn sweep(
+        self,
+        read: impl Fn(&FinishedRun) -> Result<(f64, f64), MissingData> + Send + Sync + 'static,
+    ) -> Sweep {
         Sweep { quantity: self, read: Arc::new(read) }
     }
 }
@@ -101,28 +104,28 @@ impl Series {
     pub fn follows(
         self,
         source: Source,
-        exact: impl Fn(&Done, f64) -> f64 + Send + Sync + 'static,
-        scale: impl Fn(&Done) -> f64 + Send + Sync + 'static,
-    ) -> Expecting {
+        exact: impl Fn(&FinishedRun, f64) -> f64 + Send + Sync + 'static,
+        scale: impl Fn(&FinishedRun) -> f64 + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
         let read = self.read;
         let trace: Trace = Arc::new(move |done| {
             let measured = read(&done[0])?;
             let expected = measured.iter().map(|&(time, _)| (time, exact(&done[0], time))).collect();
-            Ok(Traced { measured, expected, slope: None })
+            Ok(ClaimCurves { measured, expected, slope: None })
         });
         let compared = Arc::clone(&trace);
-        let compare = move |done: &[Done]| {
-            let Traced { measured, expected, .. } = compared(done)?;
+        let compare = move |done: &[FinishedRun]| {
+            let ClaimCurves { measured, expected, .. } = compared(done)?;
             let (time, values): (Vec<f64>, Vec<f64>) = measured.into_iter().unzip();
             let expected: Vec<f64> = expected.into_iter().map(|(_, value)| value).collect();
-            Ok(Measured::worst_of(&time, &values, &expected, scale(&done[0])))
+            Ok(Measurement::worst_of(&time, &values, &expected, scale(&done[0])))
         };
         self.quantity.equals(source, compare).traced(trace)
     }
 }
 
 impl Sweep {
-    fn falls(self, bound: Bound, source: Source, power: Option<f64>) -> Expecting {
+    fn falls(self, bound: Bound, source: Source, power: Option<f64>) -> ClaimWithExpectation {
         let fitted = Arc::clone(&self.read);
         let read = self.read;
         let trace: Trace = Arc::new(move |done| {
@@ -131,35 +134,35 @@ impl Sweep {
             let ends = measured.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
             let widest = measured.iter().map(|point| point.0).fold(0.0, f64::max);
             let guide = power.zip(ends).map(|(power, (x, y))| vec![(x, y), (widest, y * (widest / x).powf(power))]);
-            Ok(Traced { measured, expected: guide.unwrap_or_default(), slope: power })
+            Ok(ClaimCurves { measured, expected: guide.unwrap_or_default(), slope: power })
         });
-        let measure = move |done: &[Done]| {
-            let points: Result<Points, Missing> = done.iter().map(|done| fitted(done)).collect();
-            Ok(Measured::new(slope(&points?), Expected::Bound(bound), 1.0))
+        let measure = move |done: &[FinishedRun]| {
+            let points: Result<Points, MissingData> = done.iter().map(|done| fitted(done)).collect();
+            Ok(Measurement::new(slope(&points?), ExpectedValue::Bound(bound), 1.0))
         };
         self.quantity.expects(Expectation::Converges(bound), source, measure).traced(trace)
     }
 
     /// Expects a power law from the source that is no order of convergence. Errors are in units of `scale`.
-    pub fn scales(self, power: f64, scale: f64, source: Source) -> Expecting {
+    pub fn scales(self, power: f64, scale: f64, source: Source) -> ClaimWithExpectation {
         let expecting = self.falls(Bound::Order(power), source, Some(power));
         let fitted = Arc::clone(&expecting.measure);
-        let measure = Arc::new(move |done: &[Done]| Ok(Measured::new(fitted(done)?.value, power, scale)));
-        Expecting { expectation: Expectation::Equals, measure, ..expecting }
+        let measure = Arc::new(move |done: &[FinishedRun]| Ok(Measurement::new(fitted(done)?.value, power, scale)));
+        ClaimWithExpectation { expectation: Expectation::Equals, measure, ..expecting }
     }
 
     /// Expects this order of convergence, fitted over all runs.
-    pub fn converges(self, order: f64, source: Source) -> Expecting {
+    pub fn converges(self, order: f64, source: Source) -> ClaimWithExpectation {
         self.falls(Bound::Order(order), source, Some(order))
     }
 
     /// Expects at least this order of convergence.
-    pub fn converges_at_least(self, order: f64, source: Source) -> Expecting {
+    pub fn converges_at_least(self, order: f64, source: Source) -> ClaimWithExpectation {
         self.falls(Bound::AtLeast(order), source, Some(order))
     }
 
     /// Expects at most this order of convergence, or none.
-    pub fn converges_at_most(self, order: f64, source: Source) -> Expecting {
+    pub fn converges_at_most(self, order: f64, source: Source) -> ClaimWithExpectation {
         self.falls(Bound::AtMost(order), source, None)
     }
 }
@@ -169,10 +172,10 @@ impl Sweep {
 /// # Errors
 /// When a run fails. Claims whose records lack the quantity are left out.
 pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunError> {
-    let mut graphs: Vec<(&'static Plate, Vec<Curve>, Vec<Curve>)> = Vec::new();
+    let mut graphs: Vec<(&'static ClaimFigure, Vec<Curve>, Vec<Curve>)> = Vec::new();
     for claim in claims {
         let (Some((plate, label)), Some(trace)) = (&claim.drawn, &claim.trace) else { continue };
-        let done: Vec<Done> = claim.runs.iter().map(|run| runner.run(run)).collect::<Result<_, _>>()?;
+        let done: Vec<FinishedRun> = claim.runs.iter().map(|run| runner.run(run)).collect::<Result<_, _>>()?;
         let Ok(traced) = trace(&done) else { continue };
         let at = graphs.iter().position(|(drawn, ..)| drawn.name == plate.name).unwrap_or_else(|| {
             graphs.push((plate, Vec::new(), Vec::new()));
@@ -191,7 +194,7 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
             }
         }
     }
-    let figure = |(plate, measured, mut expected): (&Plate, Vec<Curve>, Vec<Curve>)| {
+    let figure = |(plate, measured, mut expected): (&ClaimFigure, Vec<Curve>, Vec<Curve>)| {
         let axis = |label| if plate.logarithmic { Axis::log(label) } else { Axis::linear(label) };
         if let ([exact], [_, _, ..], false) = (expected.as_mut_slice(), measured.as_slice(), plate.logarithmic) {
             exact.label = exact.label.rsplit(", ").next().unwrap_or_default().to_owned();

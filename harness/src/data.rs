@@ -11,19 +11,19 @@ pub struct Data {
     /// Required files, their origin, and the way to supply them, in words.
     pub needs: &'static str,
     /// Makes the scene from the files in a directory.
-    pub scene: fn(&Path) -> Result<Scene, NotMade>,
+    pub scene: fn(&Path) -> Result<Scene, SceneDataError>,
 }
 
 /// Reason why a scene cannot be made: the expected files and the files found.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NotMade {
+pub enum SceneDataError {
     /// The directory lacks the files.
     Absent(String),
     /// The files in the directory cannot be used.
     Wrong(String),
 }
 
-impl NotMade {
+impl SceneDataError {
     /// Returns the reason in words.
     #[must_use]
     pub fn into_words(self) -> String {

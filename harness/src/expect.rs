@@ -6,7 +6,7 @@ use std::fmt;
 /// Expectation of a result. It is never our own result for the same quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Expected {
+pub enum ExpectedValue {
     /// A single value.
     Value(f64),
     /// A bound, a band or an order.
@@ -27,7 +27,7 @@ pub enum Bound {
     Order(f64),
 }
 
-impl Expected {
+impl ExpectedValue {
     /// Returns the signed distance from the expectation. For a bound or a band it is the distance beyond it, and 0 if
     /// it holds. NaN gives NaN.
     #[must_use]
@@ -96,13 +96,13 @@ impl Expected {
     }
 }
 
-impl From<f64> for Expected {
+impl From<f64> for ExpectedValue {
     fn from(value: f64) -> Self {
         Self::Value(value)
     }
 }
 
-impl fmt::Display for Expected {
+impl fmt::Display for ExpectedValue {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.words(|value| value.to_string()))
     }
@@ -110,21 +110,21 @@ impl fmt::Display for Expected {
 
 /// A measured value with its expectation and scale.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct Measurement {
     /// Measured value.
     pub value: f64,
     /// Expectation.
-    pub expected: Expected,
+    pub expected: ExpectedValue,
     /// Scale by which the error is divided.
     pub scale: f64,
     /// Time (s) and signed error of every sample, for a comparison over time. A failure can then report when it began.
     pub course: Vec<(f64, f64)>,
 }
 
-impl Measured {
+impl Measurement {
     /// Returns a single measured value.
     #[must_use]
-    pub fn new(value: f64, expected: impl Into<Expected>, scale: f64) -> Self {
+    pub fn new(value: f64, expected: impl Into<ExpectedValue>, scale: f64) -> Self {
         Self { value, expected: expected.into(), scale, course: Vec::new() }
     }
 
@@ -142,7 +142,7 @@ impl Measured {
         let course: Vec<(f64, f64)> = time.iter().copied().zip(errors).collect();
         let worst = (0..course.len()).max_by(|&a, &b| weight(course[a].1).total_cmp(&weight(course[b].1))).unwrap_or(0);
         let pick = |list: &[f64]| list.get(worst).copied().unwrap_or(f64::NAN);
-        Self { value: pick(values), expected: Expected::Value(pick(expected)), scale, course }
+        Self { value: pick(values), expected: ExpectedValue::Value(pick(expected)), scale, course }
     }
 
     /// Returns the largest change since the first sample, for a series that should be constant.
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn a_bound_is_off_by_how_far_it_is_passed() {
-        let bound = |bound| Expected::Bound(bound);
+        let bound = |bound| ExpectedValue::Bound(bound);
         assert_eq!(bound(Bound::AtLeast(5.0)).off(8.2), 0.0);
         assert_eq!(bound(Bound::AtLeast(5.0)).off(4.0), -1.0);
         assert_eq!(bound(Bound::AtMost(1.0)).off(1.5), 0.5);
@@ -206,16 +206,16 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_is_the_worst() {
-        let measurement = |value| Measured::new(value, 0.0, 1.0);
-        let worst = Measured::worst_among([measurement(1.0), measurement(f64::NAN), measurement(3.0)]);
+        let measurement = |value| Measurement::new(value, 0.0, 1.0);
+        let worst = Measurement::worst_among([measurement(1.0), measurement(f64::NAN), measurement(3.0)]);
         assert!(worst.is_some_and(|worst| worst.value.is_nan()));
-        assert!(Measured::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
+        assert!(Measurement::worst_of(&[0.0, 1.0], &[f64::NAN, 9.0], &[0.0, 0.0], 1.0).value.is_nan());
         // The sign of NaN is arbitrary.
         for nothing in [f64::NAN, -f64::NAN] {
-            let worst = Measured::worst_of(&[0.0, 1.0, 2.0], &[1.0, nothing, 9.0], &[0.0; 3], 1.0);
+            let worst = Measurement::worst_of(&[0.0, 1.0, 2.0], &[1.0, nothing, 9.0], &[0.0; 3], 1.0);
             assert!(worst.value.is_nan() && worst.first_outside(10.0).is_some_and(|words| words.contains("NaN")));
             for order in [[1.0, nothing, 3.0], [nothing, 1.0, 3.0], [1.0, 3.0, nothing]] {
-                assert!(Measured::worst_among(order.map(measurement)).is_some_and(|worst| worst.value.is_nan()));
+                assert!(Measurement::worst_among(order.map(measurement)).is_some_and(|worst| worst.value.is_nan()));
                 assert!(order.into_iter().fold(0.0, larger).is_nan());
             }
         }
@@ -223,11 +223,11 @@ mod tests {
 
     #[test]
     fn an_expectation_is_written_as_what_it_is() {
-        let json = |expected: Expected| serde_json::to_string(&expected).unwrap_or_default();
-        assert_eq!(json(Expected::Value(1.5)), "1.5");
-        assert_eq!(json(Expected::Bound(Bound::AtLeast(5.0))), r#"{"at_least":5.0}"#);
-        assert_eq!(json(Expected::Bound(Bound::Between([1.0, 2.0]))), r#"{"between":[1.0,2.0]}"#);
-        let back: Result<Expected, _> = serde_json::from_str(r#"{"order":2.0}"#);
-        assert!(back.is_ok_and(|back| back == Expected::Bound(Bound::Order(2.0))));
+        let json = |expected: ExpectedValue| serde_json::to_string(&expected).unwrap_or_default();
+        assert_eq!(json(ExpectedValue::Value(1.5)), "1.5");
+        assert_eq!(json(ExpectedValue::Bound(Bound::AtLeast(5.0))), r#"{"at_least":5.0}"#);
+        assert_eq!(json(ExpectedValue::Bound(Bound::Between([1.0, 2.0]))), r#"{"between":[1.0,2.0]}"#);
+        let back: Result<ExpectedValue, _> = serde_json::from_str(r#"{"order":2.0}"#);
+        assert!(back.is_ok_and(|back| back == ExpectedValue::Bound(Bound::Order(2.0))));
     }
 }

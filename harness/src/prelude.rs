@@ -3,11 +3,11 @@
 pub use crate::case::{Case, Home, Level, PLAIN, cells, fraction};
 pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
-pub use crate::course::{Plate, from_start, no_more, samples};
-pub use crate::expect::{Bound, Expected, Measured};
+pub use crate::course::{ClaimFigure, from_start, no_more, samples};
+pub use crate::expect::{Bound, ExpectedValue, Measurement};
 pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::reading::{Reader, Reading, Table};
-pub use crate::run::{Change, Done, Missing, Run};
+pub use crate::run::{Change, FinishedRun, MissingData, Run};
 pub use crate::runner::Runner;
 pub use crate::source::Source;
 pub use crate::tolerance::{

@@ -55,7 +55,7 @@ pub fn lit(value: f64, light: f64) -> u8 {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Stored {
+struct StoredRaster {
     width: u32,
     height: u32,
     levels: String,
@@ -66,13 +66,13 @@ impl Serialize for Raster {
         let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
         let levels = packed.write_all(&self.levels).and_then(|()| packed.finish());
         let levels = STANDARD.encode(levels.map_err(serde::ser::Error::custom)?);
-        Stored { width: self.width, height: self.height, levels }.serialize(to)
+        StoredRaster { width: self.width, height: self.height, levels }.serialize(to)
     }
 }
 
 impl<'de> Deserialize<'de> for Raster {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let Stored { width, height, levels } = Stored::deserialize(from)?;
+        let StoredRaster { width, height, levels } = StoredRaster::deserialize(from)?;
         let pixels = u64::from(width) * u64::from(height);
         if pixels == 0 || pixels > MOST_PIXELS {
             return Err(D::Error::custom(format!("expected 1 to {MOST_PIXELS} pixels, found {width} × {height}")));

@@ -3,7 +3,7 @@
 
 use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{NotStored, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Resolution, RunError, Solver, StorageError, Watch};
 use std::fmt;
 
 /// A named reader of the snapshots of a run.
@@ -105,7 +105,7 @@ impl Watch for Watcher {
         self.reader.is_none()
     }
 
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         match &mut self.reader {
             None => Ok(Some(snapshot)),
             Some(reader) => {

@@ -26,7 +26,7 @@ pub struct Run {
     /// runs.
     pub adjustment: Option<(String, Change)>,
     /// Expected outcome of the result.
-    pub standing: Standing,
+    pub standing: ExpectedOutcome,
     /// Largest |error| of a known error, in units of the claim's scale; a larger one is red.
     pub known_up_to: f64,
     /// Smallest tier to which the run belongs.
@@ -41,7 +41,7 @@ pub struct Run {
 
 /// Provenance of a stored result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Made {
+pub struct ResultOrigin {
     /// Date, program and commit, in words.
     pub words: String,
     /// True if the sources of the solver are those of this program.
@@ -64,7 +64,7 @@ pub enum Set {
 
 /// Expected outcome of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Standing {
+pub enum ExpectedOutcome {
     /// The result passes.
     #[default]
     Passes,
@@ -85,7 +85,7 @@ impl Run {
             solver,
             resolution,
             adjustment: None,
-            standing: Standing::Passes,
+            standing: ExpectedOutcome::Passes,
             known_up_to: f64::INFINITY,
             set: Set::Main,
             aside: false,
@@ -110,7 +110,7 @@ impl Run {
     /// Expects a documented error of the method.
     #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
-        Self { standing: Standing::Known(reason), ..self }
+        Self { standing: ExpectedOutcome::Known(reason), ..self }
     }
 
     /// The run of a known error with a second bound: a larger |error|, in units of the claim's scale, is red.
@@ -191,7 +191,7 @@ impl Run {
 
 /// A finished run: its scene and its output.
 #[derive(Clone, Debug)]
-pub struct Done {
+pub struct FinishedRun {
     /// Scene as the case defines it. Under a negative control, the solver got a wrong scene.
     pub scene: Arc<Scene>,
     /// The record.
@@ -199,20 +199,20 @@ pub struct Done {
     /// Tables read from its snapshots.
     pub tables: Arc<Vec<Table>>,
     /// Provenance of a stored result; none if the run was done now.
-    pub kept: Option<Made>,
+    pub kept: Option<ResultOrigin>,
 }
 
 /// A quantity that the records lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Missing(pub String);
+pub struct MissingData(pub String);
 
-impl fmt::Display for Missing {
+impl fmt::Display for MissingData {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "the record has no {}", self.0)
     }
 }
 
-impl Done {
+impl FinishedRun {
     /// Returns a finished run with a record and no tables.
     #[must_use]
     pub fn new(scene: Arc<Scene>, record: Arc<Record>) -> Self {
@@ -223,8 +223,8 @@ impl Done {
     ///
     /// # Errors
     /// When there is no table with this name.
-    pub fn table(&self, name: &str) -> Result<&Table, Missing> {
-        self.tables.iter().find(|table| table.name == name).ok_or_else(|| Missing(format!("table `{name}`")))
+    pub fn table(&self, name: &str) -> Result<&Table, MissingData> {
+        self.tables.iter().find(|table| table.name == name).ok_or_else(|| MissingData(format!("table `{name}`")))
     }
 
     /// Returns the time series.
@@ -237,10 +237,10 @@ impl Done {
     ///
     /// # Errors
     /// When there is no such column or it is empty.
-    pub fn column(&self, name: &str) -> Result<&[f64], Missing> {
+    pub fn column(&self, name: &str) -> Result<&[f64], MissingData> {
         match self.series().column(name) {
             Some(values) if !values.is_empty() => Ok(values),
-            _ => Err(Missing(format!("column `{name}`"))),
+            _ => Err(MissingData(format!("column `{name}`"))),
         }
     }
 
@@ -248,7 +248,7 @@ impl Done {
     ///
     /// # Errors
     /// When there is no such column or it is empty.
-    pub fn last(&self, name: &str) -> Result<f64, Missing> {
+    pub fn last(&self, name: &str) -> Result<f64, MissingData> {
         Ok(self.column(name)?[self.column(name)?.len() - 1])
     }
 
@@ -256,9 +256,9 @@ impl Done {
     ///
     /// # Errors
     /// When the column is missing or was not sampled at that step.
-    pub fn at_step(&self, name: &str, step: u64) -> Result<f64, Missing> {
+    pub fn at_step(&self, name: &str, step: u64) -> Result<f64, MissingData> {
         let values = self.column(name)?;
         let at = self.series().step.iter().position(|&sampled| sampled == step);
-        at.map(|at| values[at]).ok_or_else(|| Missing(format!("sample of `{name}` at step {step}")))
+        at.map(|at| values[at]).ok_or_else(|| MissingData(format!("sample of `{name}` at step {step}")))
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::case::Case;
 use crate::claim::Claim;
-use crate::control::{self, Wrong};
-use crate::data::{Data, NotMade};
-use crate::expect::Measured;
+use crate::control::{self, WrongPhysics};
+use crate::data::{Data, SceneDataError};
+use crate::expect::Measurement;
 use crate::reading::{self, Table};
-use crate::run::{Done, Made, Run, Set, Standing};
-use crate::solvers::{Kept, Solvers};
+use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, Set};
+use crate::solvers::{Solvers, StoredResult};
 use crate::tolerance;
 use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{Control, Outcome, Verdict};
@@ -21,13 +21,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// Output of a run: the record, the tables read from its snapshots, and the provenance of a stored result.
-type Left = (Arc<Record>, Arc<Vec<Table>>, Option<Made>);
+type RunOutput = (Arc<Record>, Arc<Vec<Table>>, Option<ResultOrigin>);
 /// Output of a run; empty until the run is done.
-type Slot = Arc<OnceLock<Result<Left, RunError>>>;
+type Slot = Arc<OnceLock<Result<RunOutput, RunError>>>;
 /// A scene; empty until it is first requested.
 type SceneSlot = Arc<OnceLock<Result<Arc<Scene>, RunError>>>;
 /// Runs by key.
-type Runs = BTreeMap<String, (Run, Result<Done, RunError>)>;
+type Runs = BTreeMap<String, (Run, Result<FinishedRun, RunError>)>;
 /// Scenes that were run, with their outputs, by solver and resolution.
 type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 
@@ -58,7 +58,7 @@ pub struct Runner {
 
 /// Solver of a run, with or without a defect.
 #[derive(Clone, Copy)]
-struct By<'a> {
+struct SolverChoice<'a> {
     solver: &'a str,
     defect: Option<Defect>,
     resolution: &'a Resolution,
@@ -156,12 +156,12 @@ impl Runner {
     ///
     /// # Errors
     /// When the solver does not support the scene or fails.
-    pub fn run(&self, run: &Run) -> Result<Done, RunError> {
+    pub fn run(&self, run: &Run) -> Result<FinishedRun, RunError> {
         let key = run.key();
         if let Some((_, done)) = self.runs.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return done.clone();
         }
-        let by = By { solver: run.solver, defect: None, resolution: &run.resolution, control: None };
+        let by = SolverChoice { solver: run.solver, defect: None, resolution: &run.resolution, control: None };
         let done = self.done_by(run, by, None);
         let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         runs.entry(key).or_insert_with(|| (run.clone(), done)).1.clone()
@@ -169,7 +169,7 @@ impl Runner {
 
     /// Returns all successful runs so far, in the order of their keys.
     #[must_use]
-    pub fn done(&self) -> Vec<(Run, Done)> {
+    pub fn done(&self) -> Vec<(Run, FinishedRun)> {
         let runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         runs.values().filter_map(|(run, done)| Some((run.clone(), done.as_ref().ok()?.clone()))).collect()
     }
@@ -235,10 +235,10 @@ impl Runner {
         let (standing, outcome) = (claim.standing(), row.outcome);
         let control = Control::new(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
         match standing {
-            Standing::Known(_) => {
+            ExpectedOutcome::Known(_) => {
                 Control { turned_red: matches!(outcome, Outcome::Pass | Outcome::Outdated), ..control }
             }
-            Standing::Passes | Standing::Refused => control,
+            ExpectedOutcome::Passes | ExpectedOutcome::Refused => control,
         }
     }
 
@@ -246,36 +246,43 @@ impl Runner {
     ///
     /// # Errors
     /// When the solver does not support the scene or fails.
-    pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<Done, RunError> {
+    pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<FinishedRun, RunError> {
         let control = Some(&claim.control);
-        let mut by = By { solver: run.solver, defect: None, resolution: &run.resolution, control };
+        let mut by = SolverChoice { solver: run.solver, defect: None, resolution: &run.resolution, control };
         match &claim.control.wrong {
             _ if run.aside => self.run(run),
             // Only our own side gets the wrong physics.
-            Wrong::Ours(_) | Wrong::OtherSolver(_) if self.solvers.is_program(run.solver) => self.run(run),
-            Wrong::Scene(change) | Wrong::Ours(change) => self.done_by(run, by, Some(&**change)),
-            Wrong::Solver(defect) => {
+            WrongPhysics::Ours(_) | WrongPhysics::OtherSolver(_) if self.solvers.is_program(run.solver) => {
+                self.run(run)
+            }
+            WrongPhysics::Scene(change) | WrongPhysics::Ours(change) => self.done_by(run, by, Some(&**change)),
+            WrongPhysics::Solver(defect) => {
                 by.defect = Some(*defect);
                 self.done_by(run, by, None)
             }
-            Wrong::OtherSolver(solver) => {
+            WrongPhysics::OtherSolver(solver) => {
                 by.solver = solver;
                 self.done_by(run, by, None)
             }
-            Wrong::OtherRun(solver, resolution) => {
+            WrongPhysics::OtherRun(solver, resolution) => {
                 (by.solver, by.resolution) = (solver, resolution);
                 self.done_by(run, by, None)
             }
-            Wrong::OtherVariant(variant) => {
+            WrongPhysics::OtherVariant(variant) => {
                 let done = self.run(&Run { variant, ..run.clone() })?;
-                Ok(Done { scene: self.scene(run)?, ..done })
+                Ok(FinishedRun { scene: self.scene(run)?, ..done })
             }
-            Wrong::Misread(change) => self.run(run).map(|done| misread(done, *change)),
+            WrongPhysics::Misread(change) => self.run(run).map(|done| misread(done, *change)),
         }
     }
 
     /// Returns a run by a solver, with the scene of the case or with a changed scene.
-    fn done_by(&self, run: &Run, by: By<'_>, wrong: Option<&dyn Fn(&mut Scene)>) -> Result<Done, RunError> {
+    fn done_by(
+        &self,
+        run: &Run,
+        by: SolverChoice<'_>,
+        wrong: Option<&dyn Fn(&mut Scene)>,
+    ) -> Result<FinishedRun, RunError> {
         let scene = self.scene(run)?;
         let given = match wrong {
             None => Arc::clone(&scene),
@@ -293,7 +300,7 @@ impl Runner {
             && by.defect.is_none()
             && let Some(record) = self.solvers.stored(self.case, run, &scene)
         {
-            return Ok(Done::new(scene, Arc::new(record?)));
+            return Ok(FinishedRun::new(scene, Arc::new(record?)));
         }
         let slot = self.slot(run, by, &given);
         let left = || {
@@ -304,15 +311,15 @@ impl Runner {
             }
         };
         let (record, tables, kept) = slot.get_or_init(left).clone()?;
-        Ok(Done { scene, record, tables, kept })
+        Ok(FinishedRun { scene, record, tables, kept })
     }
 
     /// Returns the stored result of a run.
-    fn read_back(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Left, RunError> {
+    fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
         let of_control = by.control.map(|control| control.name);
         let none = || self.unusable(run, "nothing is kept of it; `grainbench reference keep` does it".to_owned());
         let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
-        let Kept { record, tables, made } = kept?;
+        let StoredResult { record, tables, made } = kept?;
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
     }
 
@@ -325,7 +332,7 @@ impl Runner {
     }
 
     /// Returns the slot for the output of a run: one per scene, solver, resolution and reading.
-    fn slot(&self, run: &Run, by: By<'_>, scene: &Arc<Scene>) -> Slot {
+    fn slot(&self, run: &Run, by: SolverChoice<'_>, scene: &Arc<Scene>) -> Slot {
         let key = format!("{}|{:?}|{:?}|{:?}", by.solver, by.defect, by.resolution, run.reading);
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         let of_solver = done.entry(key).or_default();
@@ -337,7 +344,7 @@ impl Runner {
         slot
     }
 
-    fn simulate(&self, run: &Run, by: By<'_>, scene: &Scene) -> Result<Left, RunError> {
+    fn simulate(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
         let solver = match by.defect {
             None => self.solver(by.solver),
             Some(defect) => self.solvers.with_defect(by.solver, defect),
@@ -372,7 +379,7 @@ impl Runner {
     /// Returns a scene made from third-party data.
     fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
         let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
-        let made = folder.and_then(|folder| (data.scene)(folder).map_err(NotMade::into_words));
+        let made = folder.and_then(|folder| (data.scene)(folder).map_err(SceneDataError::into_words));
         made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
@@ -384,7 +391,7 @@ impl Runner {
     pub fn given(&self, claim: &Claim, run: &Run, wrong: bool) -> Result<Arc<Scene>, RunError> {
         let scene = self.scene(run)?;
         match &claim.control.wrong {
-            Wrong::Scene(change) | Wrong::Ours(change) if wrong => {
+            WrongPhysics::Scene(change) | WrongPhysics::Ours(change) if wrong => {
                 let mut given = (*scene).clone();
                 change(&mut given);
                 Ok(Arc::new(given))
@@ -457,14 +464,14 @@ impl Runner {
     /// Returns the tolerance of a claim for these runs, and its origin. A stored estimate replaces the stated tolerance
     /// if it is smaller. Returns none if an estimate is required and not stored.
     #[must_use]
-    pub fn allowed(&self, claim: &Claim, done: &[Done]) -> Option<(f64, tolerance::Made)> {
+    pub fn allowed(&self, claim: &Claim, done: &[FinishedRun]) -> Option<(f64, tolerance::ToleranceOrigin)> {
         let stated = (claim.tolerance.allowed(done), claim.tolerance.made_without_estimate());
-        if claim.tolerance.made != tolerance::Made::Estimated || self.stranger.is_some() {
+        if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
         // A stated bound below the estimate counts as engineering judgement.
         let found = self.solvers.uncertainty(self.case, claim)?;
-        Some(if found < claim.tolerance.up_to { (found, tolerance::Made::Estimated) } else { stated })
+        Some(if found < claim.tolerance.up_to { (found, tolerance::ToleranceOrigin::Estimated) } else { stated })
     }
 
     /// Returns the broken result of a claim at which our program panicked.
@@ -475,7 +482,7 @@ impl Runner {
     }
 
     /// Returns the result of a claim that is not judged yet, with its tolerance and the origin of the tolerance.
-    fn row(&self, claim: &Claim, allowed: Option<(f64, tolerance::Made)>) -> Verdict {
+    fn row(&self, claim: &Claim, allowed: Option<(f64, tolerance::ToleranceOrigin)>) -> Verdict {
         let first = claim.runs.first();
         Verdict {
             variant: first.map_or_else(String::new, |run| run.variant.to_owned()),
@@ -491,7 +498,7 @@ impl Runner {
     }
 
     /// Returns the result of a claim from its runs.
-    fn conclude(&self, claim: &Claim, done: Result<Vec<Done>, RunError>) -> Verdict {
+    fn conclude(&self, claim: &Claim, done: Result<Vec<FinishedRun>, RunError>) -> Verdict {
         let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
         let row = self.row(claim, allowed);
         match done {
@@ -515,8 +522,8 @@ impl Runner {
     }
 
     /// The row, amber if it passes on a stored result of other solver sources.
-    fn unless_outdated(&self, row: Verdict, done: &[Done]) -> Verdict {
-        let is_outdated = |done: &Done| done.kept.as_ref().is_some_and(|made| !made.is_current);
+    fn unless_outdated(&self, row: Verdict, done: &[FinishedRun]) -> Verdict {
+        let is_outdated = |done: &FinishedRun| done.kept.as_ref().is_some_and(|made| !made.is_current);
         if row.outcome == Outcome::Pass && done.iter().any(is_outdated) {
             let case = self.case.name;
             return row.left(
@@ -530,13 +537,13 @@ impl Runner {
     }
 
     /// Adds the programs of a comparison, and the stored results that were used, to the source of a result.
-    fn with_programs(&self, mut row: Verdict, done: &[Done]) -> Verdict {
+    fn with_programs(&self, mut row: Verdict, done: &[FinishedRun]) -> Verdict {
         for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
             row.source.push_str(&format!(": {}", run.options.join(", ")));
         }
-        let mut kept: Vec<&Made> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
+        let mut kept: Vec<&ResultOrigin> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
         kept.dedup();
-        for Made { words, .. } in kept {
+        for ResultOrigin { words, .. } in kept {
             row.source.push_str(&format!("; judged on the stored result of a run of {words}"));
         }
         row
@@ -553,14 +560,14 @@ fn unless_panicked<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 }
 
 /// Changes the tables of a run.
-fn misread(mut done: Done, change: fn(&mut [Table])) -> Done {
+fn misread(mut done: FinishedRun, change: fn(&mut [Table])) -> FinishedRun {
     change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
     done
 }
 
 /// A method's own documented error is amber while it is finite and within its second bound.
-fn known(row: Verdict, claim: &Claim, found: &Measured) -> Verdict {
-    let Standing::Known(reason) = claim.standing() else { return row };
+fn known(row: Verdict, claim: &Claim, found: &Measurement) -> Verdict {
+    let ExpectedOutcome::Known(reason) = claim.standing() else { return row };
     let most = claim.runs.first().map_or(f64::INFINITY, |run| run.known_up_to);
     match row.outcome {
         Outcome::Fail if found.error().abs() <= most && found.error().is_finite() => row.left(Outcome::Known, reason),

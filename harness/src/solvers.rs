@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::reading::Table;
-use crate::run::{Made, Run};
+use crate::run::{ResultOrigin, Run};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, RunError, Solver};
@@ -11,18 +11,18 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Stored result of a run.
-pub struct Kept {
+pub struct StoredResult {
     /// Record without snapshots.
     pub record: Record,
     /// Tables read from the snapshots.
     pub tables: Vec<Table>,
     /// Provenance.
-    pub made: Made,
+    pub made: ResultOrigin,
 }
 
 /// An external solver.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stranger {
+pub struct ExternalSolver {
     /// Its name.
     pub name: String,
     /// Time steps to run it with, as fractions of the critical time step; empty for the defaults.
@@ -58,7 +58,7 @@ pub trait Solvers: Send + Sync {
     }
 
     /// Returns the external solvers.
-    fn strangers(&self) -> Vec<Stranger> {
+    fn strangers(&self) -> Vec<ExternalSolver> {
         Vec::new()
     }
 
@@ -75,7 +75,13 @@ pub trait Solvers: Send + Sync {
 
     /// Returns the stored result of a run whose snapshots are read; none if there is none. `_scene` is the scene that
     /// the solver got, and `_control` names the negative control that changed it.
-    fn kept(&self, _case: &Case, _run: &Run, _scene: &Scene, _control: Option<&str>) -> Option<Result<Kept, RunError>> {
+    fn kept(
+        &self,
+        _case: &Case,
+        _run: &Run,
+        _scene: &Scene,
+        _control: Option<&str>,
+    ) -> Option<Result<StoredResult, RunError>> {
         None
     }
 

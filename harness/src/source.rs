@@ -41,7 +41,7 @@ pub struct Work {
 
 /// A number from a cited work.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cited {
+pub struct CitedNumber {
     /// The work.
     pub work: &'static Work,
     /// Quantity and its place in the work.
@@ -52,7 +52,7 @@ pub struct Cited {
     pub uncertainty: f64,
 }
 
-impl Cited {
+impl CitedNumber {
     /// Returns the source of the number.
     #[must_use]
     pub const fn source(&self) -> Source {

@@ -7,13 +7,13 @@
 use crate::case::Case;
 use crate::claim::{Claim, Measure};
 use crate::evidence::Evidence;
-use crate::run::{Change, Standing};
+use crate::run::{Change, ExpectedOutcome};
 use crate::scope::Scope;
 use grainbench_scene::solver::{Method, Resolution};
 
 /// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]
-pub struct Lane {
+pub struct SolverSetup {
     /// Method.
     pub method: Method,
     /// Parameters other than the resolution, in words; empty if there are none.
@@ -26,7 +26,7 @@ pub struct Lane {
 
 /// A target quantity with an exact solution.
 #[derive(Clone)]
-pub struct Subject {
+pub struct TargetQuantity {
     /// Case.
     pub case: &'static Case,
     /// Variant of its scene.
@@ -40,7 +40,7 @@ pub struct Subject {
     /// Reads the measured value from the runs.
     pub measure: Measure,
     /// Solver setups.
-    pub lanes: Vec<Lane>,
+    pub lanes: Vec<SolverSetup>,
 }
 
 /// Largest number of target quantities from the claims of one case.
@@ -49,19 +49,19 @@ const MOST: usize = 2;
 /// Returns the target quantities from the claims of a case: the first of each variant, those with the most methods
 /// first.
 #[must_use]
-pub fn from_claims(case: &'static Case) -> Vec<Subject> {
-    let mut subjects: Vec<Subject> = Vec::new();
+pub fn from_claims(case: &'static Case) -> Vec<TargetQuantity> {
+    let mut subjects: Vec<TargetQuantity> = Vec::new();
     for claim in (case.claims)() {
         add(case, &claim, &mut subjects);
     }
-    let kinds = |subject: &Subject| {
+    let kinds = |subject: &TargetQuantity| {
         let mut kinds: Vec<Method> = subject.lanes.iter().map(|lane| lane.method).collect();
         kinds.sort_unstable();
         kinds.dedup();
         kinds.len()
     };
     subjects.sort_by_key(|subject| std::cmp::Reverse(kinds(subject)));
-    let mut chosen: Vec<Subject> = Vec::new();
+    let mut chosen: Vec<TargetQuantity> = Vec::new();
     for subject in subjects {
         if chosen.len() < MOST && chosen.iter().all(|known| known.variant != subject.variant) {
             chosen.push(subject);
@@ -71,12 +71,12 @@ pub fn from_claims(case: &'static Case) -> Vec<Subject> {
 }
 
 /// Adds the quantity of a claim to the target quantities.
-fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
+fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<TargetQuantity>) {
     let [run] = claim.runs.as_slice() else { return };
     let Some(method) = Method::from_name(run.solver) else { return };
     // Readings of many snapshots need long runs.
     if claim.evidence() != Evidence::Analytic
-        || run.standing == Standing::Refused
+        || run.standing == ExpectedOutcome::Refused
         || run.reading.is_some()
         || run.data.is_some()
     {
@@ -84,7 +84,7 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
     }
     // Claims with the same wording have the same expectation, because text after a comma may state it.
     let quantity = claim.quantity.clone();
-    let lane = |method, about| Lane {
+    let lane = |method, about| SolverSetup {
         method,
         knobs: run.adjustment.as_ref().map(|(name, _)| name.clone()).unwrap_or_default(),
         prepare: run.adjustment.as_ref().map(|(_, change)| change.clone()),
@@ -102,7 +102,7 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<Subject>) {
                 }
             }
         }
-        None => subjects.push(Subject {
+        None => subjects.push(TargetQuantity {
             case,
             variant: run.variant,
             quantity,

@@ -1,12 +1,12 @@
 //! Tolerances: their value, origin and reason.
 
-use crate::run::Done;
+use crate::run::FinishedRun;
 use serde::{Deserialize, Serialize};
 
 /// Origin of a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Made {
+pub enum ToleranceOrigin {
     /// From the formula in its reason.
     Computed,
     /// From three resolution levels: observed order and factor of safety, stored with provenance.
@@ -21,7 +21,7 @@ pub enum Made {
     Judged,
 }
 
-impl Made {
+impl ToleranceOrigin {
     /// Returns the origin as one word.
     #[must_use]
     pub const fn word(self) -> &'static str {
@@ -46,7 +46,7 @@ pub struct Tolerance {
     /// True if it grows with the number of steps of the first run.
     each_step: bool,
     /// Origin of the tolerance.
-    pub made: Made,
+    pub made: ToleranceOrigin,
     /// Reason for the tolerance.
     pub because: String,
 }
@@ -55,16 +55,16 @@ impl Tolerance {
     /// Returns the origin of the tolerance without a stored estimate. The largest value of an estimate is engineering
     /// judgement.
     #[must_use]
-    pub const fn made_without_estimate(&self) -> Made {
+    pub const fn made_without_estimate(&self) -> ToleranceOrigin {
         match self.made {
-            Made::Estimated => Made::Judged,
+            ToleranceOrigin::Estimated => ToleranceOrigin::Judged,
             made => made,
         }
     }
 
     /// Returns the largest |error| that passes for these runs. Without runs, it is the value for one step.
     #[must_use]
-    pub fn allowed(&self, done: &[Done]) -> f64 {
+    pub fn allowed(&self, done: &[FinishedRun]) -> f64 {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 
@@ -79,7 +79,7 @@ impl Tolerance {
         if self.each_step { self.allowed * steps as f64 } else { self.allowed }
     }
 
-    fn new(made: Made, allowed: f64, because: impl Into<String>) -> Self {
+    fn new(made: ToleranceOrigin, allowed: f64, because: impl Into<String>) -> Self {
         Self { allowed, up_to: allowed, each_step: false, made, because: because.into() }
     }
 }
@@ -87,7 +87,7 @@ impl Tolerance {
 /// Returns a tolerance from the formula that the reason states.
 #[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Computed, allowed, because)
+    Tolerance::new(ToleranceOrigin::Computed, allowed, because)
 }
 
 /// Returns a tolerance for rounding errors.
@@ -104,25 +104,25 @@ pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
 /// Returns a tolerance from three resolution levels, whose estimate is stored. It is at most `most`.
 #[must_use]
 pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Estimated, most, because)
+    Tolerance::new(ToleranceOrigin::Estimated, most, because)
 }
 
 /// Returns one confidence interval, which comes from the runs themselves and is the unit of the error.
 #[must_use]
 pub fn one_interval(because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Interval, 1.0, because)
+    Tolerance::new(ToleranceOrigin::Interval, 1.0, because)
 }
 
 /// Returns a tolerance of zero, for a bound or for the equality of bits.
 #[must_use]
 pub fn exactly(because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Exact, 0.0, because)
+    Tolerance::new(ToleranceOrigin::Exact, 0.0, because)
 }
 
 /// Returns a tolerance that was required before the solver existed.
 #[must_use]
 pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Required, allowed, because)
+    Tolerance::new(ToleranceOrigin::Required, allowed, because)
 }
 
 /// Reason for the tolerance of an order of convergence.
@@ -139,7 +139,7 @@ pub fn asymptotic(order: f64) -> Tolerance {
 /// Returns a tolerance from engineering judgement. The reason names the physics that it allows for.
 #[must_use]
 pub fn judged(allowed: f64, because: impl Into<String>) -> Tolerance {
-    Tolerance::new(Made::Judged, allowed, because)
+    Tolerance::new(ToleranceOrigin::Judged, allowed, because)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Results of claims, as printed in all tables and written to `results.json`.
 
-use crate::control::Red;
+use crate::control::FailureMode;
 use crate::evidence::Evidence;
-use crate::expect::{Expected, Measured};
-use crate::tolerance::Made;
+use crate::expect::{ExpectedValue, Measurement};
+use crate::tolerance::ToleranceOrigin;
 use grainbench_scene::solver::RunError;
 use serde::{Deserialize, Serialize};
 
@@ -114,7 +114,7 @@ pub struct Verdict {
     /// Measured value; absent if the run crashed.
     pub value: Option<f64>,
     /// Expectation.
-    pub expected: Option<Expected>,
+    pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,
     /// Signed `(value − expected)/scale`; for a bound, the distance beyond it. Absent if it is not finite.
@@ -122,7 +122,7 @@ pub struct Verdict {
     /// Largest |error| that passes.
     pub allowed: f64,
     /// Origin of the tolerance.
-    pub tolerance: Made,
+    pub tolerance: ToleranceOrigin,
     /// Reason for the tolerance.
     pub because: String,
     /// Kind of evidence.
@@ -152,7 +152,7 @@ impl Verdict {
             scale: None,
             error: None,
             allowed: 0.0,
-            tolerance: Made::Exact,
+            tolerance: ToleranceOrigin::Exact,
             because: String::new(),
             evidence: Evidence::Invariant,
             source: String::new(),
@@ -175,7 +175,7 @@ impl Verdict {
 
     /// Returns the judged result. It passes only if the error is finite and at most the allowed error.
     #[must_use]
-    pub fn judged(self, found: &Measured) -> Self {
+    pub fn judged(self, found: &Measurement) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         let error = found.error();
         let passes = error.is_finite() && error.abs() <= self.allowed;
@@ -207,10 +207,10 @@ impl Verdict {
     /// the scale. A confidence interval, and a computed limit of exactly 1, are scales that are themselves the limit.
     #[must_use]
     pub fn unless_as_wide_as_the_scale(self) -> Self {
-        let is_value = matches!(self.expected, Some(Expected::Value(_)));
+        let is_value = matches!(self.expected, Some(ExpectedValue::Value(_)));
         let is_wide = match self.tolerance {
-            Made::Interval => false,
-            Made::Computed => self.allowed > 1.0,
+            ToleranceOrigin::Interval => false,
+            ToleranceOrigin::Computed => self.allowed > 1.0,
             _ => self.allowed >= 1.0,
         };
         if self.outcome == Outcome::Pass && is_value && is_wide {
@@ -223,10 +223,10 @@ impl Verdict {
 
     /// Returns the way in which the result failed, if it failed.
     #[must_use]
-    pub fn red(&self) -> Option<Red> {
+    pub fn red(&self) -> Option<FailureMode> {
         match self.outcome {
-            Outcome::Fail if self.value.is_some() && self.error.is_some() => Some(Red::Value),
-            Outcome::Fail | Outcome::Broken => Some(Red::Breaking),
+            Outcome::Fail if self.value.is_some() && self.error.is_some() => Some(FailureMode::Value),
+            Outcome::Fail | Outcome::Broken => Some(FailureMode::Breaking),
             _ => None,
         }
     }
@@ -252,7 +252,7 @@ pub struct Control {
     /// Wrong physics, in words.
     pub wrong_physics: String,
     /// Way in which the claim must fail.
-    pub how: Red,
+    pub how: FailureMode,
     /// Signed error under wrong physics; absent if it is not finite or the run crashed.
     pub error: Option<f64>,
     /// Largest |error| that would have passed.
@@ -268,7 +268,7 @@ pub struct Control {
 impl Control {
     /// Returns the control from a result under wrong physics, which must fail in the way `how`.
     #[must_use]
-    pub fn new(row: Verdict, wrong_physics: &str, how: Red, seconds: f64) -> Self {
+    pub fn new(row: Verdict, wrong_physics: &str, how: FailureMode, seconds: f64) -> Self {
         let turned_red = row.red() == Some(how);
         Self {
             turned_red,
@@ -293,19 +293,19 @@ mod tests {
 
     #[test]
     fn a_tolerance_as_large_as_the_scale_shows_nothing() {
-        let row = |allowed, tolerance, expected: Expected| {
+        let row = |allowed, tolerance, expected: ExpectedValue| {
             let open = Verdict { allowed, tolerance, ..Verdict::open("case", "quantity", "1") };
-            open.judged(&Measured::new(1.5, expected, 1.0)).unless_as_wide_as_the_scale()
+            open.judged(&Measurement::new(1.5, expected, 1.0)).unless_as_wide_as_the_scale()
         };
-        let outcome = |allowed, tolerance| row(allowed, tolerance, Expected::Value(1.0)).outcome;
-        assert_eq!(outcome(0.99, Made::Judged), Outcome::Pass);
-        assert_eq!(outcome(1.0, Made::Judged), Outcome::NoReference);
-        assert_eq!(outcome(1.0, Made::Computed), Outcome::Pass);
-        assert_eq!(outcome(20.0, Made::Computed), Outcome::NoReference);
-        assert_eq!(outcome(1.0, Made::Interval), Outcome::Pass);
-        let bound = row(20.0, Made::Judged, Expected::Bound(Bound::AtMost(1.0)));
+        let outcome = |allowed, tolerance| row(allowed, tolerance, ExpectedValue::Value(1.0)).outcome;
+        assert_eq!(outcome(0.99, ToleranceOrigin::Judged), Outcome::Pass);
+        assert_eq!(outcome(1.0, ToleranceOrigin::Judged), Outcome::NoReference);
+        assert_eq!(outcome(1.0, ToleranceOrigin::Computed), Outcome::Pass);
+        assert_eq!(outcome(20.0, ToleranceOrigin::Computed), Outcome::NoReference);
+        assert_eq!(outcome(1.0, ToleranceOrigin::Interval), Outcome::Pass);
+        let bound = row(20.0, ToleranceOrigin::Judged, ExpectedValue::Bound(Bound::AtMost(1.0)));
         assert_eq!(bound.outcome, Outcome::Pass);
-        let detail = row(20.0, Made::Judged, Expected::Value(1.0)).detail;
+        let detail = row(20.0, ToleranceOrigin::Judged, ExpectedValue::Value(1.0)).detail;
         assert!(detail.is_some_and(|detail| detail.contains("an error of 2000.000 % of the scale is allowed")));
     }
 
@@ -315,10 +315,14 @@ mod tests {
         for allowed in [0.0, 1.0, f64::INFINITY, f64::NAN] {
             for value in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let row = Verdict { allowed, ..Verdict::open("case", "quantity", "1") };
-                assert_eq!(row.judged(&Measured::new(value, 0.0, 1.0)).outcome, Outcome::Fail, "{value} of {allowed}");
+                assert_eq!(
+                    row.judged(&Measurement::new(value, 0.0, 1.0)).outcome,
+                    Outcome::Fail,
+                    "{value} of {allowed}"
+                );
             }
         }
         let row = Verdict { allowed: f64::NAN, ..Verdict::open("case", "quantity", "1") };
-        assert_eq!(row.judged(&Measured::new(0.0, 0.0, 1.0)).outcome, Outcome::Fail);
+        assert_eq!(row.judged(&Measurement::new(0.0, 0.0, 1.0)).outcome, Outcome::Fail);
     }
 }

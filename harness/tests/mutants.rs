@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use grainbench_harness::conformance::ALL;
-use grainbench_harness::control::Red;
-use grainbench_harness::mistake::small_dem::{Slip, SmallDem};
+use grainbench_harness::control::FailureMode;
+use grainbench_harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_scene::terms::Terms;
 
@@ -16,9 +16,9 @@ fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
 }
 
 /// Returns the variants of results that failed by value.
-fn failed(mistake: Slip) -> Vec<String> {
+fn failed(mistake: MethodMistake) -> Vec<String> {
     let found = rows(SmallDem { mistake: Some(mistake) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
-    let red = found.into_iter().filter(|row| row.red() == Some(Red::Value));
+    let red = found.into_iter().filter(|row| row.red() == Some(FailureMode::Value));
     red.map(|row| row.variant).collect()
 }
 
@@ -41,13 +41,16 @@ fn the_right_laws_gain_nothing_in_the_long_run() {
 
 #[test]
 fn planted_defects_fail_by_value() {
-    let expected: [(Slip, &[&str]); 6] = [
-        (Slip::SpringNotTurned, &["objectivity/planes-2d", "objectivity/planes-3d-along"]),
-        (Slip::TwistNotFollowed, &["objectivity/planes-3d-along"]),
-        (Slip::WallSpinDropped, &["objectivity/drum-3d", "objectivity/planes-3d-hertz"]),
-        (Slip::SecantSpring, &["passivity/cycle-pressed-under-shear"]),
-        (Slip::NotRescaled, &["passivity/cycle-relieved-under-shear"]),
-        (Slip::WrongSpin, &["objectivity/drum-3d", "passivity/2d-friction", "passivity/between-planes-3d-hertz"]),
+    let expected: [(MethodMistake, &[&str]); 6] = [
+        (MethodMistake::SpringNotTurned, &["objectivity/planes-2d", "objectivity/planes-3d-along"]),
+        (MethodMistake::TwistNotFollowed, &["objectivity/planes-3d-along"]),
+        (MethodMistake::WallSpinDropped, &["objectivity/drum-3d", "objectivity/planes-3d-hertz"]),
+        (MethodMistake::SecantSpring, &["passivity/cycle-pressed-under-shear"]),
+        (MethodMistake::NotRescaled, &["passivity/cycle-relieved-under-shear"]),
+        (
+            MethodMistake::WrongSpin,
+            &["objectivity/drum-3d", "passivity/2d-friction", "passivity/between-planes-3d-hertz"],
+        ),
     ];
     for (mistake, variants) in expected {
         let failed = failed(mistake);
@@ -60,7 +63,7 @@ fn planted_defects_fail_by_value() {
 /// The grains of these scenes are equal. Claims about unequal grains test the lever arms.
 #[test]
 fn wrong_lever_arms_are_right_between_equal_grains() {
-    for mistake in [Slip::MeanArm, Slip::OneArm] {
+    for mistake in [MethodMistake::MeanArm, MethodMistake::OneArm] {
         for row in rows(SmallDem { mistake: Some(mistake) }, &["objectivity"], &Terms::SECOND_ORDER) {
             assert_eq!(row.outcome, Outcome::Pass, "{mistake:?}: {row:#?}");
         }

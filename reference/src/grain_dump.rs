@@ -16,7 +16,7 @@ use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
 /// Data and options in addition to a dump.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Beside {
+pub struct DumpOptions {
     /// Names of the columns in the files.
     pub names: Names,
     /// Radius of every grain (m), needed if there is neither a column `radius` nor `diameter`.
@@ -36,7 +36,7 @@ pub struct GrainDump {
     grains: DumpReader<'static>,
     contacts: Option<(DumpReader<'static>, String)>,
     file: String,
-    beside: Beside,
+    beside: DumpOptions,
     ids: Ids,
     cut: Option<String>,
     rows: DumpSnapshot,
@@ -60,7 +60,7 @@ impl GrainDump {
     ///
     /// # Errors
     /// If a file cannot be opened.
-    pub fn open(path: &Path, contacts: Option<&Path>, beside: Beside) -> Result<Self, ReadError> {
+    pub fn open(path: &Path, contacts: Option<&Path>, beside: DumpOptions) -> Result<Self, ReadError> {
         let open = |path: &Path| DumpReader::open(path);
         let named = |path: &Path| Ok((open(path)?, path.to_string_lossy().into_owned()));
         Ok(Self {

@@ -28,7 +28,7 @@ pub use read::data_file::{DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
 pub use read::dump::DumpReader;
 pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};
-pub use read::numbers::{NotFinite, NumberColumn};
+pub use read::numbers::{NonFiniteNumbers, NumberColumn};
 pub use read::read_error::ReadError;
 pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot, Numbering};
 pub use read::table::{Table, parse_table, read_table};

@@ -1,6 +1,6 @@
 //! Record of a run of another program, with those probes of the scene that a dump of its grains contains.
 
-use grainbench_scene::record::{GrainState, Look, Series, Snapshot};
+use grainbench_scene::record::{GrainState, Series, Snapshot, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
 use nalgebra::Vector3;
@@ -35,7 +35,7 @@ impl Names {
 
 /// Quantities of a scene that a dump contains.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Observed {
+pub struct DumpRecord {
     /// Columns of the probes that follow from the dump.
     pub series: Series,
     /// Uncertainty by printed digits, for each column and sample.
@@ -48,9 +48,9 @@ pub struct Observed {
 }
 
 /// Steps at which snapshots are still due, in order.
-pub(crate) struct Due<'s>(pub(crate) &'s [u64]);
+pub(crate) struct SnapshotSchedule<'s>(pub(crate) &'s [u64]);
 
-impl Due<'_> {
+impl SnapshotSchedule<'_> {
     /// Returns true if a snapshot is due at a sample. Snapshots are taken at the first samples from their steps on.
     pub(crate) fn is_at(&mut self, step: u64) -> bool {
         let past = self.0.partition_point(|&due| due <= step);
@@ -67,7 +67,7 @@ pub struct Observer<'s> {
     /// Recorders of three variants. Numbers are as printed, increased by their uncertainty, and shifted away from
     /// zero by it.
     recorders: [Recorder; 3],
-    known: Known,
+    known: KnownQuantities,
     /// Forces between grains, if there is a dump of contacts.
     pairs: PairForces,
     snapshots: Vec<Snapshot>,
@@ -79,7 +79,7 @@ pub struct Observer<'s> {
 
 /// Quantities that all snapshots so far contain.
 #[derive(Debug, Clone)]
-struct Known {
+struct KnownQuantities {
     velocity: bool,
     spin: bool,
     angle: bool,
@@ -121,8 +121,13 @@ impl<'s> Observer<'s> {
             Scene { sampling: Sampling::Cycles(1), snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
         let recorders = [recorder(), recorder(), recorder()];
-        let known =
-            Known { velocity: true, spin: true, angle: true, pairs: false, walls: vec![true; scene.walls.len()] };
+        let known = KnownQuantities {
+            velocity: true,
+            spin: true,
+            angle: true,
+            pairs: false,
+            walls: vec![true; scene.walls.len()],
+        };
         let pairs = PairForces::default();
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
         Self { scene, sampled, recorders, known, pairs, snapshots, shifted_start, heights: BTreeMap::new(), last }
@@ -244,7 +249,7 @@ impl<'s> Observer<'s> {
             }
             // Only contacts requested by probes are known, so snapshots do not contain them.
             seen.contacts = Some(contacts_seen);
-            recorder.take(&self.sampled, Look::of_rigid(seen, 0.0));
+            recorder.take(&self.sampled, StepState::of_rigid(seen, 0.0));
         }
         Ok(())
     }
@@ -400,11 +405,11 @@ impl<'s> Observer<'s> {
 
     /// Returns the record.
     #[must_use]
-    pub fn finish(mut self) -> Observed {
+    pub fn finish(mut self) -> DumpRecord {
         let last = self.last.take().filter(|last| self.snapshots.last().is_none_or(|kept| kept.step != last.step));
         self.snapshots.extend(last);
         let [printed, along, outwards] = self.recorders.map(|recorder| recorder.finish().0);
-        let mut observed = Observed {
+        let mut observed = DumpRecord {
             series: Series { step: printed.step, time: printed.time, ..Series::default() },
             uncertainty: Vec::new(),
             shifted_start: self.shifted_start,
@@ -428,7 +433,7 @@ impl<'s> Observer<'s> {
     }
 }
 
-impl Observed {
+impl DumpRecord {
     /// Returns the samples of a scene without grains. There are no columns yet.
     pub(crate) fn without_grains(stepping: &Stepping) -> Self {
         let step: Vec<u64> = stepping.samples().collect();
@@ -463,7 +468,7 @@ impl Observed {
 }
 
 /// Returns true if a dump of grains contains a column of the series.
-fn is_known(scene: &Scene, name: &str, known: &Known) -> bool {
+fn is_known(scene: &Scene, name: &str, known: &KnownQuantities) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
     match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
         Some(ProbeTarget::Grain(_)) => match quantity {

@@ -8,7 +8,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
 use crate::clock::Clock;
-use crate::observer::{Due, Names, Observed, Observer};
+use crate::observer::{DumpRecord, Names, Observer, SnapshotSchedule};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::read_log;
@@ -342,7 +342,7 @@ impl Outputs {
     /// # Errors
     /// If a required column is missing, if the number of grains differs from that of the scene, or if the time is
     /// unknown.
-    pub fn observe(&self, scene: &Scene) -> Result<Observed, OutputError> {
+    pub fn observe(&self, scene: &Scene) -> Result<DumpRecord, OutputError> {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
@@ -351,7 +351,7 @@ impl Outputs {
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
         let mut before = DumpSnapshot::default();
-        let mut due = Due(&self.sources.snapshot_steps);
+        let mut due = SnapshotSchedule(&self.sources.snapshot_steps);
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
             let mut reader = Snapshots::open(file, u64::MAX)?;
@@ -450,7 +450,7 @@ impl Outputs {
 
     /// Reads a table with a column `time` (or `t`) and columns named like those of the scene's probes. The name of
     /// the probe can be omitted if only one column of the scene has this ending.
-    fn observe_table(&self, scene: &Scene, table: &Table) -> Result<Observed, OutputError> {
+    fn observe_table(&self, scene: &Scene, table: &Table) -> Result<DumpRecord, OutputError> {
         let name = shown(&self.sources.files[0]);
         let names = &self.sources.names;
         let time = time_column(table, names);
@@ -481,7 +481,7 @@ impl Outputs {
         }
         let of_file = table.digits();
         let mut observed =
-            Observed { series: Series { step: steps, time: times, ..Series::default() }, ..Observed::default() };
+            DumpRecord { series: Series { step: steps, time: times, ..Series::default() }, ..DumpRecord::default() };
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
         for Column { name: full, unit } in &columns {
             let short = full.rsplit_once('.').map_or(full.as_str(), |(_, short)| short);

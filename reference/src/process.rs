@@ -37,7 +37,7 @@ pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -
 }
 
 /// Program to start.
-pub(crate) struct Started<'s> {
+pub(crate) struct ProcessStart<'s> {
     /// Path of the program.
     pub(crate) executable: &'s Path,
     /// Command-line arguments.
@@ -51,7 +51,7 @@ pub(crate) struct Started<'s> {
 }
 
 /// End of a program that was not ended by a signal.
-pub(crate) struct Ended {
+pub(crate) struct ProcessEnd {
     /// Exit code.
     pub(crate) code: i32,
     /// Last lines of standard error, or of standard output if there are none.
@@ -112,8 +112,8 @@ wait $program";
 const WE_ARE_ALIVE: &[u8] = b"alive\n";
 
 /// Runs a program until it ends or exceeds a limit.
-pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failure, Vec<String>)> {
-    let Started { executable, arguments, folder, at, errors_apart } = *started;
+pub(crate) fn run(started: &ProcessStart<'_>, limits: Limits) -> Result<ProcessEnd, (Failure, Vec<String>)> {
+    let ProcessStart { executable, arguments, folder, at, errors_apart } = *started;
     let not_run = |error: io::Error| (Failure::NotRun(format!("{}: {error}", executable.display())), Vec::new());
     fs::metadata(executable).map_err(not_run)?;
     let screen = File::create(folder.join(SCREEN)).map_err(not_run)?;
@@ -152,7 +152,7 @@ pub(crate) fn run(started: &Started<'_>, limits: Limits) -> Result<Ended, (Failu
         Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
         // Exit codes of a shell whose program was ended by a signal.
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
-        Some(code) => Ok(Ended { code, last_lines }),
+        Some(code) => Ok(ProcessEnd { code, last_lines }),
         None => Err((Failure::Crash(status.to_string()), last_lines)),
     }
 }

@@ -1,7 +1,7 @@
 //! Output files of a run, read snapshot by snapshot in any format.
 
-use crate::read::decoding::{Decoded, decoded};
-use crate::read::format::{Beginning, FORMATS, Format, Holds, Moments, ToldBy, dump};
+use crate::read::decoding::{InputContent, decoded};
+use crate::read::format::{Beginning, FORMATS, FileContent, Format, FormatCriterion, Moments, dump};
 use crate::read::line_reader::LineReader;
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
@@ -49,13 +49,14 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     // Without compression, both are the same bytes. Archives and containers are identified before decompression.
     let kind_of_bytes = |unpacked: &[u8]| {
         let beginning = Beginning { path, bytes: &bytes, unpacked };
-        let is_it = |format: &&&Format| matches!(format.told_by, ToldBy::Beginning(is_it) if is_it(&beginning));
+        let is_it =
+            |format: &&&Format| matches!(format.told_by, FormatCriterion::Beginning(is_it) if is_it(&beginning));
         FORMATS.iter().find(is_it).map(|format| Kind::Grains(format))
     };
     if let Some(kind) = kind_of_bytes(&[]) {
         return Ok(kind);
     }
-    if let Decoded::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
+    if let InputContent::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
     }
     if let Some(kind) = kind_of_bytes(&unpacked) {
@@ -67,9 +68,9 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
         if !line.text.trim().is_empty() {
             let names = header(line.text).1;
             let is_it = |format: &&&Format| match format.told_by {
-                ToldBy::Line(begins) => line.text.starts_with(begins),
-                ToldBy::Names(is_it) => is_it(&names),
-                ToldBy::Beginning(_) => false,
+                FormatCriterion::Line(begins) => line.text.starts_with(begins),
+                FormatCriterion::Names(is_it) => is_it(&names),
+                FormatCriterion::Beginning(_) => false,
             };
             if line.text.trim_start().starts_with('#') {
                 has_comments = true;
@@ -134,9 +135,9 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
         // A table is passed to the reader of dumps, whose error names the problem.
         let format = format(path)?;
         match (format.holds)(path)? {
-            Holds::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
-            Holds::Moment => files.push(of_moment(path, None)?),
-            Holds::List(listed) => {
+            FileContent::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
+            FileContent::Moment => files.push(of_moment(path, None)?),
+            FileContent::List(listed) => {
                 for (time, path) in listed {
                     files.push(of_moment(&path, Some(time))?);
                 }

@@ -11,7 +11,7 @@ use std::io::{BufReader, Write};
 use common::data;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use grainbench_reference::{DumpKind, DumpReader, DumpSnapshot, NotFinite, ReadError};
+use grainbench_reference::{DumpKind, DumpReader, DumpSnapshot, NonFiniteNumbers, ReadError};
 
 /// Reads all snapshots of a dump.
 fn all(bytes: &[u8]) -> Result<Vec<DumpSnapshot>, ReadError> {
@@ -139,7 +139,7 @@ fn sound() -> String {
 
 #[test]
 fn keeps_what_is_not_finite_where_asked_to() {
-    let mut reader = DumpReader::new(SOUND.as_bytes(), "dump").unwrap().not_finite(NotFinite::Kept);
+    let mut reader = DumpReader::new(SOUND.as_bytes(), "dump").unwrap().not_finite(NonFiniteNumbers::Kept);
     let mut snapshot = DumpSnapshot::default();
     assert!(reader.read(&mut snapshot).unwrap());
     assert!(snapshot.row(1)[1].is_nan() && snapshot.row(1)[0].is_nan());

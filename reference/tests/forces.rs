@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use grainbench_reference::observer::{Names, Observed};
+use grainbench_reference::observer::{DumpRecord, Names};
 use grainbench_reference::outputs::{Outputs, Sources};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
@@ -20,7 +20,7 @@ fn scene(text: &str) -> Scene {
 
 /// Returns the quantities of a scene in files with these texts. `names` are pairs of our column names and those of
 /// the files.
-fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> Observed {
+fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> DumpRecord {
     let directory = tempfile::tempdir().unwrap();
     let file = |(number, text): (usize, &String)| -> PathBuf {
         let path = directory.path().join(format!("{number}.csv"));
@@ -44,7 +44,7 @@ fn dump(what: &str, columns: &str, rows: &[&str]) -> String {
 }
 
 /// Returns the only sample of a column.
-fn value(observed: &Observed, name: &str) -> f64 {
+fn value(observed: &DumpRecord, name: &str) -> f64 {
     observed.series.column(name).unwrap()[0]
 }
 

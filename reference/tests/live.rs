@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use grainbench_reference::deck::Program;
-use grainbench_reference::live::Live;
+use grainbench_reference::live::LiveProgram;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
@@ -58,13 +58,14 @@ fn run(text: &str) -> Result<Record, RunError> {
 
 fn run_within(seconds: u64, text: &str) -> Result<Record, RunError> {
     let folder = tempfile::tempdir().unwrap();
-    let live = Live::at(Program::LAMMPS, &script(folder.path(), text)).with_time_limit(Duration::from_secs(seconds));
+    let live =
+        LiveProgram::at(Program::LAMMPS, &script(folder.path(), text)).with_time_limit(Duration::from_secs(seconds));
     live.run(&scene(), &Resolution::TimeStep(0.01), &mut ())
 }
 
 #[test]
 fn a_program_that_is_missing() {
-    let live = Live::at(Program::LAMMPS, Path::new("no/such/program"));
+    let live = LiveProgram::at(Program::LAMMPS, Path::new("no/such/program"));
     let error = live.run(&scene(), &Resolution::TimeStep(0.01), &mut ()).unwrap_err();
     assert!(matches!(error, RunError::Program { failure: Failure::NotRun(_), .. }), "{error}");
 }

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use grainbench_reference::round_robin::{Kind, Published, of_drum, of_drums, of_impact, read};
+use grainbench_reference::round_robin::{Kind, PublishedTable, of_drum, of_drums, of_impact, read};
 use std::fmt::Write as _;
 
-fn published(name: &str, text: &str) -> Result<Option<Published>, String> {
+fn published(name: &str, text: &str) -> Result<Option<PublishedTable>, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, text).unwrap();
@@ -51,7 +51,7 @@ fn table() -> String {
 
 #[test]
 fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
-    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
+    let Some(PublishedTable { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
         panic!("no courses")
     };
     let findings: Vec<String> = of_impact(&impact).into_iter().map(|finding| finding.to_string()).collect();
@@ -67,7 +67,7 @@ fn says_which_ball_was_at_rest_and_which_beds_have_other_numbers() {
 
 #[test]
 fn derives_means_and_deviations() {
-    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
+    let Some(PublishedTable { kind: Kind::Impact(impact), .. }) = published("a.csv", &table()).unwrap() else {
         panic!("no courses")
     };
     let kept = |course: &grainbench_reference::round_robin::Course| ["A", "B"].contains(&course.code.as_str());
@@ -88,7 +88,7 @@ fn a_clock_that_is_ahead_is_no_other_release() {
         let late = if step == 0 { 4.95e-5 } else { time };
         write!(text, "\n{time},{:.8},{:.8},{:.8}", fall(-5.0, time), fall(-5.0, late), fall(0.0, time)).unwrap();
     }
-    let Some(Published { kind: Kind::Impact(impact), .. }) = published("a.csv", &text).unwrap() else {
+    let Some(PublishedTable { kind: Kind::Impact(impact), .. }) = published("a.csv", &text).unwrap() else {
         panic!("no courses")
     };
     let findings: Vec<String> = of_impact(&impact).into_iter().map(|finding| finding.to_string()).collect();
@@ -100,7 +100,9 @@ fn a_clock_that_is_ahead_is_no_other_release() {
 #[test]
 fn says_which_frame_is_counted_twice() {
     let text = "t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n1,1,3,33,41\n2,4,6,66,80\n";
-    let Some(Published { kind: Kind::Drum(drum), .. }) = published("a.csv", text).unwrap() else { panic!("no zones") };
+    let Some(PublishedTable { kind: Kind::Drum(drum), .. }) = published("a.csv", text).unwrap() else {
+        panic!("no zones")
+    };
     let findings = of_drum(&drum);
     assert_eq!(findings.len(), 1);
     assert_eq!(findings[0].about, "t = 2 s");
@@ -112,7 +114,7 @@ fn says_which_drum_is_off() {
     let drum_table = |name: &str, at: [u32; 2]| {
         let text = format!("t,z1_m1,z1_m2,z2_m1,z2_m2\n0,1,2,30,41\n0.5,1,3,{},41\n1,4,6,{},81\n", at[0], at[1]);
         match published(name, &text).unwrap() {
-            Some(Published { kind: Kind::Drum(drum), .. }) => drum,
+            Some(PublishedTable { kind: Kind::Drum(drum), .. }) => drum,
             _ => panic!("no zones"),
         }
     };

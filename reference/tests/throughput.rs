@@ -9,7 +9,7 @@ use std::time::Instant;
 use grainbench_reference::{DumpReader, DumpSnapshot};
 
 /// Reader that repeats the same rows at the steps 0, 1, 2, …
-struct Endless {
+struct EndlessReader {
     rows: String,
     atoms: usize,
     step: u64,
@@ -18,7 +18,7 @@ struct Endless {
     at: usize,
 }
 
-impl Read for Endless {
+impl Read for EndlessReader {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         if self.at == self.waiting.len() {
             if self.step == self.last {
@@ -64,7 +64,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     let bytes = if std::env::var_os("GRAINBENCH_LONG").is_some() { 1 << 30 } else { 1 << 26 };
     let snapshots = (bytes / rows.len()) as u64;
     let size = snapshots as f64 * rows.len() as f64 / 1e6;
-    let source = Endless { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
+    let source = EndlessReader { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
     let mut reader = DumpReader::new(BufReader::new(source), "endless").unwrap();
     let mut snapshot = DumpSnapshot::default();
     // The first snapshots allocate the memory for all later ones.

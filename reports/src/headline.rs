@@ -1,6 +1,6 @@
 //! Counts of results by outcome.
 
-use grainbench_harness::control::Red;
+use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 
@@ -66,7 +66,7 @@ impl Headline {
         for control in controls {
             counts.controls += 1;
             counts.controls_red += usize::from(control.turned_red);
-            counts.controls_broken += usize::from(control.turned_red && control.how == Red::Breaking);
+            counts.controls_broken += usize::from(control.turned_red && control.how == FailureMode::Breaking);
         }
         counts
     }

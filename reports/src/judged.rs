@@ -1,6 +1,6 @@
 //! Stored results of an external solver: results and controls, version and adapter, date and machine.
 
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::report::{Provenance, Report};
 /// Results of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Judged {
+pub struct ExternalResults {
     /// Name of the solver in its manifest.
     pub program: String,
     /// Version that the solver reports.
@@ -39,7 +39,7 @@ pub struct Row {
     /// Measured value; absent if nothing was measured.
     pub value: Option<f64>,
     /// Expectation.
-    pub expected: Option<Expected>,
+    pub expected: Option<ExpectedValue>,
     /// Signed error, in units of the result's scale.
     pub error: Option<f64>,
     /// Largest |error| that passes.
@@ -72,7 +72,7 @@ pub struct Count {
     pub worst: Option<f64>,
 }
 
-impl Judged {
+impl ExternalResults {
     /// Collects the results of a report on this solver alone.
     #[must_use]
     pub fn from_report(program: String, version: String, adapter: String, report: &Report) -> Self {
@@ -177,7 +177,7 @@ impl Judged {
 
 /// Returns the cases with results of any solver, in order of appearance.
 #[must_use]
-pub fn cases(judged: &[Judged]) -> Vec<&str> {
+pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
     let mut cases = Vec::new();
     for row in judged.iter().flat_map(|results| &results.rows) {
         if !cases.contains(&row.case.as_str()) {
@@ -195,15 +195,16 @@ mod tests {
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
         let report = sample::report();
-        let judged = Judged::from_report("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
-        assert_eq!(Judged::read(&judged.text().unwrap()).unwrap(), judged);
+        let judged =
+            ExternalResults::from_report("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
+        assert_eq!(ExternalResults::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
         assert_eq!((count.pass, count.red), (counts.pass, counts.red()));
         assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
-        assert!(Judged::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
+        assert!(ExternalResults::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
     }
 
     #[test]
@@ -212,7 +213,7 @@ mod tests {
         // A solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
-        let kept = Judged::from_report("other".to_owned(), String::new(), String::new(), &report);
+        let kept = ExternalResults::from_report("other".to_owned(), String::new(), String::new(), &report);
         assert_eq!(kept.otherwise(&report), Vec::<String>::new());
         report.sections[0].verdicts[0].outcome = Outcome::Stale;
         let [line] = &kept.otherwise(&report)[..] else { panic!("one row ends otherwise") };

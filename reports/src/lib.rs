@@ -43,4 +43,4 @@ pub use scratch::{is_scratch, sweep};
 pub use staged::{StagedDir, refuse_other_programs};
 pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
 pub use terminal::summary_table;
-pub use write::{Desk, WriteError, write_file};
+pub use write::{FolderWriter, WriteError, write_file};

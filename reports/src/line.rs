@@ -1,7 +1,7 @@
 //! Results in one line each, for messages about failures.
 
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::number;
@@ -69,7 +69,7 @@ pub const fn expected_word(evidence: Evidence) -> &'static str {
 
 /// Returns the expectation with its unit, such as `1.43 m/s`, `≥ 5` or `order 2`. Returns a dash if there is none.
 #[must_use]
-pub fn expected(expected: Option<Expected>, unit: &str) -> String {
+pub fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
     expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 

@@ -2,8 +2,8 @@
 
 use crate::report::Provenance;
 use crate::study::effects::Entry;
-use crate::study::point::{Diagram, Standing};
-use crate::study::stability::{Hard, Hardness, Limit};
+use crate::study::point::{Diagram, PointStatus};
+use crate::study::stability::{HardCaseResult, Hardness, Limit};
 use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -90,7 +90,7 @@ pub struct Stability {
     pub limits: Vec<Limit>,
     /// Hard cases.
     #[serde(default)]
-    pub hard: Vec<Hard>,
+    pub hard: Vec<HardCaseResult>,
 }
 
 /// Effects that are on in the scenes of the cases.
@@ -205,7 +205,7 @@ impl Costs {
 }
 
 fn is_asked(diagram: &Diagram, line: &str) -> bool {
-    cost::of_line(diagram, line).any(|point| matches!(point.standing, Standing::Measured | Standing::Failed))
+    cost::of_line(diagram, line).any(|point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed))
 }
 
 /// Returns the Pareto front of a solver in a diagram, in units of the cheapest time at an error of 1 %.

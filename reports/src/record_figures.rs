@@ -25,14 +25,14 @@ const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
 /// A record and its name.
-pub struct Named<'a> {
+pub struct NamedRecord<'a> {
     /// Title of its panels.
     pub name: String,
     /// The record.
     pub record: &'a Record,
 }
 
-impl Named<'_> {
+impl NamedRecord<'_> {
     /// Returns the snapshot nearest to a time (s).
     fn at(&self, time: f64) -> Option<&Snapshot> {
         let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
@@ -54,7 +54,7 @@ pub fn is_plane(record: &Record) -> bool {
 
 /// Options of the figures of records.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown {
+pub struct FigureOptions {
     /// Stress c of a photoelastic fringe (Pa); none to show about three fringes.
     pub fringe: Option<f64>,
     /// First and last time (s).
@@ -63,7 +63,7 @@ pub struct Shown {
     pub frames: usize,
 }
 
-impl Default for Shown {
+impl Default for FigureOptions {
     fn default() -> Self {
         Self { fringe: None, window: (f64::NEG_INFINITY, f64::INFINITY), frames: FRAMES }
     }
@@ -72,7 +72,7 @@ impl Default for Shown {
 /// Returns all figures for which the records have data, at times of the first record, and the time series of their
 /// probes. Records in three dimensions are drawn from the front, the right and above.
 #[must_use]
-pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
+pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure> {
     let (from, to) = shown.window;
     let Some(first) = records.first() else { return Vec::new() };
     let mut all: Vec<&Snapshot> =
@@ -93,8 +93,8 @@ pub fn figures(records: &[Named<'_>], shown: &Shown) -> Vec<Figure> {
 }
 
 /// Returns the snapshots of each record at some times. Records without snapshots are left out, and not shown as empty.
-fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
-    let frames = |named: &'a Named<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
+fn film_of<'a>(records: &'a [NamedRecord<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
+    let frames = |named: &'a NamedRecord<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
     records
         .iter()
         .map(|named| (named.name.clone(), frames(named)))
@@ -103,7 +103,7 @@ fn film_of<'a>(records: &'a [Named<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a 
 }
 
 /// Returns grains and contact forces at the end, and a film.
-fn solid(records: &[Named<'_>], all: &[&Snapshot], shown: &Shown) -> Vec<Figure> {
+fn solid(records: &[NamedRecord<'_>], all: &[&Snapshot], shown: &FigureOptions) -> Vec<Figure> {
     let Some(last) = all.last() else { return Vec::new() };
     let shots = |clock: &[f64]| film_of(records, clock).into_iter().map(|(title, frames)| Lit { title, frames });
     let at = |shot: Lit<'_>| {
@@ -122,14 +122,14 @@ fn solid(records: &[Named<'_>], all: &[&Snapshot], shown: &Shown) -> Vec<Figure>
 }
 
 /// Returns the fields over the plane.
-fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figure> {
+fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions) -> Vec<Figure> {
     let shown: Vec<f64> = spread(all, if records.len() > 1 { 1 } else { PICTURES }).map(|shot| shot.time).collect();
     let mut figures: Vec<Figure> =
         records.iter().filter_map(|named| forces(named, records.len() > 1, all.last()?.time)).collect();
     let Some(end) = all.last().map(|snapshot| snapshot.time) else { return figures };
     for quantity in quantities(records, options.fringe, end) {
         let (name, title) = words(quantity);
-        let (telling, mute): (Vec<&Named<'_>>, Vec<&Named<'_>>) =
+        let (telling, mute): (Vec<&NamedRecord<'_>>, Vec<&NamedRecord<'_>>) =
             records.iter().partition(|named| named.at(end).is_some_and(|snapshot| tells(snapshot, quantity)));
         let shots: Vec<Shot<'_>> = shown
             .iter()
@@ -148,7 +148,8 @@ fn plane(records: &[Named<'_>], all: &[&Snapshot], options: &Shown) -> Vec<Figur
         figures.push(Figure::field(name, title, &caption, picture));
         if all.len() >= FEWEST && !matches!(quantity, Quantity::Speed) {
             let clock: Vec<f64> = spread(all, options.frames).map(|snapshot| snapshot.time).collect();
-            let frames = |named: &&&Named<'_>| clock.iter().filter_map(|&time| named.at(time)).count() == clock.len();
+            let frames =
+                |named: &&&NamedRecord<'_>| clock.iter().filter_map(|&time| named.at(time)).count() == clock.len();
             let shots: Vec<Shot<'_>> = telling
                 .iter()
                 .filter(frames)
@@ -178,7 +179,7 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
 }
 
 /// Returns a note with the names of the records that lack the quantity.
-fn not_told(mute: &[&Named<'_>]) -> String {
+fn not_told(mute: &[&NamedRecord<'_>]) -> String {
     let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
     if names.is_empty() { String::new() } else { format!(" Not told by {}.", names.join(", ")) }
 }
@@ -192,7 +193,7 @@ fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item
 
 /// Returns the quantities to plot: stress if there are contacts or points, plastic strain and rotation if they are not
 /// zero, and speed.
-fn quantities(records: &[Named<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
+fn quantities(records: &[NamedRecord<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
     let mut quantities = Vec::new();
     let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty());
@@ -213,7 +214,7 @@ fn quantities(records: &[Named<'_>], fringe: Option<f64>, end: f64) -> Vec<Quant
     quantities
 }
 
-fn forces(named: &Named<'_>, several: bool, end: f64) -> Option<Figure> {
+fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {
     let last = named.at(end).filter(|snapshot| !snapshot.told_contacts().is_empty())?;
     let is_end = named.record.snapshots.last().is_some_and(|snapshot| snapshot.time <= end);
     let when = if is_end { "at the end".to_owned() } else { format!("at t = {}", number::seconds(end)) };
@@ -229,7 +230,7 @@ fn forces(named: &Named<'_>, several: bool, end: f64) -> Option<Figure> {
 
 /// Returns profiles of velocity and displacement across a domain that is periodic along one axis, the direction of
 /// flow.
-fn profiles(records: &[Named<'_>], end: f64) -> Vec<Figure> {
+fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
     let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {
         [false, true, _] => (0, 1),
@@ -290,8 +291,8 @@ mod tests {
     use crate::export::sample;
     use grainbench_harness::figure::Drawing;
 
-    fn named<'a>(name: &str, record: &'a Record) -> Named<'a> {
-        Named { name: name.to_owned(), record }
+    fn named<'a>(name: &str, record: &'a Record) -> NamedRecord<'a> {
+        NamedRecord { name: name.to_owned(), record }
     }
 
     #[test]
@@ -300,7 +301,7 @@ mod tests {
         let deformable = Record { snapshots: vec![sample::deformable(); 9], ..sample::record() };
         let figures = figures(
             &[named("mpm", &deformable), named("dem", &grains)],
-            &Shown { fringe: Some(1e3), ..Shown::default() },
+            &FigureOptions { fringe: Some(1e3), ..FigureOptions::default() },
         );
         let names: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
         for name in ["forces-mpm", "forces-dem", "stress", "fringes", "plastic-strain", "rotation-film", "displacement"]
@@ -320,11 +321,11 @@ mod tests {
     fn what_is_not_flat_is_seen_from_outside() {
         let mut solid = sample::record();
         solid.snapshots[1].grains[0].position.z = 0.5;
-        let figures = figures(&[named("", &solid)], &Shown::default());
+        let figures = figures(&[named("", &solid)], &FigureOptions::default());
         assert!(!is_plane(&solid) && figures.iter().any(|figure| figure.name == "grains"));
         let empty = Record { snapshots: Vec::new(), ..sample::record() };
         assert!(
-            super::figures(&[named("", &empty)], &Shown::default())
+            super::figures(&[named("", &empty)], &FigureOptions::default())
                 .iter()
                 .all(|figure| figure.name.starts_with("probe-"))
         );
@@ -339,7 +340,7 @@ mod tests {
             snapshot.contacts = None;
             snapshot.grains.iter_mut().for_each(|grain| grain.angle = None);
         }
-        let figures = figures(&[named("dem", &grains), named("dump", &dump)], &Shown::default());
+        let figures = figures(&[named("dem", &grains), named("dump", &dump)], &FigureOptions::default());
         for name in ["stress", "rotation"] {
             let figure = figures.iter().find(|figure| figure.name == name).unwrap();
             let Drawing::Field(field) = &figure.drawing else { unreachable!() };
@@ -350,7 +351,7 @@ mod tests {
     #[test]
     fn a_window_shows_what_is_in_it() {
         let record = sample::record();
-        let none = Shown { window: (1e9, 2e9), ..Shown::default() };
+        let none = FigureOptions { window: (1e9, 2e9), ..FigureOptions::default() };
         assert!(figures(&[named("", &record)], &none).is_empty());
     }
 }

@@ -5,7 +5,7 @@ use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-use crate::judged::Judged;
+use crate::judged::ExternalResults;
 use crate::measured::Measurements;
 use crate::stored_figure;
 
@@ -18,7 +18,7 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// Stored results of external solvers.
     #[serde(default)]
-    pub judged: Vec<Judged>,
+    pub judged: Vec<ExternalResults>,
     /// Outcomes that the page and the terminal show; empty for all. Every file holds all results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shown: Vec<Outcome>,

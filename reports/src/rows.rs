@@ -5,7 +5,7 @@ use std::io;
 use crate::export::series_csv::harmless;
 use crate::parts::{Values, whole};
 use crate::report::Report;
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::Verdict;
 
 /// Name of the table as Parquet.
@@ -18,8 +18,8 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
     let words = |value: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| value(row)).collect());
     let optional = |value: &dyn Fn(&Verdict) -> Option<f64>| Values::Told(rows.iter().map(|row| value(row)).collect());
     let bound = |row: &Verdict| match row.expected {
-        Some(bound @ Expected::Bound(_)) => bound.to_string(),
-        Some(Expected::Value(_)) | None => String::new(),
+        Some(bound @ ExpectedValue::Bound(_)) => bound.to_string(),
+        Some(ExpectedValue::Value(_)) | None => String::new(),
     };
     let columns: [(&str, Values); 18] = [
         ("case", words(&|row| row.case.clone())),
@@ -29,7 +29,7 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
         ("quantity", words(&|row| row.quantity.clone())),
         ("unit", words(&|row| row.unit.clone())),
         ("value", optional(&|row| row.value)),
-        ("expected", optional(&|row| row.expected.and_then(Expected::value))),
+        ("expected", optional(&|row| row.expected.and_then(ExpectedValue::value))),
         ("bound", words(&bound)),
         ("scale", optional(&|row| row.scale)),
         ("error", optional(&|row| row.error)),
@@ -108,7 +108,7 @@ mod tests {
             assert_eq!([&line[0], &line[16]], [row.case.as_str(), row.outcome.word()]);
             assert_eq!(line[6].parse().ok(), row.value);
             assert_eq!((packed.get_string(0).ok(), packed.get_double(6).ok()), (Some(&row.case), row.value));
-            assert_eq!(line[7].is_empty(), row.expected.and_then(Expected::value).is_none());
+            assert_eq!(line[7].is_empty(), row.expected.and_then(ExpectedValue::value).is_none());
         }
     }
 }

@@ -1,16 +1,16 @@
 //! A small report for tests, with every kind of result and figure.
 
-use crate::study::effects::{Entry, Shift, Worth};
-use crate::study::point::{Counts, Diagram, Point, Standing};
-use crate::study::stability::{Hard, Hardness, Limit};
-use grainbench_harness::control::Red;
+use crate::study::effects::{EffectResult, Entry, Shift};
+use crate::study::point::{Counts, Diagram, Point, PointStatus};
+use crate::study::stability::{HardCaseResult, Hardness, Limit};
+use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
-use crate::judged::Judged;
+use crate::judged::ExternalResults;
 use crate::measured::{Costs, Effects, Measurements, Stability};
 use crate::report::{Provenance, Report, RunCost, Section};
 use crate::study::Study;
@@ -26,11 +26,11 @@ pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expe
         quantity: quantity.into(),
         unit: "m/s".into(),
         value: Some(value),
-        expected: Some(Expected::Value(expected)),
+        expected: Some(ExpectedValue::Value(expected)),
         scale: Some(expected.abs()),
         error: Some(error),
         allowed,
-        tolerance: Made::Judged,
+        tolerance: ToleranceOrigin::Judged,
         because: "the scheme is first order in Δt".into(),
         evidence: Evidence::Analytic,
         source: "rigid sphere under Coulomb friction, eq. 26".into(),
@@ -48,7 +48,7 @@ fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) ->
         wrong_physics: wrong_physics.into(),
         error: Some(if turned_red { 0.31 } else { 0.004 }),
         allowed: 0.02,
-        how: Red::Value,
+        how: FailureMode::Value,
         turned_red,
         detail: None,
         seconds: 0.01,
@@ -101,7 +101,7 @@ fn backspin() -> Section {
     let mut momentum = verdict(case, "dem", "momentum drift", 2.2e-16, 1.0, 1e-12);
     momentum.quantity = "largest momentum drift".into();
     momentum.unit = "kg m/s".into();
-    momentum.expected = Some(Expected::Value(0.0));
+    momentum.expected = Some(ExpectedValue::Value(0.0));
     momentum.scale = Some(0.5);
     momentum.error = Some(4.4e-16);
     momentum.evidence = Evidence::Invariant;
@@ -295,7 +295,7 @@ pub(crate) fn report() -> Report {
         },
         red_because: Vec::new(),
     };
-    report.judged = vec![Judged::from_report("other".into(), "other 1.0".into(), "0123".into(), &report)];
+    report.judged = vec![ExternalResults::from_report("other".into(), "other 1.0".into(), "0123".into(), &report)];
     report
 }
 
@@ -310,7 +310,7 @@ pub(crate) fn costs() -> Study {
         knobs: String::new(),
         quantity: quantity.into(),
         unit: "m".into(),
-        standing: Standing::Measured,
+        standing: PointStatus::Measured,
         value: Some(1.0 + error),
         expected: Some(1.0),
         error: Some(error),
@@ -355,7 +355,7 @@ pub(crate) fn stability() -> Study {
         margin: None,
         detail: String::new(),
     };
-    let hard = |case: &str, solver: &str, standing: Hardness| Hard {
+    let hard = |case: &str, solver: &str, standing: Hardness| HardCaseResult {
         case: case.into(),
         must: "velocities stay those of two points".into(),
         solver: solver.into(),
@@ -390,7 +390,7 @@ pub(crate) fn effects() -> Study {
         allowed: 1e-3,
         red: true,
     };
-    let entry = |effect: &str, on: bool, worth: Worth, shifts: Vec<Shift>| Entry {
+    let entry = |effect: &str, on: bool, worth: EffectResult, shifts: Vec<Shift>| Entry {
         case: "backspin".into(),
         variant: "plain".into(),
         effect: effect.into(),
@@ -404,9 +404,9 @@ pub(crate) fn effects() -> Study {
     };
     let mut study = Study::new(report_provenance());
     study.ledger = vec![
-        entry("friction", true, Worth::Needed, vec![shift(0.5), shift(-0.1), shift(0.2)]),
-        entry("gravity", true, Worth::NotWorthSimulating, vec![shift(1e-7)]),
-        entry("cohesion", false, Worth::Inert, Vec::new()),
+        entry("friction", true, EffectResult::Needed, vec![shift(0.5), shift(-0.1), shift(0.2)]),
+        entry("gravity", true, EffectResult::NotWorthSimulating, vec![shift(1e-7)]),
+        entry("cohesion", false, EffectResult::Inert, Vec::new()),
     ];
     study
 }
@@ -423,11 +423,11 @@ pub(crate) fn hostile() -> Report {
                 let is_word = fixed.contains(&text.as_str())
                     || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok()
-                    || serde_json::from_value::<Standing>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<PointStatus>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Hardness>(text.as_str().into()).is_ok()
-                    || serde_json::from_value::<Worth>(text.as_str().into()).is_ok()
-                    || serde_json::from_value::<Made>(text.as_str().into()).is_ok()
-                    || serde_json::from_value::<Red>(text.as_str().into()).is_ok();
+                    || serde_json::from_value::<EffectResult>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<ToleranceOrigin>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<FailureMode>(text.as_str().into()).is_ok();
                 if !is_word {
                     *text = TEXT.to_owned();
                 }

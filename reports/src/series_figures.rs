@@ -1,6 +1,6 @@
 //! Time series of probes: one graph per quantity, such as velocities, positions and forces.
 
-use crate::record_figures::Named;
+use crate::record_figures::NamedRecord;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_scene::record::Series;
 
@@ -14,7 +14,7 @@ fn parts(name: &str) -> (&str, &str) {
 
 /// Returns one graph for each quantity of the probes of any record, within a window of time. Missing values and values
 /// that are not finite are not plotted.
-pub(crate) fn figures(records: &[Named<'_>], window: (f64, f64)) -> Vec<Figure> {
+pub(crate) fn figures(records: &[NamedRecord<'_>], window: (f64, f64)) -> Vec<Figure> {
     let mut quantities: Vec<(&str, &str)> = Vec::new();
     for column in records.iter().flat_map(|named| &named.record.series.columns) {
         let quantity = (parts(&column.name).1, column.unit.as_str());
@@ -25,7 +25,7 @@ pub(crate) fn figures(records: &[Named<'_>], window: (f64, f64)) -> Vec<Figure> 
     quantities.into_iter().filter_map(|quantity| figure(records, quantity, window)).collect()
 }
 
-fn figure(records: &[Named<'_>], (quantity, unit): (&str, &str), window: (f64, f64)) -> Option<Figure> {
+fn figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), window: (f64, f64)) -> Option<Figure> {
     let mut curves = Vec::new();
     for named in records {
         let series = &named.record.series;
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn every_quantity_has_its_graph_and_nothing_stands_for_zero() {
         let record = sample::record();
-        let named = [Named { name: String::new(), record: &record }];
+        let named = [NamedRecord { name: String::new(), record: &record }];
         let figures = figures(&named, (f64::NEG_INFINITY, f64::INFINITY));
         assert!(!figures.is_empty() && figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
         assert!(super::figures(&named, (1e9, 2e9)).is_empty(), "a window in which nothing was told shows nothing");

@@ -35,7 +35,7 @@ pub struct Column {
 /// The parts of `results.json` that the trend uses.
 #[derive(Deserialize)]
 struct Results {
-    provenance: About,
+    provenance: ReportProvenance,
     #[serde(default)]
     verdicts: Vec<Row>,
     #[serde(default)]
@@ -43,7 +43,7 @@ struct Results {
 }
 
 #[derive(Deserialize)]
-struct About {
+struct ReportProvenance {
     #[serde(default)]
     commit: String,
     #[serde(default)]

@@ -47,12 +47,12 @@ pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(),
 /// Writes many files to one folder, each completely or not at all. One hidden directory serves all files, so that the
 /// folder is searched for leftovers only once.
 #[derive(Debug)]
-pub struct Desk {
+pub struct FolderWriter {
     folder: PathBuf,
     beside: TempDir,
 }
 
-impl Desk {
+impl FolderWriter {
     /// Prepares writing to an existing folder.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn a_desk_leaves_files_and_nothing_beside_them() {
         let dir = tempfile::tempdir().unwrap();
-        let desk = Desk::new(dir.path()).unwrap();
+        let desk = FolderWriter::new(dir.path()).unwrap();
         for (name, text) in [("a.txt", "one"), ("b.txt", "two"), ("a.txt", "three")] {
             desk.write(name, text).unwrap();
         }

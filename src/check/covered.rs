@@ -2,10 +2,10 @@
 
 use super::{Candidate, at};
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::{Bound, Expected, Measured};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::expect::{Bound, ExpectedValue, Measurement};
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 use grainbench_scene::record::Series;
@@ -63,7 +63,7 @@ fn interval(scene: &Scene, step: Option<f64>) -> f64 {
 
 /// Coverage of a scene's run by the output.
 #[derive(Clone, Copy)]
-pub(super) struct Covered {
+pub(super) struct Coverage {
     /// Time of the last sample (s).
     pub(super) reached: f64,
     /// Duration of the run (s); `None` if it is a number of cycles of unknown length.
@@ -80,10 +80,10 @@ pub(super) struct Covered {
     partial: bool,
 }
 
-impl Covered {
+impl Coverage {
     /// Computes the coverage from the time step of the output (s), if it is known. Removes samples after the end of the
     /// scene, because the scene does not define them.
-    pub(super) fn new(candidate: &Candidate, step: Option<f64>, observed: &mut Observed, partial: bool) -> Self {
+    pub(super) fn new(candidate: &Candidate, step: Option<f64>, observed: &mut DumpRecord, partial: bool) -> Self {
         let whole = whole(&candidate.scene, step);
         // A wrongly reported time step must not make an early sample count as the end.
         let most = 0.01 * whole.unwrap_or_default();
@@ -102,7 +102,7 @@ impl Covered {
     }
 
     /// Returns the coverage by a part of the samples.
-    pub(super) fn by(self, observed: &Observed) -> Self {
+    pub(super) fn by(self, observed: &DumpRecord) -> Self {
         let time = &observed.series.time;
         Self { reached: time.last().copied().unwrap_or_default(), samples: time.len(), ..self }
     }
@@ -192,7 +192,7 @@ impl Covered {
         let row = Verdict {
             evidence: Evidence::Invariant,
             source: "duration of the scene".to_owned(),
-            tolerance: Made::Exact,
+            tolerance: ToleranceOrigin::Exact,
             because: format!(
                 "what was not seen to its end is not judged; half a step, and digits of the time{}",
                 outputs
@@ -203,8 +203,8 @@ impl Covered {
             ..row
         };
         let Some(whole) = self.whole else { return row.left(Outcome::NoReference, self.why_not().unwrap_or_default()) };
-        let end = Expected::Bound(Bound::AtLeast(whole));
-        let row = Verdict { allowed: self.slack / whole, ..row }.judged(&Measured::new(self.reached, end, whole));
+        let end = ExpectedValue::Bound(Bound::AtLeast(whole));
+        let row = Verdict { allowed: self.slack / whole, ..row }.judged(&Measurement::new(self.reached, end, whole));
         if let [cut, ..] = outputs.cuts() {
             return row.left(Outcome::Known, format!("whole frames before a cut are meant (--partial): {cut}"));
         }

@@ -1,11 +1,11 @@
 //! Comparison of output with the exact solutions of a case.
 
-use super::covered::Covered;
+use super::covered::Coverage;
 use super::{Candidate, judged};
 use grainbench_harness::claim::Claim;
-use grainbench_harness::run::Done;
+use grainbench_harness::run::FinishedRun;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
@@ -17,13 +17,14 @@ pub(super) fn exact(
     claim: &Claim,
     candidate: &Candidate,
     outputs: &Outputs,
-    observed: &Observed,
-    covered: &Covered,
+    observed: &DumpRecord,
+    covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
     let scene = Arc::new(candidate.scene.clone());
-    let done =
-        |series: Series| Done::new(Arc::clone(&scene), Arc::new(record(&candidate.scene, outputs, observed, series)));
+    let done = |series: Series| {
+        FinishedRun::new(Arc::clone(&scene), Arc::new(record(&candidate.scene, outputs, observed, series)))
+    };
     let measured = |series: Series| (claim.measure)(&[done(series)]);
     let row = Verdict {
         evidence: claim.evidence(),
@@ -60,7 +61,7 @@ pub(super) fn exact(
     if is_same(1e3) && is_same(-1e3) { row } else { covered.dense(row) }
 }
 
-fn record(scene: &Scene, outputs: &Outputs, observed: &Observed, series: Series) -> Record {
+fn record(scene: &Scene, outputs: &Outputs, observed: &DumpRecord, series: Series) -> Record {
     let steps = observed.series.step.last().copied().unwrap_or_default();
     let critical = scene.critical_time_step();
     Record {

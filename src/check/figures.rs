@@ -3,10 +3,10 @@
 use super::ours::is_compared;
 use grainbench_harness::compare::peers::{Peer, together};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 
 /// Plots the first columns that change: the output and our runs.
-pub(super) fn figures(ours: &[Peer], file: &str, observed: &Observed) -> Vec<Figure> {
+pub(super) fn figures(ours: &[Peer], file: &str, observed: &DumpRecord) -> Vec<Figure> {
     const MOST: usize = 4;
     const MARKERS: usize = 40;
     const POINTS: usize = 500;

@@ -3,11 +3,11 @@
 use super::ours::{Plan, is_compared};
 use grainbench_dem::convention::Convention;
 use grainbench_harness::compare::peers::{Peer, WIDE, together};
-use grainbench_harness::expect::Measured;
+use grainbench_harness::expect::Measurement;
 use grainbench_harness::statistics::{BLOCKS, difference};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
 use grainbench_scene::perturbed::{PARTED, move_one};
 use grainbench_scene::scene::{ProbeTarget, Scene};
@@ -38,7 +38,7 @@ pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f
 pub(super) fn beyond(
     scene: &Scene,
     ours: &[Peer],
-    observed: &Observed,
+    observed: &DumpRecord,
     horizon: f64,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
@@ -50,7 +50,7 @@ pub(super) fn beyond(
         let quantity = format!("{}, mean after t = {} s", column.name, number::significant(horizon, 6));
         let row = Verdict {
             source: format!("{}, after the predictability horizon", ours.name),
-            tolerance: Made::Interval,
+            tolerance: ToleranceOrigin::Interval,
             allowed: INTERVALS,
             because: format!(
                 "in units of half the 99 % confidence interval of the difference, from the means over {BLOCKS} blocks of time; \
@@ -71,9 +71,9 @@ fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     };
     let largest = expected.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     if means.half_width == 0.0 && means.first == means.second {
-        return row.judged(&Measured::new(means.second, means.first, largest.max(f64::MIN_POSITIVE)));
+        return row.judged(&Measurement::new(means.second, means.first, largest.max(f64::MIN_POSITIVE)));
     }
-    let row = row.judged(&Measured::new(means.second, means.first, means.half_width));
+    let row = row.judged(&Measurement::new(means.second, means.first, means.half_width));
     if row.outcome == Outcome::Pass && INTERVALS * means.half_width > WIDE * largest {
         let open = number::fraction(INTERVALS * means.half_width / largest);
         return row.left(Outcome::NoReference, format!("cannot tell: the interval is {open} of the largest value"));

@@ -11,19 +11,19 @@ mod stored;
 mod subject;
 
 pub use power::{Power, is_of_power};
-pub use subject::Subject;
+pub use subject::DeclaredScene;
 
-use covered::Covered;
+use covered::Coverage;
 use exact::exact;
 use figures::figures;
 use grainbench_cases::solvers::Registry;
-use grainbench_harness::compare::peers::{Compared, Decisive, Peer, Sample, WIDE};
+use grainbench_harness::compare::peers::{ColumnComparison, DecisiveSample, Peer, Sample, WIDE};
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::Measured;
+use grainbench_harness::expect::Measurement;
 use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::{Origin, OutputError, Outputs, steps_in_words};
 use grainbench_reports::{Section, number};
 use grainbench_scene::error::SceneError;
@@ -31,14 +31,14 @@ use grainbench_scene::nalgebra::Vector3;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
 use grainbench_scene::solver::Resolution;
 use ours::{Plan, ours};
-use power::Made;
+use power::CheckInputs;
 use std::sync::Arc;
 use subject::Candidate;
 use thiserror::Error;
 
 /// Reasons why output cannot be checked.
 #[derive(Debug, Error)]
-pub enum NotChecked {
+pub enum CheckError {
     /// The files are damaged or lack something.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -109,16 +109,16 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// # Errors
 /// When the files cannot be read, start unlike every scene of the case, or have a time step that is not below the
 /// critical one.
-pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Result<Section, NotChecked> {
+pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -> Result<Section, CheckError> {
     let mut first_miss = None;
-    let mut matching: Vec<(Candidate, Observed)> = Vec::new();
+    let mut matching: Vec<(Candidate, DumpRecord)> = Vec::new();
     for candidate in subject.candidates()? {
         let observed = outputs.observe(&candidate.scene);
         let observed = match (observed, &first_miss) {
             (Ok(observed), _) => observed,
             // Other variants may have other numbers of grains; only the first error is reported.
             (Err(error), None) => {
-                first_miss = Some(NotChecked::Output(error));
+                first_miss = Some(CheckError::Output(error));
                 continue;
             }
             (Err(_), Some(_)) => continue,
@@ -127,7 +127,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
             None => matching.push((candidate, observed)),
             Some((expected, found)) if first_miss.is_none() => {
                 first_miss =
-                    Some(NotChecked::OtherScene { file: outputs.name(), case: subject.place(), expected, found });
+                    Some(CheckError::OtherScene { file: outputs.name(), case: subject.place(), expected, found });
             }
             Some(_) => {}
         }
@@ -136,15 +136,15 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
     variants.dedup();
     if variants.len() > 1 {
         let variants = variants.join(", ");
-        return Err(NotChecked::Ambiguous { file: outputs.name(), case: subject.name(), variants });
+        return Err(CheckError::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
     // With few printed digits, several scenes of a variant can match. The nearest scene counts, and the first of
     // equally near ones.
     let starts = matching.len();
-    let distance = |(candidate, observed): &(Candidate, Observed)| distance(&candidate.scene, observed);
+    let distance = |(candidate, observed): &(Candidate, DumpRecord)| distance(&candidate.scene, observed);
     matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     if let Some((candidate, observed)) = matching.first_mut() {
-        let covered = Covered::new(candidate, outputs.time_step(), observed, options.partial);
+        let covered = Coverage::new(candidate, outputs.time_step(), observed, options.partial);
         refuse_unstable(&candidate.scene, outputs, options)?;
         let mut section = section(subject, candidate, outputs, observed, &covered, options);
         if let Some(row) = section.verdicts.first_mut().filter(|_| starts > 1) {
@@ -154,7 +154,7 @@ pub fn check(subject: &Subject<'_>, outputs: &Outputs, options: Options) -> Resu
         }
         return Ok(section);
     }
-    Err(first_miss.unwrap_or_else(|| NotChecked::OtherScene {
+    Err(first_miss.unwrap_or_else(|| CheckError::OtherScene {
         file: outputs.name(),
         case: subject.name(),
         expected: "a variant with a scene".to_owned(),
@@ -184,7 +184,7 @@ impl Start {
 }
 
 /// Returns the coordinates of probed grains in the first sample.
-fn probed<'o>(scene: &'o Scene, observed: &'o Observed) -> impl Iterator<Item = Start> + 'o {
+fn probed<'o>(scene: &'o Scene, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
     observed.series.columns.iter().enumerate().filter_map(|(at, column)| {
         let (probe, quantity) = column.name.rsplit_once('.')?;
         let probe = scene.probes.iter().find(|other| other.name == probe)?;
@@ -199,7 +199,7 @@ fn probed<'o>(scene: &'o Scene, observed: &'o Observed) -> impl Iterator<Item = 
 
 /// Returns positions, velocities and spins of all grains in the first snapshot, if the files have them. `step` is the
 /// time step (s). Components out of the plane of the scene are left out.
-fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o Observed) -> impl Iterator<Item = Start> + 'o {
+fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
     let axes = if scene.dimension == Dimension::Two { (0..2, 2..3) } else { (0..3, 0..3) };
     let rim = scene.grains.iter().map(|grain| grain.velocity.norm() + grain.radius * grain.spin.norm());
     let fastest = rim.fold(0.0, f64::max);
@@ -243,13 +243,13 @@ fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
 }
 
 /// Returns the largest distance of a coordinate from the start of a scene, in grain radii.
-fn distance(scene: &Scene, observed: &Observed) -> f64 {
+fn distance(scene: &Scene, observed: &DumpRecord) -> f64 {
     let starts = probed(scene, observed).chain(of_snapshot(scene, None, observed)).filter(|start| start.unit == "m");
     starts.map(|start| start.off.abs() / start.scale).fold(0.0, f64::max)
 }
 
 /// Returns the expected and the found value of the first grain that does not start as in the scene.
-fn misplaced(scene: &Scene, outputs: &Outputs, observed: &Observed) -> Option<(String, String)> {
+fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord) -> Option<(String, String)> {
     let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
     let mut is_placed = false;
     for start in probed(scene, observed).chain(of_snapshot(scene, outputs.time_step(), observed)) {
@@ -271,22 +271,22 @@ fn at(origin: Origin) -> String {
 }
 
 /// Rejects time steps at or above the critical one, because our own solvers would be unstable.
-fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), NotChecked> {
+fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), CheckError> {
     let critical = scene.critical_time_step();
     match outputs.time_step() {
         Some(step) if scene.is_unstable_at(step) && !options.allow_unstable => {
-            Err(NotChecked::Unstable { file: outputs.name(), critical, step })
+            Err(CheckError::Unstable { file: outputs.name(), critical, step })
         }
         _ => Ok(()),
     }
 }
 
 fn section(
-    subject: &Subject<'_>,
+    subject: &DeclaredScene<'_>,
     candidate: &Candidate,
     outputs: &Outputs,
-    observed: &Observed,
-    covered: &Covered,
+    observed: &DumpRecord,
+    covered: &Coverage,
     options: Options,
 ) -> Section {
     let file = outputs.name();
@@ -361,35 +361,35 @@ fn section(
 }
 
 /// Our runs of a scene.
-struct OfOurs {
+struct OwnRuns {
     plan: Plan,
     peers: Vec<Peer>,
     /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
     horizon: Option<f64>,
 }
 
-impl OfOurs {
+impl OwnRuns {
     fn made<'c>(
         &'c self,
         candidate: &'c Candidate,
         outputs: &'c Outputs,
-        observed: &'c Observed,
-        covered: &'c Covered,
-    ) -> Made<'c> {
+        observed: &'c DumpRecord,
+        covered: &'c Coverage,
+    ) -> CheckInputs<'c> {
         let (plan, ours, horizon, scene) = (&self.plan, &self.peers, self.horizon, &candidate.scene);
-        Made { scene, plan, ours, horizon, outputs, observed, covered }
+        CheckInputs { scene, plan, ours, horizon, outputs, observed, covered }
     }
 }
 
-fn against_ours(scene: &Scene, plan: Plan) -> Result<OfOurs, String> {
+fn against_ours(scene: &Scene, plan: Plan) -> Result<OwnRuns, String> {
     let peers = ours(scene, &plan)?;
     let horizon = horizon::find(scene, &plan, &peers)?;
-    Ok(OfOurs { plan, peers, horizon })
+    Ok(OwnRuns { plan, peers, horizon })
 }
 
 /// Compares the output with our runs: sample by sample up to the horizon, and by means after it. Adds the power of the
 /// check.
-fn rows_of_ours(made: &Made<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
+fn rows_of_ours(made: &CheckInputs<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
     let mut rows = made.compare(made.observed, row);
     if rows.is_empty() {
         let reason = "fewer than two samples are at times of our runs, or nothing that is compared was told";
@@ -406,12 +406,12 @@ fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, outcome: Outcome, reason
 
 /// Evaluates a measured value, with the tolerance widened by the uncertainty of the printed digits. A tolerance above a
 /// twentieth of the scale never gives a green result.
-fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measured) -> Verdict {
+fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measurement) -> Verdict {
     widened(row, open, outputs).judged(found).unless_wider_than(WIDE)
 }
 
 /// Allowed error of a column, without the uncertainty of its digits.
-struct Beside {
+struct ErrorAllowance {
     /// Constant part, as a fraction of the scale.
     floor: f64,
     /// Factor for the change from halving the time step.
@@ -424,12 +424,17 @@ struct Beside {
 const FEW: f64 = 0.1;
 
 /// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.
-fn judged_in_time(row: Verdict, compared: &Compared<'_>, beside: &Beside, outputs: &Outputs) -> Verdict {
+fn judged_in_time(
+    row: Verdict,
+    compared: &ColumnComparison<'_>,
+    beside: &ErrorAllowance,
+    outputs: &Outputs,
+) -> Verdict {
     let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
     let Some(decisive) = compared.decisive(|sample| allowed(sample) + compared.open) else {
         return row.left(Outcome::NoReference, "there is no sample");
     };
-    let Decisive { sample, wide, first_outside, .. } = decisive;
+    let DecisiveSample { sample, wide, first_outside, .. } = decisive;
     let times = if beside.times == 1.0 { String::new() } else { format!(", taken {} times", beside.times) };
     let because = format!(
         "around t = {} s {} differ by {}, half the step by {}{times}, and {} beside",

@@ -1,13 +1,13 @@
 //! Comparison of output with our solvers on the same scene.
 
-use super::Beside;
-use super::covered::Covered;
+use super::ErrorAllowance;
+use super::covered::Coverage;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_harness::compare::peers::{Compared, Peer, against};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::compare::peers::{ColumnComparison, Peer, against};
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_scene::record::Record;
 use grainbench_scene::refined::refined;
@@ -39,7 +39,7 @@ impl Plan {
     /// Returns a plan whose time step divides all sample times: the longest time step of the output (s), or else the
     /// shortest. Without a plan, returns the outcome and its reason. It is red if the time steps of the output do not
     /// reach its own times.
-    pub(super) fn new(observed: &Observed, [shortest, longest]: [f64; 2]) -> Result<Self, (Outcome, String)> {
+    pub(super) fn new(observed: &DumpRecord, [shortest, longest]: [f64; 2]) -> Result<Self, (Outcome, String)> {
         let amber = |reason: String| (Outcome::NoReference, reason);
         let times = &observed.series.time;
         if !times.windows(2).all(|pair| pair[0] < pair[1]) {
@@ -111,8 +111,8 @@ pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],
     outputs: &Outputs,
-    observed: &Observed,
-    covered: &Covered,
+    observed: &DumpRecord,
+    covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
@@ -139,10 +139,10 @@ pub(super) fn compare(
 }
 
 fn column(
-    compared: &Compared<'_>,
+    compared: &ColumnComparison<'_>,
     nearest: &str,
     outputs: &Outputs,
-    covered: &Covered,
+    covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
     // Programs print forces with the velocities of the full step, half a step after those that moved the grains. For a
@@ -150,9 +150,9 @@ fn column(
     let times = if compared.unit == "N" { 3.0 } else { 1.0 };
     let row = Verdict {
         source: format!("{nearest}, the nearest of our conventions, at the file's time step"),
-        tolerance: Made::Computed,
+        tolerance: ToleranceOrigin::Computed,
         ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };
-    let beside = Beside { floor: FLOOR, times, conventions: "conventions" };
+    let beside = ErrorAllowance { floor: FLOOR, times, conventions: "conventions" };
     covered.all(compared.samples.len(), super::judged_in_time(row, compared, &beside, outputs))
 }

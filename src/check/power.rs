@@ -1,15 +1,15 @@
 //! Power of a check: the changes of the scene that the given output would reveal. Our solver runs the scene with one
 //! effect changed, and its result is checked as if it were the output.
 
-use super::covered::Covered;
+use super::covered::Coverage;
 use super::horizon;
 use super::ours::{Plan, compare, is_compared};
 use grainbench_dem::convention::Convention;
 use grainbench_harness::compare::peers::{Peer, together};
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::{Bound, Expected, Measured};
+use grainbench_harness::expect::{Bound, ExpectedValue, Measurement};
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 use grainbench_scene::contact_law::ContactLaw;
@@ -60,7 +60,7 @@ struct Size {
 }
 
 /// Outcome of the search for one effect.
-enum Found {
+enum SearchOutcome {
     /// Smallest revealed change; larger changes are revealed too.
     Revealed(f64),
     /// Even the largest change is not revealed.
@@ -70,20 +70,20 @@ enum Found {
 }
 
 /// Inputs of a check, which can be repeated for other output.
-pub(super) struct Made<'c> {
+pub(super) struct CheckInputs<'c> {
     pub(super) scene: &'c Scene,
     pub(super) plan: &'c Plan,
     pub(super) ours: &'c [Peer],
     /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
     pub(super) horizon: Option<f64>,
     pub(super) outputs: &'c Outputs,
-    pub(super) observed: &'c Observed,
-    pub(super) covered: &'c Covered,
+    pub(super) observed: &'c DumpRecord,
+    pub(super) covered: &'c Coverage,
 }
 
-impl Made<'_> {
+impl CheckInputs<'_> {
     /// Compares output with our runs: sample by sample up to the horizon, and by means after it.
-    pub(super) fn compare(&self, observed: &Observed, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
+    pub(super) fn compare(&self, observed: &DumpRecord, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
         let mut seen = observed.clone();
         if let Some(horizon) = self.horizon {
             seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
@@ -110,7 +110,7 @@ impl Made<'_> {
         let (mut rows, mut not_tried) = (Vec::new(), Vec::new());
         for family in families(self.scene) {
             match self.find(&family, &mut left) {
-                Found::NotTried(why) => not_tried.push(format!("{} ({why})", family.name)),
+                SearchOutcome::NotTried(why) => not_tried.push(format!("{} ({why})", family.name)),
                 found => rows.push(outcome_row(
                     &family,
                     &found,
@@ -132,18 +132,18 @@ impl Made<'_> {
 
     /// Finds the smallest revealed change, from the largest to smaller ones. Output that hides a large change hides a
     /// smaller one too.
-    fn find(&self, family: &Family, left: &mut u64) -> Found {
+    fn find(&self, family: &Family, left: &mut u64) -> SearchOutcome {
         let mut smallest = None;
         for size in family.sizes.iter().rev() {
             let is_revealed = self.is_revealed(size, left);
             match (is_revealed, smallest) {
                 (Ok(true), _) => smallest = Some(size.amount),
-                (Ok(false), None) => return Found::Hidden,
-                (Err(why), None) => return Found::NotTried(why),
+                (Ok(false), None) => return SearchOutcome::Hidden,
+                (Err(why), None) => return SearchOutcome::NotTried(why),
                 (Ok(false) | Err(_), Some(_)) => break,
             }
         }
-        smallest.map_or_else(|| Found::NotTried("it has no smaller value".to_owned()), Found::Revealed)
+        smallest.map_or_else(|| SearchOutcome::NotTried("it has no smaller value".to_owned()), SearchOutcome::Revealed)
     }
 
     fn is_revealed(&self, size: &Size, left: &mut u64) -> Result<bool, String> {
@@ -163,7 +163,7 @@ impl Made<'_> {
     /// Returns true if a run would give a red result as output, with the sample times, columns and digits of the real
     /// output.
     fn is_red(&self, series: &Series) -> bool {
-        let mut seen = Observed::default();
+        let mut seen = DumpRecord::default();
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
         let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);
         for ((column, values), open) in columns.zip(&self.observed.uncertainty) {
@@ -192,14 +192,14 @@ impl Made<'_> {
 }
 
 /// Returns the result for an effect that was tried.
-fn outcome_row(family: &Family, found: &Found, row: Verdict) -> Verdict {
+fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict {
     let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
     let row = Verdict { because: format!("tried: {}", sizes.join(", ")), ..row };
     let largest = family.sizes.last();
     match (found, largest) {
-        (Found::Revealed(amount), Some(largest)) => {
-            let most = Expected::Bound(Bound::AtMost(largest.amount));
-            row.judged(&Measured::new(*amount, most, 1.0))
+        (SearchOutcome::Revealed(amount), Some(largest)) => {
+            let most = ExpectedValue::Bound(Bound::AtMost(largest.amount));
+            row.judged(&Measurement::new(*amount, most, 1.0))
         }
         (_, largest) => {
             let words = largest.map_or("any change", |largest| &largest.words);

@@ -1,14 +1,14 @@
 //! Comparison of output with stored runs of LAMMPS and LIGGGHTS of the same scene.
 
-use super::covered::Covered;
+use super::covered::Coverage;
 use super::ours::is_compared;
-use super::{Beside, Candidate, judged_in_time};
+use super::{Candidate, ErrorAllowance, judged_in_time};
 use grainbench_cases::stored;
 use grainbench_harness::case::Case;
 use grainbench_harness::compare::peers::{Peer, against};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::Verdict;
-use grainbench_reference::observer::Observed;
+use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
@@ -27,8 +27,8 @@ pub(super) fn compare(
     case: &Case,
     candidate: &Candidate,
     outputs: &Outputs,
-    observed: &Observed,
-    covered: &Covered,
+    observed: &DumpRecord,
+    covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
     let runs = runs(case, candidate);
@@ -40,13 +40,13 @@ pub(super) fn compare(
         let until = number::significant(compared.samples.last().map_or(0.0, |sample| sample.time), 6);
         let row = Verdict {
             source: nearest.to_owned(),
-            tolerance: Made::Estimated,
+            tolerance: ToleranceOrigin::Estimated,
             ..row(
                 format!("{}, worst of {} stored samples to t = {until} s", compared.name, compared.samples.len()),
                 compared.unit,
             )
         };
-        let beside = Beside { floor: FLOOR, times: SAFETY, conventions: "stored runs" };
+        let beside = ErrorAllowance { floor: FLOOR, times: SAFETY, conventions: "stored runs" };
         covered.dense_in(
             compared.samples.iter().map(|sample| sample.time),
             judged_in_time(row, &compared, &beside, outputs),

@@ -1,13 +1,13 @@
 //! Scene of the output: a case with its own or with changed parameters, or a scene of the user.
 
 use grainbench_harness::case::{Case, PLAIN};
-use grainbench_harness::claim::{Claim, Elsewhere};
+use grainbench_harness::claim::{Claim, ParameterVariation};
 use grainbench_harness::tolerance::computed;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 
 /// Declared scene of the output.
-pub enum Subject<'s> {
+pub enum DeclaredScene<'s> {
     /// A case, with one variant or with the variant that matches the first sample.
     Case {
         /// The case.
@@ -28,7 +28,7 @@ pub enum Subject<'s> {
     },
 }
 
-impl Subject<'_> {
+impl DeclaredScene<'_> {
     /// Returns the case; `None` for a scene of the user.
     pub(super) const fn case(&self) -> Option<&'static Case> {
         match self {
@@ -143,7 +143,7 @@ fn with_other_numbers(
 
 /// Returns a claim for another scene of the same kind; `None` if its tolerance is unknown there.
 fn elsewhere(mut claim: Claim, scene: &Scene) -> Option<Claim> {
-    let Elsewhere { quantity, allowed, because } = claim.elsewhere.take()?;
+    let ParameterVariation { quantity, allowed, because } = claim.elsewhere.take()?;
     let allowed = allowed(scene);
     let is_known = claim.scope.is_of_grains() && allowed.is_finite();
     is_known.then(|| Claim { quantity: quantity.to_owned(), tolerance: computed(allowed, because), ..claim })

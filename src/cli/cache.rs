@@ -6,7 +6,7 @@
 use super::exit;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::solvers::Solvers;
-use grainbench::studies::run_cache::{RunCache, WithCache};
+use grainbench::studies::run_cache::{CachingSolvers, RunCache};
 use std::env;
 #[cfg(unix)]
 use std::fs;
@@ -88,7 +88,7 @@ pub(crate) fn solvers(cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
 /// Returns solvers with the cache if there is one.
 pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     match cache {
-        Some(cache) => Arc::new(WithCache::new(solvers, Arc::clone(cache))),
+        Some(cache) => Arc::new(CachingSolvers::new(solvers, Arc::clone(cache))),
         None => Arc::new(solvers),
     }
 }

@@ -7,7 +7,7 @@ use super::run::{add_reasons, exit_code, is_judged};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
-use grainbench::check::{Options, Power, Subject, check as judge, is_of_power};
+use grainbench::check::{DeclaredScene, Options, Power, check as judge, is_of_power};
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
@@ -127,10 +127,10 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         let (own, _) = subject::scene(scene, &arguments.set)?;
         let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let unchanged = subject::scene(scene, &[]).ok().map(|(unchanged, _)| Box::new(unchanged));
-        Subject::Scene { name, scene: Box::new(own), own: unchanged }
+        DeclaredScene::Scene { name, scene: Box::new(own), own: unchanged }
     } else {
         let Variant { case, variant } = Variant::read(scene)?;
-        Subject::Case { case, variant, set: &arguments.set }
+        DeclaredScene::Case { case, variant, set: &arguments.set }
     };
     let beside = || {
         arguments
@@ -265,11 +265,11 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
 }
 
 /// Returns the largest number of rows of a snapshot: 16 contacts per grain, and one per grain and wall.
-fn most_rows(subject: &Subject<'_>) -> Result<u64, Fault> {
+fn most_rows(subject: &DeclaredScene<'_>) -> Result<u64, Fault> {
     let row_count = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
     let most = match subject {
-        Subject::Scene { scene, .. } => row_count(scene),
-        Subject::Case { case, .. } => {
+        DeclaredScene::Scene { scene, .. } => row_count(scene),
+        DeclaredScene::Case { case, .. } => {
             let scenes =
                 case.variants()?.into_iter().map(|variant| case.variant(&variant).map(|scene| row_count(&scene)));
             scenes.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or(0)

@@ -7,9 +7,9 @@ use super::run::{add_reasons, exit_code, is_judged};
 use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
-use grainbench::harness::expect::{Bound, Expected, Measured};
+use grainbench::harness::expect::{Bound, ExpectedValue, Measurement};
 use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
-use grainbench::harness::tolerance::Made;
+use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::ReadError;
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
@@ -167,7 +167,7 @@ fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict;
             source: a.to_owned(),
             ..Verdict::open("compare", quantity, unit)
         };
-        let row = row.judged(&Measured::new(value, Expected::Bound(Bound::AtLeast(least)), scale));
+        let row = row.judged(&Measurement::new(value, ExpectedValue::Bound(Bound::AtLeast(least)), scale));
         if row.outcome == verdict::Outcome::Fail && partial {
             return row.left(verdict::Outcome::Known, "missing samples are meant (--partial)");
         }
@@ -216,7 +216,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
     let row = Verdict {
         solver: b.to_owned(),
         allowed: tolerance + open,
-        tolerance: Made::Required,
+        tolerance: ToleranceOrigin::Required,
         because: format!(
             "asked for {}, and {} for the printed digits of both",
             number::fraction(tolerance),
@@ -227,7 +227,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
         ..Verdict::open("compare", quantity(&difference.name), "1")
     };
     let first = difference.course.iter().find(|sample| sample.beyond_digits / difference.scale > tolerance);
-    let row = row.judged(&Measured::new(difference.second, difference.first, difference.scale));
+    let row = row.judged(&Measurement::new(difference.second, difference.first, difference.scale));
     match (row.outcome, first) {
         (verdict::Outcome::Fail, Some(sample)) => {
             Verdict { detail: Some(format!("first outside at {} {}", key.word(), sample.at)), ..row }

@@ -68,13 +68,13 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
 }
 
 /// Solver with the terms of its conformance.
-pub(crate) type Owing = (Arc<dyn Solver>, Terms);
+pub(crate) type SolverWithTerms = (Arc<dyn Solver>, Terms);
 
 /// Returns the named solvers and external solvers with their terms; all our solvers if none is named.
-pub(crate) fn owing(named: &[String]) -> Result<Vec<Owing>, Fault> {
+pub(crate) fn owing(named: &[String]) -> Result<Vec<SolverWithTerms>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
-    let mut solvers: Vec<Owing> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
+    let mut solvers: Vec<SolverWithTerms> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
         let outside = solver::outside(path)?;
         let terms = outside.terms();

@@ -4,16 +4,16 @@ use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::keep::keep_study;
 use super::progress::Progress;
 use super::provenance::provenance;
-use super::strangers::WithStrangers;
+use super::strangers::NamedSolvers;
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::subject::Subject;
+use grainbench::harness::subject::TargetQuantity;
 use grainbench::reports::study::point::Point;
 use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
-use grainbench::studies::Follow;
+use grainbench::studies::ProgressObserver;
 use grainbench::studies::cost::against::{compare, shared};
-use grainbench::studies::cost::run::{Meter, Wanted};
+use grainbench::studies::cost::run::{Meter, PointSelection};
 use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::BTreeMap;
@@ -60,11 +60,11 @@ pub(crate) const ROUNDS: u32 = 5;
 /// Measures the points and writes the report. The report is updated after each target quantity.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let subjects = subjects(&arguments.cases)?;
-    let (solvers, named) = WithStrangers::read(&arguments.solver)?;
+    let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
     check_writable(&arguments.out)?;
     let cache = ResultCache::open(&arguments.out.join("points"), arguments.no_cache).map_err(Fault::writing)?;
-    let wanted = Wanted { solvers: named, all: arguments.levels == "all", counts: false };
+    let wanted = PointSelection { solvers: named, all: arguments.levels == "all", counts: false };
     let meter = Meter::new(&cache, wanted, &solvers);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
@@ -128,7 +128,7 @@ pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
 }
 
 /// Returns the target quantities of the named cases, in the order of the registry.
-pub(crate) fn subjects(names: &[String]) -> Result<Vec<Subject>, Fault> {
+pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {
@@ -211,7 +211,7 @@ impl Follower {
     }
 }
 
-impl Follow for Follower {
+impl ProgressObserver for Follower {
     fn now(&mut self, piece: &str) {
         if let Some(progress) = &self.progress {
             progress.now(piece);

@@ -14,7 +14,7 @@ type Name = [String; 5];
 
 /// Results and controls from a `results.json` file.
 #[derive(Deserialize)]
-pub(crate) struct Earlier {
+pub(crate) struct EarlierReport {
     #[serde(default)]
     provenance: Options,
     verdicts: Vec<Verdict>,
@@ -32,7 +32,7 @@ fn name(row: &Verdict) -> Name {
     [&row.case, &row.variant, &row.solver, &row.resolution, &row.quantity].map(String::clone)
 }
 
-impl Earlier {
+impl EarlierReport {
     /// Reads the directory of a report, or its `results.json`. `place` is the option that names the path.
     pub(crate) fn read(place: &str, path: &Path) -> Result<Self, Fault> {
         let file = if path.is_dir() { path.join("results.json") } else { path.to_owned() };

@@ -10,14 +10,14 @@ use super::subject::{self, Variant};
 use super::value::positive;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
-use grainbench::reports::study::effects::Worth;
+use grainbench::reports::study::effects::EffectResult;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::scene::effect::Effect;
 use grainbench::scene::solver::{Method, Resolution};
-use grainbench::studies::effects::ledger::{Ledger, Piece};
-use grainbench::studies::effects::scene::Asked;
+use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
+use grainbench::studies::effects::scene::StudyInput;
 use grainbench::studies::result_cache::ResultCache;
-use grainbench::studies::{Follow, identity};
+use grainbench::studies::{ProgressObserver, identity};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     cases: Vec<String>,
     #[command(flatten)]
-    yours: Yours,
+    yours: SceneOptions,
     /// Repeat finished parts.
     #[arg(long)]
     no_cache: bool,
@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
 
 /// Options for a scene of the user.
 #[derive(clap::Args)]
-struct Yours {
+struct SceneOptions {
     /// Solver for your own scene file.
     #[arg(long, value_name = "NAME|SOLVER.toml", default_value = SOLVER)]
     solver: String,
@@ -63,7 +63,7 @@ const SOLVER: &str = "dem";
 /// Default of the smallest relevant change of a probe, as a fraction of its largest value.
 const MATTERS: f64 = 0.01;
 
-impl Yours {
+impl SceneOptions {
     /// Returns true if all options have their defaults. Cases set these options themselves and would ignore them.
     fn is_usual(&self) -> bool {
         self.solver == SOLVER && self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq()
@@ -136,7 +136,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let (scene, _) = subject::scene(name, &[])?;
     let solver = solver::find(&yours.solver)?;
     check_writable(&arguments.out)?;
-    let asked = Asked {
+    let asked = StudyInput {
         name: name.to_owned(),
         scene: &scene,
         solver: &*solver,
@@ -166,7 +166,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
 
 /// Returns true if an absent effect with a neutral value changes a result.
 pub(crate) fn is_red(study: &Study) -> bool {
-    study.ledger.iter().any(|entry| entry.worth == Worth::NotInert)
+    study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
 }
 
 /// Prints the results. The outcome is red if an absent effect with a neutral value changes a result.
@@ -187,7 +187,7 @@ fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
 }
 
 /// Returns the effects studies of the named cases, with their effects.
-fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<Piece>)>, Fault> {
+fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {

@@ -9,7 +9,7 @@ use grainbench::fields::grid::Grid;
 use grainbench::fields::mask::{Masks, Orifice};
 use grainbench::fields::trails::Trails;
 use grainbench::reference::ReadError;
-use grainbench::reference::grain_dump::{Beside, GrainDump};
+use grainbench::reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench::reference::observer::Names;
 use grainbench::reports::elements::{Summary, write_elements};
 use grainbench::reports::{each_snapshot, number, refuse_mixed};
@@ -193,7 +193,7 @@ fn of_dump(
     arguments: &Arguments,
     take: &mut impl FnMut(Snapshot) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
-    let beside = Beside {
+    let beside = DumpOptions {
         names: Names(arguments.map.clone()),
         radius: arguments.radius,
         density: arguments.density,

@@ -4,7 +4,7 @@
 use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::reference::round_robin::{
-    Course, DRUM_SCENE, Drum, Impact, Kind, Published, Quantity, STEADY, Silo, Spread, Start, of_all, pairs, read,
+    Course, DRUM_SCENE, Drum, Impact, Kind, PublishedTable, Quantity, STEADY, Silo, Spread, Start, of_all, pairs, read,
     read_start, start_in, table_of,
 };
 use grainbench::reports::StagedDir;
@@ -50,7 +50,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
     let mut findings = String::new();
     let mut derived =
         format!("# Derived by `grainbench reference import {}` from tables of the user's own.\n", arguments.work);
-    for Published { name, kind } in &tables {
+    for PublishedTable { name, kind } in &tables {
         let figure = match kind {
             Kind::Impact(impact) => {
                 if impact.courses.len() > 1 {
@@ -96,7 +96,7 @@ pub(crate) fn import(arguments: &Import) -> Outcome {
 }
 
 /// Reads the tables of a directory, in the order of their names; other files are skipped.
-fn tables(directory: &Path) -> Result<Vec<Published>, Fault> {
+fn tables(directory: &Path) -> Result<Vec<PublishedTable>, Fault> {
     let shown = directory.display();
     let unreadable =
         |error: std::io::Error| Fault::input(format!("{shown}: expected a directory of tables, found {error}"));

@@ -2,9 +2,9 @@
 //! with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the source tree.
 
 use super::exit::Fault;
-use super::select::Selected;
-use grainbench::reference::outside::Outside;
-use grainbench::reports::judged::Judged;
+use super::select::CaseSelection;
+use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::study::{Study, kept_text};
 use grainbench::reports::{Report, write_file};
 use std::fs;
@@ -15,12 +15,13 @@ const KEEPS: &str = "judged.json";
 const UNKNOWN: &str = "not told";
 
 /// Returns the only selected external solver.
-pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
+pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {
     let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
         return Err(Fault::input("--update-stored: expected one program by its manifest, found a solver of ours"));
     };
-    let is_it = |other: Option<&Outside>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
+    let is_it =
+        |other: Option<&ExternalProgram>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
     if programs.all(is_it) {
         Ok(program)
     } else {
@@ -29,17 +30,17 @@ pub(crate) fn program(selected: &[Selected]) -> Result<&Outside, Fault> {
 }
 
 /// Reads the stored results of an external solver.
-pub(crate) fn read(program: &Outside) -> Result<Judged, Fault> {
+pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
     let path = program.folder().join(KEEPS);
     let wrong = |found: String| {
         Fault::input(format!("{KEEPS} beside the manifest: expected what `--update-stored` leaves, found {found}"))
     };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    Judged::read(&text).map_err(|error| wrong(error.to_string()))
+    ExternalResults::read(&text).map_err(|error| wrong(error.to_string()))
 }
 
 /// Returns the name and version of an external solver if they differ from the stored ones.
-pub(crate) fn other_program(program: &Outside, kept: &Judged) -> Vec<String> {
+pub(crate) fn other_program(program: &ExternalProgram, kept: &ExternalResults) -> Vec<String> {
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let pairs = [("name", &program.manifest().name, &kept.program), ("version", &version, &kept.version)];
     let other = pairs.into_iter().filter(|(_, is, was)| is != was);
@@ -53,10 +54,10 @@ pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
 }
 
 /// Stores the results of an external solver next to its manifest.
-pub(crate) fn keep(program: &Outside, report: &Report) -> Result<(), Fault> {
+pub(crate) fn keep(program: &ExternalProgram, report: &Report) -> Result<(), Fault> {
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
-    let text = Judged::from_report(name, version, adapter, report).text().map_err(Fault::input)?;
+    let text = ExternalResults::from_report(name, version, adapter, report).text().map_err(Fault::input)?;
     write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
 }

@@ -6,14 +6,14 @@ use super::exit::{Fault, Outcome, print, say};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::value::whole;
-use grainbench::cases::kept::{self, Wanted};
+use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::{Case, runner, solvers};
-use grainbench::harness::run::{Done, Set};
+use grainbench::harness::run::{FinishedRun, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::reports::StagedDir;
 use grainbench::resume::{self, Place};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Ahead, RunError, Watch};
+use grainbench::scene::solver::{RunError, RunOutline, Watch};
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// Arguments of `keep`.
 #[derive(clap::Args)]
-pub(crate) struct Keep {
+pub(crate) struct KeepArguments {
     /// Cases; all cases with stored results by default.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
@@ -52,7 +52,7 @@ pub(crate) struct Keep {
 const EVERY: u64 = 20_000;
 
 /// Does the runs and stores their results. Each result is complete before the next run begins.
-pub(crate) fn keep(arguments: &Keep) -> Outcome {
+pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     let known = kept::cases();
     let names = || known.iter().map(|case| case.name);
     if let Some(unknown) = arguments.cases.iter().find(|name| !names().any(|known| known == name.as_str())) {
@@ -60,7 +60,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
     }
     let is_named = |case: &&&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
     let largest = if arguments.paper_size { Set::Paper } else { Set::Long };
-    let is_meant = |wanted: &Wanted| {
+    let is_meant = |wanted: &StorableRun| {
         wanted.set() <= largest && arguments.run.as_ref().is_none_or(|letters| wanted.id.contains(letters.as_str()))
     };
     let interrupt = Interrupt::listen();
@@ -75,7 +75,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
     for case in known.iter().filter(is_named) {
         let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));
         let runner = runner.with_data(arguments.data.as_deref());
-        let wanted: Vec<Wanted> = kept::all(case).into_iter().filter(is_meant).collect();
+        let wanted: Vec<StorableRun> = kept::all(case).into_iter().filter(is_meant).collect();
         for (place, one) in wanted.iter().enumerate() {
             let given = match runner.given(&one.claim, &one.run, one.wrong) {
                 Err(RunError::NotAvailable { reason, .. }) if arguments.data.is_none() => {
@@ -85,7 +85,7 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
                 }
                 given => given.map_err(Fault::input)?,
             };
-            let keeping = Keeping {
+            let keeping = StorageTask {
                 arguments,
                 runner: &runner,
                 wanted: one,
@@ -121,17 +121,17 @@ pub(crate) fn keep(arguments: &Keep) -> Outcome {
 }
 
 /// Run whose result is to be stored.
-struct Keeping<'a> {
-    arguments: &'a Keep,
+struct StorageTask<'a> {
+    arguments: &'a KeepArguments,
     runner: &'a Runner,
-    wanted: &'a Wanted,
+    wanted: &'a StorableRun,
     given: Arc<Scene>,
     /// Description of the run for the progress bar.
     words: String,
     interrupt: &'a Interrupt,
 }
 
-impl Keeping<'_> {
+impl StorageTask<'_> {
     /// Does the run, stores the result, and then deletes the checkpoint.
     fn done(&self) -> Result<(), Fault> {
         let Self { wanted, runner, .. } = self;
@@ -163,12 +163,12 @@ impl Keeping<'_> {
     }
 
     fn checkpoint(&self) -> PathBuf {
-        let Wanted { case, id, .. } = self.wanted;
+        let StorableRun { case, id, .. } = self.wanted;
         self.arguments.checkpoints.join(format!("{}-{id}.checkpoint", case.name))
     }
 
     /// Does the run, from its checkpoint if there is one.
-    fn resumed(&self) -> Result<Done, Fault> {
+    fn resumed(&self) -> Result<FinishedRun, Fault> {
         let run = &self.wanted.run;
         let solver = solvers::by_name(run.solver)
             .ok_or_else(|| Fault::input(format!("expected a solver, found `{}`", run.solver)))?;
@@ -183,7 +183,7 @@ impl Keeping<'_> {
         let place = Place { path: &path, every: EVERY };
         let record = resume::run(solver.as_ref(), &self.given, &run.resolution, from.as_ref(), place, &mut watcher);
         match record {
-            Ok(record) => Ok(Done::new(Arc::clone(&self.given), Arc::new(record))),
+            Ok(record) => Ok(FinishedRun::new(Arc::clone(&self.given), Arc::new(record))),
             Err(error @ RunError::Interrupted { .. }) if path.exists() => {
                 let path = path.display();
                 Err(Fault::Broken(format!("{}: {error}; the same command goes on from {path}", self.wanted.id)))
@@ -196,14 +196,14 @@ impl Keeping<'_> {
 
 /// Observer that shows the progress of a run.
 struct Watcher<'a> {
-    of: &'a Keeping<'a>,
+    of: &'a StorageTask<'a>,
     progress: Option<Progress>,
     /// True before the first report of progress.
     is_new: bool,
 }
 
 impl Watch for Watcher<'_> {
-    fn begin(&mut self, ahead: Ahead) {
+    fn begin(&mut self, ahead: RunOutline) {
         let progress = Progress::new(ahead.steps, "steps");
         progress.now(&self.of.words);
         self.progress = Some(progress);

@@ -10,8 +10,8 @@ use grainbench::cases::solvers;
 use grainbench::reports::StagedDir;
 use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
-use grainbench::studies::Follow;
-use grainbench::studies::race::{Heat, Race, Racer, Track, heat};
+use grainbench::studies::ProgressObserver;
+use grainbench::studies::race::{BenchmarkedSolver, SceneThroughput, ThroughputBenchmark, Track, heat};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -93,21 +93,24 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
         .iter()
         .flat_map(|pair| pair.iter().map(|&name| (name, pair[1])))
         .filter(|(name, _)| wanted(name))
-        .filter_map(|(name, against)| Some(Racer { solver: solvers::by_name(name)?.into(), against, stays: false }));
-    let mut racers: Vec<Racer> = of_registry.collect();
+        .filter_map(|(name, against)| {
+            Some(BenchmarkedSolver { solver: solvers::by_name(name)?.into(), against, stays: false })
+        });
+    let mut racers: Vec<BenchmarkedSolver> = of_registry.collect();
     for path in manifests {
         let program = solver::outside(path)?;
         let stays = !program.manifest().worker.is_empty();
-        racers.push(Racer { solver: program, against: PAIRS[0][1], stays });
+        racers.push(BenchmarkedSolver { solver: program, against: PAIRS[0][1], stays });
     }
     let start = Instant::now();
     let laps = tracks.len() as u64 * racers.len() as u64 * u64::from(arguments.rounds);
     let mut follower = Laps(Progress::new(laps, "laps"));
-    let heats: Vec<Heat> = tracks.iter().map(|track| heat(track, &racers, arguments.rounds, &mut follower)).collect();
+    let heats: Vec<SceneThroughput> =
+        tracks.iter().map(|track| heat(track, &racers, arguments.rounds, &mut follower)).collect();
     drop(follower);
     let has_run = heats.iter().flat_map(|heat| &heat.results).any(|raced| !raced.rates.is_empty());
     let options = vec![format!("rounds {}", arguments.rounds)];
-    let race = Race { provenance: provenance(options, start.elapsed().as_secs_f64()), heats };
+    let race = ThroughputBenchmark { provenance: provenance(options, start.elapsed().as_secs_f64()), heats };
     let table = race.table();
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     let json = serde_json::to_string_pretty(&race).map_err(Fault::input)?;
@@ -144,7 +147,7 @@ fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
 
 struct Laps(Progress);
 
-impl Follow for Laps {
+impl ProgressObserver for Laps {
     fn now(&mut self, piece: &str) {
         self.0.now(piece);
     }

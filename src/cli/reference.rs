@@ -3,16 +3,16 @@
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::import::{Import, import};
-use super::kept_runs::{Keep, keep};
+use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::run::exit_code;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
-use grainbench::cases::uncertainty::{self, Stored};
+use grainbench::cases::uncertainty::{self, StoredEstimates};
 use grainbench::cases::{Case, runner};
 use grainbench::harness::run::Set;
-use grainbench::harness::tolerance::Made;
+use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::stored::{folder, make};
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
@@ -31,7 +31,7 @@ pub(crate) enum Command {
     /// Run the programs again and compare with the stored runs.
     Verify(Verify),
     /// Do the long runs and store their results next to the cases, where `run` judges them.
-    Keep(Keep),
+    Keep(KeepArguments),
     /// Estimate discretization errors from three levels of resolution, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
     /// Derive and plot numbers from your copy of third-party data.
@@ -152,13 +152,13 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
     let mut lines = String::new();
     for case in CASES.iter().filter(wanted) {
         let mut claims = (case.claims)();
-        claims.retain(|claim| claim.tolerance.made == Made::Estimated);
+        claims.retain(|claim| claim.tolerance.made == ToleranceOrigin::Estimated);
         if claims.is_empty() {
             continue;
         }
         let runner = runner(case);
         let progress = Progress::new(claims.len() as u64, "estimates");
-        let mut stored = Stored {
+        let mut stored = StoredEstimates {
             program: format!("grainbench {}", env!("CARGO_PKG_VERSION")),
             commit: env!("GRAINBENCH_COMMIT").to_owned(),
             date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),

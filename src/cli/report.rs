@@ -8,7 +8,7 @@ use super::stability;
 use super::value::{positive, whole};
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
-use grainbench::reports::record_figures::{self, Named, Shown};
+use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
 use grainbench::reports::study::{STUDY_FILE, Study, load_study, write_study};
@@ -116,9 +116,10 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> =
         dirs.map(|dir| record_json::load(dir).map_err(Fault::input)).collect::<Result<_, _>>()?;
-    let named: Vec<Named<'_>> = records.iter().map(|record| Named { name: name(record, &records), record }).collect();
-    let plain = Shown::default();
-    let shown = Shown {
+    let named: Vec<NamedRecord<'_>> =
+        records.iter().map(|record| NamedRecord { name: name(record, &records), record }).collect();
+    let plain = FigureOptions::default();
+    let shown = FigureOptions {
         fringe: arguments.fringe_stress,
         window: arguments.window.unwrap_or(plain.window),
         frames: arguments.frames.map_or(plain.frames, usize::from),

@@ -3,7 +3,7 @@
 use super::cache;
 use super::conform;
 use super::cores::{MOST_THREADS, at_once, share};
-use super::earlier::Earlier;
+use super::earlier::EarlierReport;
 use super::exit::{self, Fault, Outcome, RED, check_writable, print};
 use super::filter::Filters;
 use super::github;
@@ -11,20 +11,20 @@ use super::interrupt::Interrupt;
 use super::keep::{self, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
-use super::select::{self, Selected};
+use super::select::{self, CaseSelection};
 use super::value::whole;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
-use grainbench::harness::data::{Data, NotMade};
+use grainbench::harness::data::{Data, SceneDataError};
 use grainbench::harness::figure::Figure;
 use grainbench::harness::mistake;
-use grainbench::harness::run::{Done, Run, Set};
+use grainbench::harness::run::{FinishedRun, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Control, Severity, Verdict};
 use grainbench::reference::has_ended_programs;
-use grainbench::reference::outside::Outside;
-use grainbench::reports::judged::Judged;
+use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
 use grainbench::reports::terminal::failing_lines;
@@ -119,10 +119,10 @@ pub(crate) struct Options {
 pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     let filters = Filters::read(&options.filter)?;
     // Without names, the cases of the earlier run are repeated.
-    let before = if options.retry_failed { Some(Earlier::read("--retry-failed", &options.out)?) } else { None };
-    let of_before = before.as_ref().map(Earlier::cases).unwrap_or_default();
+    let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
+    let of_before = before.as_ref().map(EarlierReport::cases).unwrap_or_default();
     let cases = if cases.is_empty() { &of_before[..] } else { cases };
-    let earlier = options.against.as_deref().map(|path| Earlier::read("--against", path)).transpose()?;
+    let earlier = options.against.as_deref().map(|path| EarlierReport::read("--against", path)).transpose()?;
     let mut selected = select::select(cases, &options.solver, &options.levels)?;
     narrow(&mut selected, options, &filters)?;
     if let Some(folder) = &options.data {
@@ -195,13 +195,13 @@ pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
     Ok(exit_code(&report, options.strict))
 }
 
-/// Returns the reason why an interrupted run is red. [`Earlier`] reads it.
+/// Returns the reason why an interrupted run is red. [`EarlierReport`] reads it.
 fn interrupted(left: usize) -> String {
     format!("interrupted: {left} checks left out")
 }
 
 /// Returns the differences from the stored results of an external solver.
-fn otherwise_than_kept(program: &Outside, kept: &Judged, report: &Report) -> Vec<String> {
+fn otherwise_than_kept(program: &ExternalProgram, kept: &ExternalResults, report: &Report) -> Vec<String> {
     let mut otherwise = keep::other_program(program, kept);
     otherwise.extend(kept.otherwise(report));
     otherwise
@@ -219,7 +219,7 @@ pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
 }
 
 /// Rejects a data directory if no claim uses it, if it contains none of the needed data, or if the data is damaged.
-fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault> {
+fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), Fault> {
     let runs = selected.iter().flat_map(|selection| &selection.claims).flat_map(|claim| &claim.runs);
     let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
     needed.sort_by_key(|data| data.name);
@@ -229,11 +229,12 @@ fn refuse_without_use(selected: &[Selected], folder: &Path) -> Result<(), Fault>
             "--data: expected rows that begin with data of others, found none among those asked for",
         ));
     }
-    let not_made: Vec<NotMade> = needed.iter().filter_map(|data| (data.scene)(folder).err()).collect();
-    let is_wrong = |reason: &NotMade| matches!(reason, NotMade::Wrong(_));
+    let not_made: Vec<SceneDataError> = needed.iter().filter_map(|data| (data.scene)(folder).err()).collect();
+    let is_wrong = |reason: &SceneDataError| matches!(reason, SceneDataError::Wrong(_));
     let any_is_wrong = not_made.iter().any(is_wrong);
     if any_is_wrong || not_made.len() == needed.len() {
-        let reasons = not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(NotMade::into_words);
+        let reasons =
+            not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(SceneDataError::into_words);
         return Err(Fault::input(format!("--data: {}", reasons.collect::<Vec<_>>().join("; "))));
     }
     Ok(())
@@ -252,8 +253,8 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
 
 /// Removes claims that the filters exclude. With `--retry-failed`, it also removes claims that were not red in the
 /// report in `--out`.
-pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &Filters) -> Result<(), Fault> {
-    let before = if options.retry_failed { Some(Earlier::read("--retry-failed", &options.out)?) } else { None };
+pub(crate) fn narrow(selected: &mut Vec<CaseSelection>, options: &Options, filters: &Filters) -> Result<(), Fault> {
+    let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
         let case = of_case.case.name;
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
@@ -261,7 +262,7 @@ pub(crate) fn narrow(selected: &mut Vec<Selected>, options: &Options, filters: &
             |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
         let controls = !options.no_controls;
         let is_meant = |claim: &Claim| {
-            let repeats = |before: &Earlier| {
+            let repeats = |before: &EarlierReport| {
                 let solver = solver(claim);
                 before.was_red(case, &solver, claim) || before.was_left_out(case, &solver, claim, controls)
             };
@@ -340,7 +341,7 @@ pub(crate) fn words(cases: &[String], options: &Options) -> Vec<String> {
 
 /// Work on one case. Each result has its own place, so the order of completion does not matter.
 struct Work<'a> {
-    selected: &'a Selected,
+    selected: &'a CaseSelection,
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     verdicts: Vec<OnceLock<Verdict>>,
@@ -357,7 +358,7 @@ enum Task {
 
 /// Returns the sections of the finished checks, and the number of checks that an interrupt left out.
 fn judge(
-    selected: &[Selected],
+    selected: &[CaseSelection],
     options: &Options,
     thorough: bool,
     cache: Option<&Arc<RunCache>>,
@@ -383,7 +384,7 @@ fn judge(
 /// Returns the work items in order. Claims that need a new run come before claims that only need earlier runs. All
 /// cases progress evenly, so two threads are seldom at one case, where they would wait for the same scene or run.
 /// Figures come last, because they use finished runs.
-fn tasks(selected: &[Selected], with_controls: bool) -> Vec<Task> {
+fn tasks(selected: &[CaseSelection], with_controls: bool) -> Vec<Task> {
     let mut tasks = Vec::new();
     for (case, selected) in selected.iter().enumerate() {
         let share = 1.0 / selected.claims.len() as f64;
@@ -446,7 +447,7 @@ fn do_task(work: &[Work<'_>], task: &Task, progress: &Progress, verbose: bool) -
 }
 
 impl<'a> Work<'a> {
-    fn new(selected: &'a Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
+    fn new(selected: &'a CaseSelection, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Self {
         Self {
             selected,
             solvers: Arc::clone(&solvers),
@@ -480,13 +481,13 @@ impl<'a> Work<'a> {
 }
 
 /// Returns the runner of a selected case.
-pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Runner {
+pub(crate) fn runner(selected: &CaseSelection, options: &Options, thorough: bool, solvers: Arc<dyn Solvers>) -> Runner {
     let runner = Runner::new(selected.case, solvers).live(options.live).thorough(thorough);
     let runner = runner.controlled(!options.no_controls).with_data(options.data.as_deref());
     // With all levels, runs with stored results are repeated too.
     let runner = if thorough { runner.afresh(Set::Paper) } else { runner };
     let runner = match &selected.stranger {
-        Some(stranger) => runner.with_solver(Arc::<Outside>::clone(stranger)),
+        Some(stranger) => runner.with_solver(Arc::<ExternalProgram>::clone(stranger)),
         None => runner,
     };
     runner.threads(usize::from(options.threads))
@@ -496,7 +497,7 @@ pub(crate) fn runner(selected: &Selected, options: &Options, thorough: bool, sol
 ///
 /// # Errors
 /// When a run of a figure fails.
-pub(crate) fn draw(selected: &Selected, runner: &Runner) -> Result<Vec<Figure>, RunError> {
+pub(crate) fn draw(selected: &CaseSelection, runner: &Runner) -> Result<Vec<Figure>, RunError> {
     if selected.stranger.is_some() || selected.is_part {
         // The case's own figures may need runs that none of these claims uses.
         return course::figures(runner, &selected.claims);
@@ -505,7 +506,7 @@ pub(crate) fn draw(selected: &Selected, runner: &Runner) -> Result<Vec<Figure>, 
 }
 
 /// Returns the section of a case without results.
-pub(crate) fn blank(selected: &Selected) -> Section {
+pub(crate) fn blank(selected: &CaseSelection) -> Section {
     let case = selected.case;
     Section {
         name: case.name.to_owned(),
@@ -524,7 +525,7 @@ pub(crate) fn blank(selected: &Selected) -> Section {
 }
 
 /// Returns the cost of a run.
-pub(crate) fn cost(run: &Run, done: &Done) -> RunCost {
+pub(crate) fn cost(run: &Run, done: &FinishedRun) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {
         variant: run.scene_words(),

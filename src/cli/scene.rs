@@ -4,7 +4,7 @@ use super::exit::{Fault, Outcome, print};
 use super::step::Step;
 use super::subject;
 use super::value::{path_and_value, positive};
-use grainbench::reference::outside::{Given, Resolved, SceneFormat};
+use grainbench::reference::outside::{DiscretizedScene, Resolved, SceneFormat};
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
@@ -40,7 +40,7 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let resolution = arguments
         .cells
         .map_or_else(|| arguments.step.resolution(), |cells| Resolution::grid(cells, Resolution::POINTS));
-    let given = Given::new(&scene, &resolution).map_err(Fault::input)?;
+    let given = DiscretizedScene::new(&scene, &resolution).map_err(Fault::input)?;
     let format = match arguments.format {
         Format::Json => SceneFormat::Json,
         Format::Toml => SceneFormat::Toml,

@@ -8,24 +8,24 @@ use grainbench::cases::registry::CASES;
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
-use grainbench::reference::outside::Outside;
+use grainbench::reference::outside::ExternalProgram;
 use std::sync::Arc;
 
 /// Selected claims of one case.
-pub(crate) struct Selected {
+pub(crate) struct CaseSelection {
     /// The case.
     pub(crate) case: &'static Case,
     /// Selected claims in the order of the case; never empty.
     pub(crate) claims: Vec<Claim>,
     /// External solver that replaces the solvers of the claims.
-    pub(crate) stranger: Option<Arc<Outside>>,
+    pub(crate) stranger: Option<Arc<ExternalProgram>>,
     /// True if some claims of the case were removed. Then only the figures of the remaining claims are drawn.
     pub(crate) is_part: bool,
 }
 
 /// Selects the claims of the named cases for the named solvers and levels. An external solver gets the
 /// solver-independent claims.
-pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let (manifests, names): (Vec<&String>, Vec<&String>) = solvers.iter().partition(|name| solver::is_manifest(name));
     let names: Vec<String> = names.into_iter().cloned().collect();
     let mut selected =
@@ -34,7 +34,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
         let stranger = solver::outside(path)?;
         for mut of_case in select_fair(cases, levels)? {
             of_case.claims.retain(|claim| claim.scope.is_asked_of(&*stranger));
-            selected.push(Selected { stranger: Some(Arc::clone(&stranger)), ..of_case });
+            selected.push(CaseSelection { stranger: Some(Arc::clone(&stranger)), ..of_case });
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
@@ -47,7 +47,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
 }
 
 /// Selects the solver-independent claims of the cases.
-pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let mut selected = of_registry(cases, &[], levels)?;
     for of_case in &mut selected {
         of_case.claims.retain(|claim| claim.scope.is_open());
@@ -58,7 +58,7 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Sel
 /// Selects claims of the registry and of folders, in the order of the registry. The cases have the form `CASE`,
 /// `CASE/VARIANT` or a folder; none means the whole registry. A claim is selected if its result belongs to one of the
 /// solvers and it needs one of the levels.
-fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<Selected>, Fault> {
+fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let cases = pattern::expanded(cases)?;
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
     let in_registry = |named: &&Variant<'_>| CASES.iter().any(|case| std::ptr::eq(*case, named.case));
@@ -74,11 +74,11 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
             let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
             claims.retain(|claim| row(claim).is_some_and(|run| wanted(run.variant)));
         }
-        selected.push(Selected { case, claims, stranger: None, is_part: false });
+        selected.push(CaseSelection { case, claims, stranger: None, is_part: false });
     }
     refuse_unknown_solvers(&selected, solvers)?;
     let levels = wanted_levels(&selected, levels)?;
-    for Selected { case, claims, .. } in &mut selected {
+    for CaseSelection { case, claims, .. } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
             // A program also selects the claims that compare our solver with it.
@@ -106,7 +106,7 @@ fn row(claim: &Claim) -> Option<&Run> {
     claim.runs.first()
 }
 
-fn refuse_unknown_solvers(selected: &[Selected], names: &[String]) -> Result<(), Fault> {
+fn refuse_unknown_solvers(selected: &[CaseSelection], names: &[String]) -> Result<(), Fault> {
     let ours = grainbench::cases::solvers::names();
     let mut known: Vec<&str> = ours.iter().map(String::as_str).collect();
     for name in selected.iter().flat_map(|selected| solvers(&selected.claims)) {
@@ -127,7 +127,7 @@ enum Levels {
 }
 
 /// Returns the selected levels; each must exist in a selected case.
-fn wanted_levels(selected: &[Selected], names: &[String]) -> Result<Levels, Fault> {
+fn wanted_levels(selected: &[CaseSelection], names: &[String]) -> Result<Levels, Fault> {
     if names.iter().any(|name| name == "all") {
         return Ok(Levels::All);
     }
@@ -135,7 +135,7 @@ fn wanted_levels(selected: &[Selected], names: &[String]) -> Result<Levels, Faul
         return Ok(Levels::Default);
     }
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
-    for name in selected.iter().flat_map(|Selected { case, claims, .. }| levels(case, claims)) {
+    for name in selected.iter().flat_map(|CaseSelection { case, claims, .. }| levels(case, claims)) {
         push_new(&mut known, name);
     }
     let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();

@@ -15,9 +15,9 @@ use grainbench::scene::brief::Brief;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
-use grainbench::scene::record::{Cost, Provenance, Record, Remains, Series, Snapshot};
+use grainbench::scene::record::{Cost, PartialOutput, Provenance, Record, Series, Snapshot};
 use grainbench::scene::scene::{Duration, Scene};
-use grainbench::scene::solver::{Ahead, Method, NotStored, Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Method, Resolution, RunError, RunOutline, Solver, StorageError, Watch};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -89,7 +89,7 @@ pub(crate) struct Arguments {
     /// Formats of the snapshots; by default dump and vtk up to 200 000 rows of grains, contacts and points. Above that, Parquet
     /// if the scene requests snapshots in addition to the first and the last, else none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
-    write: Option<Vec<Written>>,
+    write: Option<Vec<SnapshotOption>>,
     /// Print provenance, cost and the final state as JSON.
     #[arg(long)]
     json: bool,
@@ -133,14 +133,14 @@ impl Arguments {
 
 /// Formats of snapshots, as they are asked for.
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Written {
+enum SnapshotOption {
     Dump,
     Vtk,
     Parquet,
     None,
 }
 
-impl Written {
+impl SnapshotOption {
     const fn format(self) -> Option<Format> {
         match self {
             Self::Dump => Some(Format::Dump),
@@ -409,13 +409,13 @@ struct Watcher {
 
 impl Watcher {
     /// Returns the estimated duration of a run (s); `None` below 10 s.
-    fn estimate(&self, ahead: Ahead) -> Option<f64> {
+    fn estimate(&self, ahead: RunOutline) -> Option<f64> {
         let seconds = ahead.steps as f64 * ahead.particles as f64 / A_SECOND;
         (seconds >= 10.0).then_some(seconds)
     }
 
     /// Returns a warning about a long run, with its cause and possible remedies.
-    fn warning(&self, ahead: Ahead, seconds: f64) -> String {
+    fn warning(&self, ahead: RunOutline, seconds: f64) -> String {
         let shorter = match self.method {
             Some(Method::Grid) => {
                 "A step is what a wave takes through part of a cell: softer moduli or larger cells (--cells)"
@@ -450,8 +450,8 @@ fn rough(seconds: f64) -> String {
 }
 
 impl Watch for Watcher {
-    fn begin(&mut self, ahead: Ahead) {
-        let Ahead { time_step, steps, .. } = ahead;
+    fn begin(&mut self, ahead: RunOutline) {
+        let RunOutline { time_step, steps, .. } = ahead;
         let of_critical = if self.method == Some(Method::Grid) {
             "within the Courant number of the grid".to_owned()
         } else if self.method == Some(Method::Rigid) {
@@ -504,8 +504,8 @@ impl Watch for Watcher {
         Ok(())
     }
 
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
-        self.snapshots.add(snapshot).map(|()| None).map_err(|error| NotStored(error.to_string()))
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
+        self.snapshots.add(snapshot).map(|()| None).map_err(|error| StorageError(error.to_string()))
     }
 
     fn allows_unstable(&self) -> bool {
@@ -532,7 +532,7 @@ impl Watch for Watcher {
         self.interrupt.is_asked()
     }
 
-    fn broke(&mut self, remains: Remains) {
+    fn broke(&mut self, remains: PartialOutput) {
         // A write error at this point is reported when the rest of the output is written.
         let _ = self.snapshots.add_last(remains.end);
         self.remains = Some(remains.series);

@@ -2,7 +2,7 @@
 
 use super::exit::Fault;
 use grainbench::cases::solvers;
-use grainbench::reference::outside::Outside;
+use grainbench::reference::outside::ExternalProgram;
 use grainbench::scene::solver::Solver;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,8 +29,8 @@ pub(crate) fn is_manifest(name: &str) -> bool {
 
 /// Returns the external solver of a manifest. Its name must differ from those of our solvers, because names identify
 /// results.
-pub(crate) fn outside(path: &str) -> Result<Arc<Outside>, Fault> {
-    let outside = Outside::read(Path::new(path)).map_err(Fault::input)?;
+pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
+    let outside = ExternalProgram::read(Path::new(path)).map_err(Fault::input)?;
     let name = outside.manifest().name.as_str();
     if solvers::by_name(name).is_some() {
         return Err(Fault::input(format!("{path}: name: expected one that no solver has, found `{name}`")));

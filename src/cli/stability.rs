@@ -4,18 +4,18 @@ use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::keep::keep_study;
 use super::provenance::provenance;
-use super::strangers::WithStrangers;
+use super::strangers::NamedSolvers;
 use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::reports::number;
-use grainbench::reports::study::stability::{Hard, Hardness, Limit};
+use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
 use grainbench::studies::stability::limit;
-use grainbench::studies::{Follow, identity};
+use grainbench::studies::{ProgressObserver, identity};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
 }
 
 /// Work item: a limit or a hard case with its solver.
-pub(crate) enum Piece<'a> {
+pub(crate) enum WorkItem<'a> {
     Assembly(&'a Assembly, &'a str),
     Bar(&'static str, f64),
     Hard(&'a HardCase, &'a str),
@@ -62,7 +62,7 @@ pub(crate) enum Piece<'a> {
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let assemblies = assembly::all()?;
     let hard = hard::all();
-    let (solvers, named) = WithStrangers::read(&arguments.solver)?;
+    let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
     let strangers = solvers.names();
     let pieces = select(&arguments.cases, [&named, &strangers], &assemblies, &hard)?;
     check_writable(&arguments.out)?;
@@ -104,7 +104,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
 
 /// Returns true if no solver gave a limit and no hard case holds. A run that fails measures nothing.
 fn measures_nothing(study: &Study) -> bool {
-    let holds = |row: &Hard| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
+    let holds = |row: &HardCaseResult| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
     study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(holds)
 }
 
@@ -131,14 +131,14 @@ pub(crate) fn is_red(study: &Study) -> bool {
 }
 
 pub(crate) fn do_piece(
-    piece: &Piece<'_>,
-    (program, solvers): (&str, &WithStrangers),
+    piece: &WorkItem<'_>,
+    (program, solvers): (&str, &NamedSolvers),
     cache: &ResultCache,
     study: &mut Study,
     follower: &mut Follower,
 ) -> Result<bool, Fault> {
     match *piece {
-        Piece::Assembly(assembly, solver) => {
+        WorkItem::Assembly(assembly, solver) => {
             follower.now(&format!("{} · {solver}", assembly.name));
             let asked = limit::of_assembly(
                 &(program.to_owned() + &solvers.edition(solver)),
@@ -150,7 +150,7 @@ pub(crate) fn do_piece(
             study.limits.push(limit);
             Ok(reused)
         }
-        Piece::Bar(setting, cells) => {
+        WorkItem::Bar(setting, cells) => {
             follower.now(&format!("{BAR} · {setting}"));
             let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
             let scene = bar.variant(PLAIN)?;
@@ -159,7 +159,7 @@ pub(crate) fn do_piece(
             study.limits.push(limit);
             Ok(reused)
         }
-        Piece::Hard(case, solver) => {
+        WorkItem::Hard(case, solver) => {
             follower.now(&format!("{} · {solver}", case.name));
             let asked = hard::verdict(&(program.to_owned() + &solvers.edition(solver)), case, (solvers, solver), cache);
             let (row, reused) = asked.map_err(Fault::writing)?;
@@ -176,7 +176,7 @@ pub(crate) fn select<'a>(
     [solvers, strangers]: [&'a [String]; 2],
     assemblies: &'a [Assembly],
     hard: &'a [HardCase],
-) -> Result<Vec<Piece<'a>>, Fault> {
+) -> Result<Vec<WorkItem<'a>>, Fault> {
     let named = |name: &str| name.replace(' ', "-");
     let mut known: Vec<String> = assemblies.iter().map(|assembly| named(assembly.name)).collect();
     known.push(BAR.to_owned());
@@ -191,14 +191,14 @@ pub(crate) fn select<'a>(
     let mut pieces = Vec::new();
     for assembly in assemblies.iter().filter(|assembly| case(&named(assembly.name))) {
         let asked = limit::SPRINGS.into_iter().filter(|name| solver(name)).chain(theirs());
-        pieces.extend(asked.map(|name| Piece::Assembly(assembly, name)));
+        pieces.extend(asked.map(|name| WorkItem::Assembly(assembly, name)));
     }
     for setting in limit::GRIDS.into_iter().filter(|name| case(BAR) && solver(name)) {
-        pieces.extend(BAR_CELLS.map(|cells| Piece::Bar(setting, cells)));
+        pieces.extend(BAR_CELLS.map(|cells| WorkItem::Bar(setting, cells)));
     }
     for hard in hard.iter().filter(|hard| case(&hard.name)) {
         let asked = hard.asked.iter().copied().filter(|name| solver(name)).chain(theirs());
-        pieces.extend(asked.map(|name| Piece::Hard(hard, name)));
+        pieces.extend(asked.map(|name| WorkItem::Hard(hard, name)));
     }
     if pieces.is_empty() {
         return Err(Fault::input(

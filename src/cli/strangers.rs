@@ -7,8 +7,8 @@ use grainbench::cases::solvers::{self, Registry};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
-use grainbench::harness::solvers::{Kept, Solvers, Stranger};
-use grainbench::reference::outside::Outside;
+use grainbench::harness::solvers::{ExternalSolver, Solvers, StoredResult};
+use grainbench::reference::outside::ExternalProgram;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Defect, RunError, Solver};
@@ -20,8 +20,8 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Solvers that a command line may name.
-pub(crate) struct WithStrangers {
-    strangers: Vec<Arc<Outside>>,
+pub(crate) struct NamedSolvers {
+    strangers: Vec<Arc<ExternalProgram>>,
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
     /// results.
     read: String,
@@ -29,7 +29,7 @@ pub(crate) struct WithStrangers {
     by_content: bool,
 }
 
-impl WithStrangers {
+impl NamedSolvers {
     /// Reads the manifests among some names. Returns the solvers, and the names with manifests replaced by solver
     /// names.
     pub(crate) fn read(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
@@ -74,14 +74,14 @@ impl WithStrangers {
         self.strangers.iter().map(|stranger| stranger.name()).collect()
     }
 
-    fn stranger(&self, name: &str) -> Option<&Arc<Outside>> {
+    fn stranger(&self, name: &str) -> Option<&Arc<ExternalProgram>> {
         self.strangers.iter().find(|stranger| stranger.manifest().name == name)
     }
 }
 
-impl Solvers for WithStrangers {
+impl Solvers for NamedSolvers {
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
-        let stranger = self.stranger(name).map(|stranger| Arc::<Outside>::clone(stranger) as Arc<dyn Solver>);
+        let stranger = self.stranger(name).map(|stranger| Arc::<ExternalProgram>::clone(stranger) as Arc<dyn Solver>);
         stranger.or_else(|| Registry.find(name))
     }
 
@@ -98,10 +98,10 @@ impl Solvers for WithStrangers {
         self.stranger(name).is_some() || solvers::is_program(name)
     }
 
-    fn strangers(&self) -> Vec<Stranger> {
-        let description = |stranger: &Arc<Outside>| {
+    fn strangers(&self) -> Vec<ExternalSolver> {
+        let description = |stranger: &Arc<ExternalProgram>| {
             let manifest = stranger.manifest();
-            Stranger {
+            ExternalSolver {
                 name: stranger.name(),
                 fractions: manifest.knobs.critical_fraction.clone(),
                 cells: manifest.knobs.cells.clone(),
@@ -123,7 +123,13 @@ impl Solvers for WithStrangers {
         Registry.stored(case, run, scene)
     }
 
-    fn kept(&self, case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+    fn kept(
+        &self,
+        case: &Case,
+        run: &Run,
+        scene: &Scene,
+        control: Option<&str>,
+    ) -> Option<Result<StoredResult, RunError>> {
         Registry.kept(case, run, scene, control)
     }
 

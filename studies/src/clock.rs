@@ -53,7 +53,7 @@ pub fn reference_seconds(lasting: f64) -> f64 {
 
 /// Result of a timed task.
 #[derive(Clone, Copy, Debug)]
-pub struct Clocked<T> {
+pub struct TimedResult<T> {
     /// Return value of the task.
     pub done: T,
     /// Processor time (s).
@@ -65,12 +65,12 @@ pub struct Clocked<T> {
 }
 
 /// Times a task between two timings of the reference task, each of `lasting` seconds.
-pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> Clocked<T> {
+pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> TimedResult<T> {
     let before = reference_seconds(lasting);
     let (cpu, start) = (cpu_seconds(), Instant::now());
     let done = work();
     let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu_seconds() - cpu);
-    Clocked { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
+    TimedResult { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
 }
 
 /// Looks up keys in a hash table that is two thirds full and branches on the result, as a solver does with contacts.

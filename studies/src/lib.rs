@@ -16,7 +16,7 @@ pub mod run_cache;
 pub mod stability;
 
 /// Observer of a study's progress.
-pub trait Follow {
+pub trait ProgressObserver {
     /// Called when an item is started.
     fn now(&mut self, _piece: &str) {}
     /// Called when an item is finished; `reused` items come from the result cache.
@@ -24,4 +24,4 @@ pub trait Follow {
 }
 
 /// An observer that ignores all progress.
-impl Follow for () {}
+impl ProgressObserver for () {}

@@ -5,7 +5,7 @@
 //! every round each solver is timed once, and rates are divided within the round. A temporarily slow machine affects
 //! all solvers of a round alike.
 
-use crate::Follow;
+use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::statistics::range;
 use grainbench_reports::Provenance;
@@ -35,7 +35,7 @@ pub struct Track {
 }
 
 /// A benchmarked solver and the solver that it is compared with.
-pub struct Racer {
+pub struct BenchmarkedSolver {
     /// The solver.
     pub solver: Arc<dyn Solver>,
     /// Name of the solver by whose rate this solver's rate is divided.
@@ -48,7 +48,7 @@ pub struct Racer {
 
 /// Results of all solvers for one scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Heat {
+pub struct SceneThroughput {
     /// Name of the benchmark scene.
     pub track: String,
     /// Number of grains.
@@ -56,12 +56,12 @@ pub struct Heat {
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],
     /// Results in the order of the solvers.
-    pub results: Vec<Raced>,
+    pub results: Vec<SolverThroughput>,
 }
 
 /// Result of one solver.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Raced {
+pub struct SolverThroughput {
     /// The solver.
     pub solver: String,
     /// Version, if the solver reports one.
@@ -80,14 +80,14 @@ pub struct Raced {
 
 /// Stored result of a throughput benchmark.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Race {
+pub struct ThroughputBenchmark {
     /// Version, date and machine.
     pub provenance: Provenance,
     /// Results by scene.
-    pub heats: Vec<Heat>,
+    pub heats: Vec<SceneThroughput>,
 }
 
-impl Race {
+impl ThroughputBenchmark {
     /// Returns the benchmark as a table with median, minimum and maximum of the timings.
     #[must_use]
     pub fn table(&self) -> String {
@@ -146,7 +146,7 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
 }
 
 /// Returns the processor time of a run (s), the kinetic energy at its end (J) and the version of the program.
-fn run(racer: &Racer, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
+fn run(racer: &BenchmarkedSolver, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
     let scene = for_steps(&track.scene, steps);
     let begun = cpu_seconds();
     let start = Instant::now();
@@ -157,8 +157,13 @@ fn run(racer: &Racer, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Op
 }
 
 /// Runs all solvers on a benchmark scene, `rounds` times in turn.
-pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Follow) -> Heat {
-    let blank = |racer: &Racer| Raced {
+pub fn heat(
+    track: &Track,
+    racers: &[BenchmarkedSolver],
+    rounds: u32,
+    follow: &mut impl ProgressObserver,
+) -> SceneThroughput {
+    let blank = |racer: &BenchmarkedSolver| SolverThroughput {
         solver: racer.solver.name(),
         version: None,
         rates: Vec::new(),
@@ -167,13 +172,13 @@ pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Foll
         kinetic_energy: None,
         absent: racer.solver.available().err().map(|reason| reason.to_string()),
     };
-    let mut results: Vec<Raced> = racers.iter().map(blank).collect();
+    let mut results: Vec<SolverThroughput> = racers.iter().map(blank).collect();
     let particle_steps = (track.steps[1] - track.steps[0]) as f64 * track.scene.grains.len() as f64;
     for round in 1..=rounds {
         for (racer, raced) in racers.iter().zip(&mut results) {
             follow.now(&format!("{}, {}, lap {round} of {rounds}", track.name, raced.solver));
             if raced.absent.is_none() {
-                let lap = |raced: &mut Raced| -> Result<f64, RunError> {
+                let lap = |raced: &mut SolverThroughput| -> Result<f64, RunError> {
                     let [short, long] = track.steps;
                     let (before, energy, version) = run(racer, track, short)?;
                     let (after, ..) = run(racer, track, long)?;
@@ -198,12 +203,12 @@ pub fn heat(track: &Track, racers: &[Racer], rounds: u32, follow: &mut impl Foll
             raced.ratios = raced.rates.iter().zip(of_other).map(|(rate, other)| rate / other).collect();
         }
     }
-    Heat { track: track.name.clone(), grains: track.scene.grains.len(), steps: track.steps, results }
+    SceneThroughput { track: track.name.clone(), grains: track.scene.grains.len(), steps: track.steps, results }
 }
 
 /// Returns the relative difference of the kinetic energies of a solver and the compared solver.
 #[must_use]
-pub fn apart(heat: &Heat, raced: &Raced) -> Option<f64> {
+pub fn apart(heat: &SceneThroughput, raced: &SolverThroughput) -> Option<f64> {
     let other = heat.results.iter().find(|other| other.solver == raced.against)?;
     let (ours, theirs) = (raced.kinetic_energy?, other.kinetic_energy?);
     Some((ours - theirs).abs() / theirs.abs())

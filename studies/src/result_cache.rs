@@ -8,9 +8,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Returns the stored text of a name.
-type Gives = Box<dyn Fn(&str) -> Option<String> + Send + Sync>;
+type CacheReader = Box<dyn Fn(&str) -> Option<String> + Send + Sync>;
 /// Stores a text under a name.
-type Takes = Box<dyn Fn(&str, &str) -> Result<(), WriteError> + Send + Sync>;
+type CacheWriter = Box<dyn Fn(&str, &str) -> Result<(), WriteError> + Send + Sync>;
 
 /// Cache of finished results; it may be disabled.
 pub struct ResultCache {
@@ -23,7 +23,7 @@ enum Place {
     /// A folder, and true if existing results are ignored.
     Folder(PathBuf, bool),
     /// Storage provided by the caller.
-    Elsewhere(Gives, Takes),
+    Elsewhere(CacheReader, CacheWriter),
 }
 
 impl ResultCache {

@@ -9,9 +9,9 @@ use crate::identity;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
-use grainbench_harness::solvers::{Kept, Solvers, Stranger};
+use grainbench_harness::solvers::{ExternalSolver, Solvers, StoredResult};
 use grainbench_lanes::Processor;
-use grainbench_reports::{Desk, WriteError, sweep};
+use grainbench_reports::{FolderWriter, WriteError, sweep};
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::kept_record;
 use grainbench_scene::record::Record;
@@ -43,7 +43,7 @@ pub struct RunCache {
     edition: Edition,
     taken: AtomicU64,
     /// Directory for temporary files, created with the first stored run.
-    desk: OnceLock<Option<Desk>>,
+    desk: OnceLock<Option<FolderWriter>>,
 }
 
 impl RunCache {
@@ -102,7 +102,7 @@ impl RunCache {
         }
         let Ok(bytes) = kept_record::to_bytes(name, record) else { return };
         if bytes.len() <= LARGEST
-            && let Some(desk) = self.desk.get_or_init(|| Desk::new(&self.folder).ok())
+            && let Some(desk) = self.desk.get_or_init(|| FolderWriter::new(&self.folder).ok())
         {
             let _ = desk.write(&format!("{name}.{ENDING}"), bytes);
         }
@@ -134,12 +134,12 @@ impl RunCache {
 }
 
 /// Solvers with a cache of finished runs.
-pub struct WithCache<S> {
+pub struct CachingSolvers<S> {
     solvers: S,
     cache: Arc<RunCache>,
 }
 
-impl<S: Solvers> WithCache<S> {
+impl<S: Solvers> CachingSolvers<S> {
     /// Combines solvers with a cache.
     pub const fn new(solvers: S, cache: Arc<RunCache>) -> Self {
         Self { solvers, cache }
@@ -150,11 +150,11 @@ impl<S: Solvers> WithCache<S> {
         if self.solvers.is_program(name) {
             return Some(solver);
         }
-        Some(Arc::new(Cached { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) }))
+        Some(Arc::new(CachingSolver { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) }))
     }
 }
 
-impl<S: Solvers> Solvers for WithCache<S> {
+impl<S: Solvers> Solvers for CachingSolvers<S> {
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
         self.wrapped(name, None, self.solvers.find(name))
     }
@@ -171,7 +171,7 @@ impl<S: Solvers> Solvers for WithCache<S> {
         self.solvers.is_program(name)
     }
 
-    fn strangers(&self) -> Vec<Stranger> {
+    fn strangers(&self) -> Vec<ExternalSolver> {
         self.solvers.strangers()
     }
 
@@ -183,7 +183,13 @@ impl<S: Solvers> Solvers for WithCache<S> {
         self.solvers.stored(case, run, scene)
     }
 
-    fn kept(&self, case: &Case, run: &Run, scene: &Scene, control: Option<&str>) -> Option<Result<Kept, RunError>> {
+    fn kept(
+        &self,
+        case: &Case,
+        run: &Run,
+        scene: &Scene,
+        control: Option<&str>,
+    ) -> Option<Result<StoredResult, RunError>> {
         self.solvers.kept(case, run, scene, control)
     }
 
@@ -197,14 +203,14 @@ impl<S: Solvers> Solvers for WithCache<S> {
 }
 
 /// A solver with a cache of finished runs.
-struct Cached {
+struct CachingSolver {
     solver: Arc<dyn Solver>,
     name: String,
     defect: Option<Defect>,
     cache: Arc<RunCache>,
 }
 
-impl Solver for Cached {
+impl Solver for CachingSolver {
     fn name(&self) -> String {
         self.solver.name()
     }

@@ -36,11 +36,11 @@ pub(crate) struct Kind {
     /// Number of items with `GRAINBENCH_LONG`.
     pub(crate) many: u64,
     /// Function that runs the item of a random draw and reports what is wrong.
-    pub(crate) try_out: fn(&mut Lot) -> Result<(), String>,
+    pub(crate) try_out: fn(&mut RandomSource) -> Result<(), String>,
 }
 
 /// Random draws for one item, with its description.
-pub(crate) struct Lot {
+pub(crate) struct RandomSource {
     runner: TestRunner,
     /// Description of the item.
     shown: String,
@@ -48,7 +48,7 @@ pub(crate) struct Lot {
     beside: Option<PathBuf>,
 }
 
-impl Lot {
+impl RandomSource {
     /// Gives the same draws for the same seed and number, independent of earlier draws.
     fn new(seed: u64, number: u64, beside: Option<PathBuf>) -> Self {
         let mut bytes = [0; 32];
@@ -138,7 +138,7 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
         // At a fixed position in the file, so that the last number overwrites the earlier ones.
         std::io::Seek::rewind(&mut at).expect("notes");
         write!(at, "{number:020}").expect("notes");
-        let mut lot = Lot::new(range.seed, number, (range.count == 1).then(|| notes.shown.clone()));
+        let mut lot = RandomSource::new(range.seed, number, (range.count == 1).then(|| notes.shown.clone()));
         let tried = catch_unwind(AssertUnwindSafe(|| (kind.try_out)(&mut lot)));
         let wrong = match tried {
             Ok(Ok(())) if range.count > 1 => continue,

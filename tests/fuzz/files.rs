@@ -1,7 +1,7 @@
 //! Damaged files and their readers. A reader returns the contents or an error that names the place.
 
 use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
-use crate::driver::Lot;
+use crate::driver::RandomSource;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use grainbench::cases::registry;
@@ -16,7 +16,7 @@ use grainbench::reports::export::record_json;
 use grainbench::reports::junit::junit_xml;
 use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
-use grainbench::reports::study::point::{Counts, Point, Standing, Timing};
+use grainbench::reports::study::point::{Counts, Point, PointStatus, Timing};
 use grainbench::reports::study::points_of;
 use grainbench::reports::{Provenance, Report, Section, page, plot, record_figures, refuse_mixed};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
@@ -37,7 +37,7 @@ const MOST_ROWS: u64 = 1000;
 type Answer = Result<(), String>;
 
 /// A reader of a file: its name, its weight in the draw, and its test.
-type Reader = (&'static str, usize, fn(&mut Lot) -> Answer);
+type Reader = (&'static str, usize, fn(&mut RandomSource) -> Answer);
 
 /// Files with their names.
 type Files = Vec<(String, Vec<u8>)>;
@@ -59,7 +59,7 @@ const READERS: [Reader; 12] = [
 ];
 
 /// Damages a file and reads it.
-pub(crate) fn try_out(lot: &mut Lot) -> Answer {
+pub(crate) fn try_out(lot: &mut RandomSource) -> Answer {
     let mut drawn = lot.draw(0..READERS.iter().map(|(_, weight, _)| weight).sum());
     for (name, weight, reader) in READERS {
         if drawn < weight {
@@ -85,7 +85,7 @@ fn left(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 /// Damages bytes at random and adds the damage to the description.
-fn damaged(lot: &mut Lot, bytes: &[u8]) -> Vec<u8> {
+fn damaged(lot: &mut RandomSource, bytes: &[u8]) -> Vec<u8> {
     let damages = lot.draw(damages());
     let bytes = apply(bytes, &damages);
     lot.show(&format!("{damages:?}\n{}", String::from_utf8_lossy(&bytes[..bytes.len().min(6000)])));
@@ -107,7 +107,7 @@ fn expect(holds: bool, what: &str) -> Answer {
     if holds { Ok(()) } else { Err(what.to_owned()) }
 }
 
-fn of_dump(lot: &mut Lot) -> Answer {
+fn of_dump(lot: &mut RandomSource) -> Answer {
     let text = lot.one(&DUMPS).as_bytes();
     match read_dump(&damaged(lot, text)) {
         Ok(sound) => expect(sound, "a number of a dump is none"),
@@ -115,19 +115,19 @@ fn of_dump(lot: &mut Lot) -> Answer {
     }
 }
 
-fn of_log(lot: &mut Lot) -> Answer {
+fn of_log(lot: &mut RandomSource) -> Answer {
     let text = lot.one(&LOGS).as_bytes();
     parse_log(&damaged(lot, text)[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))
 }
 
-fn of_table(lot: &mut Lot) -> Answer {
+fn of_table(lot: &mut RandomSource) -> Answer {
     match parse_table(&damaged(lot, TABLE.as_bytes())[..], "f") {
         Ok(table) => expect(table.rows() > 0, "a table without rows"),
         Err(error) => refused(&error),
     }
 }
 
-fn of_data(lot: &mut Lot) -> Answer {
+fn of_data(lot: &mut RandomSource) -> Answer {
     match parse_data(&damaged(lot, DATA.as_bytes())[..], "f") {
         Ok(data) => expect(
             data.atoms.iter().all(|grain| {
@@ -150,7 +150,7 @@ fn packed(bytes: &[u8], zstd: bool) -> Vec<u8> {
 }
 
 /// Damages a dump before or after its compression.
-fn of_packed_dump(lot: &mut Lot) -> Answer {
+fn of_packed_dump(lot: &mut RandomSource) -> Answer {
     let text = lot.one(&DUMPS).as_bytes();
     let (zstd, before) = lot.draw(any::<(bool, bool)>());
     let bytes = if before { packed(&damaged(lot, text), zstd) } else { damaged(lot, &packed(text, zstd)) };
@@ -160,7 +160,7 @@ fn of_packed_dump(lot: &mut Lot) -> Answer {
     }
 }
 
-fn of_bytes(lot: &mut Lot) -> Answer {
+fn of_bytes(lot: &mut RandomSource) -> Answer {
     let head = *lot.one(&[&b""[..], &[0x1f, 0x8b, 8, 0], &[0x28, 0xb5, 0x2f, 0xfd]]);
     let bytes = [head, &lot.draw(prop::collection::vec(any::<u8>(), 0..200))].concat();
     lot.show(&format!("{bytes:?}"));
@@ -206,7 +206,7 @@ fn run() -> &'static (Record, Vec<u8>) {
 }
 
 /// Damages a checkpoint, with its old length and hash or with those of the damaged bytes.
-fn of_checkpoint(lot: &mut Lot) -> Answer {
+fn of_checkpoint(lot: &mut RandomSource) -> Answer {
     let whole = &run().1;
     let line = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
     let bytes = if lot.draw(any::<bool>()) {
@@ -227,14 +227,14 @@ fn of_checkpoint(lot: &mut Lot) -> Answer {
     }
 }
 
-fn of_record(lot: &mut Lot) -> Answer {
+fn of_record(lot: &mut RandomSource) -> Answer {
     let text = serde_json::to_vec(&run().0).unwrap();
     let path = left("record.json", &damaged(lot, &text));
     match record_json::load(folder()) {
         Err(error) => one_line_of(&path, &error),
         Ok(record) => {
-            let named = [record_figures::Named { name: String::new(), record: &record }];
-            draw(&record_figures::figures(&named, &record_figures::Shown::default()))
+            let named = [record_figures::NamedRecord { name: String::new(), record: &record }];
+            draw(&record_figures::figures(&named, &record_figures::FigureOptions::default()))
         }
     }
 }
@@ -293,7 +293,7 @@ fn report() -> &'static Vec<u8> {
 }
 
 /// Reads a report and renders it again, as `grainbench report` does.
-fn of_report(lot: &mut Lot) -> Answer {
+fn of_report(lot: &mut RandomSource) -> Answer {
     let path = left("report.json", &damaged(lot, report()));
     let report = match Report::load(folder()) {
         Err(error) => return one_line_of(&path, &error),
@@ -310,7 +310,7 @@ fn of_report(lot: &mut Lot) -> Answer {
     Ok(())
 }
 
-fn of_results(lot: &mut Lot) -> Answer {
+fn of_results(lot: &mut RandomSource) -> Answer {
     if lot.draw(any::<bool>()) {
         let text = b"{\n  \"whole\": false,\n  \"files\": [\n    \"results.json\",\n    \"figures/a.svg\"\n  ]\n}\n";
         left("manifest.json", &damaged(lot, text));
@@ -324,7 +324,7 @@ fn of_results(lot: &mut Lot) -> Answer {
         knobs: String::new(),
         quantity: "displacement".to_owned(),
         unit: "m".to_owned(),
-        standing: Standing::Measured,
+        standing: PointStatus::Measured,
         value: Some(1.0),
         expected: Some(1.1),
         error: Some(0.1),
@@ -343,7 +343,7 @@ fn of_results(lot: &mut Lot) -> Answer {
 }
 
 /// Compares two files, or reads them as output of a scene.
-fn of_two(lot: &mut Lot) -> Answer {
+fn of_two(lot: &mut RandomSource) -> Answer {
     let text = *lot.one(&[DUMPS[0], DUMPS[1], DUMPS[3], TABLE]);
     let first = left("first", &damaged(lot, text.as_bytes()));
     if lot.draw(any::<bool>()) {
@@ -371,7 +371,7 @@ fn of_two(lot: &mut Lot) -> Answer {
 }
 
 /// Damages one file of a stored run, with or without its original hash.
-fn of_stored(lot: &mut Lot) -> Answer {
+fn of_stored(lot: &mut RandomSource) -> Answer {
     static RUN: OnceLock<(PathBuf, Files)> = OnceLock::new();
     let (folder, files) = RUN.get_or_init(|| {
         let name = "backspin-disc-overlap-r-1e-3-damping-ratio-0";

@@ -1,6 +1,6 @@
 //! A scene with mistakes and any solver: an error that names its place, or a record of finite numbers.
 
-use crate::driver::Lot;
+use crate::driver::RandomSource;
 use crate::mistakes::{PLANE, SPACE, make, mistake, two_grains};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
@@ -41,7 +41,7 @@ impl Watch for Brief {
 }
 
 /// Makes a scene and runs it.
-pub(crate) fn try_out(lot: &mut Lot) -> Result<(), String> {
+pub(crate) fn try_out(lot: &mut RandomSource) -> Result<(), String> {
     let which = lot.draw(0..2 * CASES.len());
     let mistakes = lot.draw(prop::collection::vec(mistake(), 1..4));
     let start = [PLANE, SPACE].get(which % 4).copied().filter(|_| which >= CASES.len());
@@ -74,7 +74,7 @@ pub(crate) fn well_said(message: &str) -> Result<(), String> {
 }
 
 /// Runs a few steps of a scene, by its own short run or by ending the run early.
-fn run(lot: &mut Lot, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Result<(), String> {
+fn run(lot: &mut RandomSource, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Result<(), String> {
     if scene.grains.iter().any(|grain| !(grain.mass > 0.0 && grain.inertia > 0.0)) {
         return Err("a grain has no mass".to_owned());
     }

@@ -1,6 +1,6 @@
 //! Contents of `SWEEP.toml`: a design over scene keys, solvers and levels, and the quantities to evaluate.
 
-use grainbench_cases::folder::Over;
+use grainbench_cases::folder::SampleReduction;
 use indexmap::IndexMap;
 use serde::Deserialize;
 use toml::{Table, Value};
@@ -40,13 +40,13 @@ pub(super) struct File {
     #[serde(default)]
     pub(super) formulas: Table,
     /// Solvers with their levels.
-    pub(super) solvers: Vec<Asked>,
+    pub(super) solvers: Vec<SolverEntry>,
     /// Claims of the case to evaluate.
     #[serde(default)]
-    pub(super) gates: Vec<Gate>,
+    pub(super) gates: Vec<SweepClaim>,
     /// Further quantities to evaluate.
     #[serde(default)]
-    pub(super) record: Vec<Recorded>,
+    pub(super) record: Vec<QuantityEntry>,
     /// The two factors that are the axes of the map.
     pub(super) map: Option<[String; 2]>,
     /// Curve on the map, for example the limit between two kinds of motion.
@@ -112,7 +112,7 @@ pub(super) enum Spacing {
 /// A solver with its levels.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Asked {
+pub(super) struct SolverEntry {
     /// Solver name, or the manifest of an external program.
     pub(super) solver: String,
     /// Levels as text.
@@ -128,7 +128,7 @@ pub(super) struct Asked {
 /// A claim of the case.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Gate {
+pub(super) struct SweepClaim {
     /// Name of the claim's quantity.
     pub(super) quantity: String,
     /// Largest error that passes, if it differs from the tolerance of the claim.
@@ -138,7 +138,7 @@ pub(super) struct Gate {
 /// A quantity of the sweep file.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Recorded {
+pub(super) struct QuantityEntry {
     /// Name of the quantity.
     pub(super) quantity: String,
     /// Unit of the quantity.
@@ -148,7 +148,7 @@ pub(super) struct Recorded {
     /// Time of the sample (s); the end of the run if `None`.
     pub(super) at: Option<f64>,
     /// Reduction over samples, if the value is not a single sample.
-    pub(super) over: Option<Over>,
+    pub(super) over: Option<SampleReduction>,
     /// Expected value: arithmetic over the factors, numbers of the scene and the time `t`.
     pub(super) equals: Option<Formula>,
     /// Scale by which the error is divided; |expected| by default.

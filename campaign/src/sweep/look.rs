@@ -1,15 +1,15 @@
 //! Quantities that are evaluated in each run of a sweep: claims of the case, and quantities of the sweep file.
 
-use super::file::{Gate, Recorded};
+use super::file::{QuantityEntry, SweepClaim};
 use crate::fault::Fault;
-use grainbench_cases::folder::{Expression, Numbers, Over, Read};
+use grainbench_cases::folder::{Expression, Numbers, RecordExpression, SampleReduction};
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
-use grainbench_harness::expect::Measured;
-use grainbench_harness::run::{Done, Missing};
-use grainbench_harness::tolerance::Made;
+use grainbench_harness::expect::Measurement;
+use grainbench_harness::run::{FinishedRun, MissingData};
+use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reports::sweep::{Looked, Quantity};
+use grainbench_reports::sweep::{Quantity, QuantityResult};
 use grainbench_scene::error::did_you_mean;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
@@ -17,40 +17,40 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// An evaluated quantity.
-pub(super) enum Look {
+pub(super) enum EvaluatedQuantity {
     /// Claim of the case, which is recomputed for the parameters of the scene, and an optional limit of its error.
     Gate(Box<Claim>, Option<f64>),
     /// Arithmetic of the sweep file.
-    Own(Box<Own>),
+    Own(Box<SweepQuantity>),
 }
 
 /// A quantity of the sweep file.
 #[derive(Debug)]
-pub(super) struct Own {
+pub(super) struct SweepQuantity {
     quantity: String,
     unit: String,
     value: Expression,
     at: Option<f64>,
-    over: Option<Over>,
+    over: Option<SampleReduction>,
     equals: Option<Expression>,
     scale: Option<Expression>,
     allowed: Option<f64>,
 }
 
 /// A run that is evaluated.
-pub(super) struct Seen<'a> {
+pub(super) struct EvaluatedRun<'a> {
     /// Scene text with all keys as set for this point.
     pub(super) source: &'a SceneSource,
-    pub(super) done: &'a Done,
+    pub(super) done: &'a FinishedRun,
     /// Returns the value of a factor by name.
     pub(super) factor: &'a dyn Fn(&str) -> Option<f64>,
 }
 
-impl Look {
+impl EvaluatedQuantity {
     /// Returns the claim of a case with the given quantity; a claim of the given variant comes first.
     pub(super) fn gate(
         path: &Path,
-        gate: &Gate,
+        gate: &SweepClaim,
         (case, variant): (Option<&'static Case>, &str),
     ) -> Result<Self, Fault> {
         let place = format!("{}: gates", path.display());
@@ -83,7 +83,7 @@ impl Look {
     }
 
     /// Reads a quantity of the sweep file.
-    pub(super) fn own(path: &Path, recorded: &Recorded) -> Result<Self, Fault> {
+    pub(super) fn own(path: &Path, recorded: &QuantityEntry) -> Result<Self, Fault> {
         let place = |key: &str| format!("{}: record ({}): {key}", path.display(), recorded.quantity);
         let read = |key: &str, text: &str| {
             Expression::read(text)
@@ -92,7 +92,7 @@ impl Look {
         if recorded.at.is_some() && recorded.over.is_some() {
             return Err(Fault::expected(place("at"), "a moment, or a reading `over` samples", "both"));
         }
-        if recorded.over == Some(Over::Course) {
+        if recorded.over == Some(SampleReduction::Course) {
             return Err(Fault::expected(place("over"), "`max`, `min` or `mean`", "`course`"));
         }
         if recorded.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
@@ -108,7 +108,7 @@ impl Look {
                 "none",
             ));
         }
-        Ok(Self::Own(Box::new(Own {
+        Ok(Self::Own(Box::new(SweepQuantity {
             quantity: recorded.quantity.clone(),
             unit: recorded.unit.clone(),
             value: read("value", &recorded.value)?,
@@ -190,37 +190,37 @@ impl Look {
     }
 
     /// Evaluates the quantity in a run.
-    pub(super) fn at(&self, seen: &Seen<'_>) -> Looked {
+    pub(super) fn at(&self, seen: &EvaluatedRun<'_>) -> QuantityResult {
         let found = match self {
             Self::Gate(claim, allowed) => {
                 let made = match (allowed, claim.tolerance.made) {
-                    (None, made) | (Some(_), made @ Made::Interval) => made,
-                    (Some(_), _) => Made::Judged,
+                    (None, made) | (Some(_), made @ ToleranceOrigin::Interval) => made,
+                    (Some(_), _) => ToleranceOrigin::Judged,
                 };
                 let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, seen.done));
                 (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed(), made))
             }
             Self::Own(own) => own.at(seen),
         };
-        found.unwrap_or_else(|missing| Looked {
+        found.unwrap_or_else(|missing| QuantityResult {
             verdict: Some(Outcome::Unsupported),
             detail: Some(missing.to_string()),
-            ..Looked::default()
+            ..QuantityResult::default()
         })
     }
 }
 
 /// Returns the largest error that passes for a claim in this scene, which may differ from the scene of its case.
-fn own_allowance(claim: &Claim, done: &Done) -> f64 {
+fn own_allowance(claim: &Claim, done: &FinishedRun) -> f64 {
     let stated = || claim.tolerance.allowed(std::slice::from_ref(done));
     claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
 /// Returns a table row from a measurement.
-fn judged(measured: &Measured, allowed: f64, tolerance: Made) -> Looked {
+fn judged(measured: &Measurement, allowed: f64, tolerance: ToleranceOrigin) -> QuantityResult {
     let row = Verdict { allowed, tolerance, ..Verdict::open("", "", "") };
     let row = row.judged(measured).unless_as_wide_as_the_scale();
-    Looked {
+    QuantityResult {
         value: row.value,
         expected: row.expected,
         scale: row.scale,
@@ -236,12 +236,13 @@ fn is_scale(scale: f64) -> bool {
     scale.is_finite() && scale > 0.0
 }
 
-impl Own {
-    fn at(&self, seen: &Seen<'_>) -> Result<Looked, Missing> {
+impl SweepQuantity {
+    fn at(&self, seen: &EvaluatedRun<'_>) -> Result<QuantityResult, MissingData> {
         let scene = &seen.done.scene;
-        let table = seen.source.table().map_err(|error| Missing(error.to_string()))?;
-        let numbers = Arc::new(Numbers::new(table, scene).map_err(Missing)?);
-        let read = Read { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
+        let table = seen.source.table().map_err(|error| MissingData(error.to_string()))?;
+        let numbers = Arc::new(Numbers::new(table, scene).map_err(MissingData)?);
+        let read =
+            RecordExpression { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
         let (time, value) = read.one(seen.done)?;
         let evaluated = |formula: &Expression| {
             formula.value(&|name| match name {
@@ -250,14 +251,21 @@ impl Own {
             })
         };
         let Some(expected) = self.equals.as_ref().map(evaluated) else {
-            return Ok(Looked { value: Some(value).filter(|value| value.is_finite()), ..Looked::default() });
+            return Ok(QuantityResult {
+                value: Some(value).filter(|value| value.is_finite()),
+                ..QuantityResult::default()
+            });
         };
         let own_scale = self.scale.as_ref().map(evaluated);
         let scale = own_scale.unwrap_or(expected.abs());
-        let row = judged(&Measured::new(value, expected, scale), self.allowed.unwrap_or_default(), Made::Judged);
+        let row = judged(
+            &Measurement::new(value, expected, scale),
+            self.allowed.unwrap_or_default(),
+            ToleranceOrigin::Judged,
+        );
         if own_scale.is_some_and(|scale| !is_scale(scale)) {
             let detail = Some(format!("scale: expected a number above zero, found {scale}"));
-            return Ok(Looked { verdict: Some(Outcome::Broken), detail, ..row });
+            return Ok(QuantityResult { verdict: Some(Outcome::Broken), detail, ..row });
         }
         Ok(row)
     }

@@ -9,15 +9,15 @@ use crate::fault::Fault;
 use crate::log::State;
 use crate::plan::hash_of_file;
 use crate::task::{Id, Task};
-use file::{Asked, File};
+use file::{File, SolverEntry};
 use grainbench_cases::folder::Expression;
 use grainbench_cases::registry::{CASES, read_grains};
 use grainbench_harness::case::{Case, PLAIN};
-use grainbench_harness::run::Done;
+use grainbench_harness::run::FinishedRun;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::Outcome;
 use grainbench_reports::study::point::Timing;
-use grainbench_reports::sweep::{Factor, Left, Quantity, Ran};
+use grainbench_reports::sweep::{Factor, PointOutput, Quantity, RunCounts};
 use grainbench_scene::error::did_you_mean;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -26,7 +26,7 @@ use grainbench_scene::source::SceneSource;
 use grainbench_scene::text::{line_of, written};
 use grainbench_studies::clock;
 use grainbench_studies::cost::knobs::nominal_seconds;
-use look::{Look, Seen};
+use look::{EvaluatedQuantity, EvaluatedRun};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -52,7 +52,7 @@ pub struct Sweep {
     source: SceneSource,
     /// Path of the scene file; `None` if the scene belongs to a case.
     scene_file: Option<PathBuf>,
-    looks: Vec<Look>,
+    looks: Vec<EvaluatedQuantity>,
     levels: Vec<Level>,
     /// Curve on the map.
     line: Option<Expression>,
@@ -140,8 +140,8 @@ impl Sweep {
             return Err(Fault::in_file(path, format!("at most {MOST} points of all levels"), "more"));
         }
         let variant = file.scene.split_once('/').map_or(PLAIN, |(_, variant)| variant).to_owned();
-        let gates = file.gates.iter().map(|gate| Look::gate(path, gate, (case, &variant)));
-        let own = file.record.iter().map(|recorded| Look::own(path, recorded));
+        let gates = file.gates.iter().map(|gate| EvaluatedQuantity::gate(path, gate, (case, &variant)));
+        let own = file.record.iter().map(|recorded| EvaluatedQuantity::own(path, recorded));
         let looks = gates.chain(own).collect::<Result<Vec<_>, _>>()?;
         if looks.is_empty() {
             return Err(wrong("gates, record", "at least one of either", "neither".to_owned()));
@@ -189,7 +189,7 @@ impl Sweep {
 
     /// Returns the hash of the inputs that are common to all points.
     fn common(&self) -> Result<String, Fault> {
-        let looks: Vec<String> = self.looks.iter().map(Look::identity).collect();
+        let looks: Vec<String> = self.looks.iter().map(EvaluatedQuantity::identity).collect();
         let files: Vec<String> = self.files()?.iter().map(|path| hash_of_file(path)).collect();
         let File { scene, timed, repetitions, .. } = &self.file;
         let text = self.source.text();
@@ -220,7 +220,8 @@ impl Sweep {
                     if tasks.is_empty() {
                         let (source, is_factor) =
                             (self.source(&set), |name: &str| self.file.factors.contains_key(name));
-                        let check = |look: &Look| look.check_names(&self.name, (&source, &scene), &is_factor);
+                        let check =
+                            |look: &EvaluatedQuantity| look.check_names(&self.name, (&source, &scene), &is_factor);
                         self.looks.iter().try_for_each(check)?;
                     }
                     let once = nominal_seconds(&scene, &level.resolution);
@@ -283,7 +284,7 @@ impl Sweep {
 
     /// Runs the task with the given index.
     #[must_use]
-    pub fn run(&self, place: usize, task: &Task, solver: &dyn Solver) -> (State, Left) {
+    pub fn run(&self, place: usize, task: &Task, solver: &dyn Solver) -> (State, PointOutput) {
         let Some((point, level)) = self.place(place) else {
             return failed("the sweep has no such point".to_owned(), Outcome::Broken, self.looks.len());
         };
@@ -296,10 +297,10 @@ impl Sweep {
             Err(error) => failed(error.to_string(), Outcome::from(&error), self.looks.len()),
             Ok((record, timings)) => {
                 let ran = ran(&record);
-                let done = Done::new(scene, Arc::new(record));
-                let seen = Seen { source: &source, done: &done, factor: &|name| self.factor(point, name) };
+                let done = FinishedRun::new(scene, Arc::new(record));
+                let seen = EvaluatedRun { source: &source, done: &done, factor: &|name| self.factor(point, name) };
                 let looked = self.looks.iter().map(|look| look.at(&seen)).collect();
-                (State::Done, Left { ran: Some(ran), looked, timings, detail: None })
+                (State::Done, PointOutput { ran: Some(ran), looked, timings, detail: None })
             }
         }
     }
@@ -329,7 +330,7 @@ impl Sweep {
         &self,
         names: &[String],
         provenance: grainbench_reports::Provenance,
-        output_of_point: impl Fn(usize) -> Option<Left>,
+        output_of_point: impl Fn(usize) -> Option<PointOutput>,
     ) -> grainbench_reports::sweep::Sweep {
         let mut points = Vec::new();
         let mut missing = 0;
@@ -356,7 +357,7 @@ impl Sweep {
             about: self.file.about.clone(),
             scene: self.file.scene.clone(),
             factors: self.file.factors.iter().map(label).collect(),
-            quantities: self.looks.iter().map(Look::quantity).collect::<Vec<Quantity>>(),
+            quantities: self.looks.iter().map(EvaluatedQuantity::quantity).collect::<Vec<Quantity>>(),
             points,
             missing,
             map: self.file.map.as_ref().map(|axes| [place(&axes[0]), place(&axes[1])]),
@@ -394,14 +395,14 @@ fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
 }
 
 /// Returns the result of a task without a record.
-fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, Left) {
-    let looked = grainbench_reports::sweep::Looked { verdict: Some(outcome), ..Default::default() };
-    (State::Failed, Left { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
+fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, PointOutput) {
+    let looked = grainbench_reports::sweep::QuantityResult { verdict: Some(outcome), ..Default::default() };
+    (State::Failed, PointOutput { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
 }
 
-fn ran(record: &Record) -> Ran {
+fn ran(record: &Record) -> RunCounts {
     let (cost, about) = (&record.cost, &record.provenance);
-    Ran {
+    RunCounts {
         steps: cost.steps,
         particle_steps: cost.particle_steps,
         contact_evaluations: cost.contact_evaluations,
@@ -420,7 +421,7 @@ fn words(value: &Value) -> String {
 }
 
 /// Reads the levels of a solver.
-fn read_levels(path: &Path, file: &File, (place, asked): (usize, &Asked)) -> Result<Vec<Level>, Fault> {
+fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) -> Result<Vec<Level>, Fault> {
     let key = format!("{}: solvers ({})", path.display(), asked.solver);
     if asked.levels.is_empty() {
         return Err(Fault::expected(format!("{key}: levels"), "at least one", "none"));

@@ -1,14 +1,14 @@
 //! Error of a run against its manufactured solution.
 
-use grainbench_harness::prelude::{Done, Missing};
+use grainbench_harness::prelude::{FinishedRun, MissingData};
 use grainbench_scene::manufactured::Medium;
 
 /// Returns the root mean square, over the material points, of the error of the final displacement (m).
 ///
 /// # Errors
 /// When the record has no material points or the scene has no manufactured motion.
-pub fn error(done: &Done) -> Result<f64, Missing> {
-    let missing = || Missing("material points at the end".to_owned());
+pub fn error(done: &FinishedRun) -> Result<f64, MissingData> {
+    let missing = || MissingData("material points at the end".to_owned());
     let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
     let (material, motion) = scene.deformable[0].zip(scene.start.manufactured).ok_or_else(missing)?;
     let medium =

@@ -12,7 +12,7 @@
 //! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26. The compliant forms are
 //! derived here.
 
-use grainbench_harness::run::{Done, Missing};
+use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::scene::{Dimension, Scene};
 use std::f64::consts::PI;
@@ -291,7 +291,7 @@ pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
 ///
 /// # Errors
 /// When the record lacks the probe.
-pub fn course(done: &Done) -> Result<Vec<(f64, State)>, Missing> {
+pub fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
     let (x, v) = (done.column("grain.x")?, done.column("grain.vx")?);
     let (spin, sign) = match done.scene.dimension {
         Dimension::Two => (done.column("grain.omega")?, -1.0),
@@ -306,18 +306,18 @@ pub fn course(done: &Done) -> Result<Vec<(f64, State)>, Missing> {
 ///
 /// # Errors
 /// When the record lacks the probe.
-pub fn last(done: &Done) -> Result<(f64, State), Missing> {
-    course(done)?.last().copied().ok_or_else(|| Missing("samples".to_owned()))
+pub fn last(done: &FinishedRun) -> Result<(f64, State), MissingData> {
+    course(done)?.last().copied().ok_or_else(|| MissingData("samples".to_owned()))
 }
 
 /// Returns time and state of the sample nearest to a moment (s).
 ///
 /// # Errors
 /// When there are no samples.
-pub fn nearest(done: &Done, moment: f64) -> Result<(f64, State), Missing> {
+pub fn nearest(done: &FinishedRun, moment: f64) -> Result<(f64, State), MissingData> {
     let course = course(done)?;
     let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
-    near.copied().ok_or_else(|| Missing("samples".to_owned()))
+    near.copied().ok_or_else(|| MissingData("samples".to_owned()))
 }
 
 #[cfg(test)]

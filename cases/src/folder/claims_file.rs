@@ -15,13 +15,13 @@ pub(super) struct ClaimsFile {
     #[serde(default)]
     pub(super) weakness: String,
     /// Claims.
-    pub(super) claims: Vec<Claimed>,
+    pub(super) claims: Vec<ClaimEntry>,
 }
 
 /// One claim.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Claimed {
+pub(super) struct ClaimEntry {
     /// Measured quantity.
     pub(super) quantity: String,
     /// Unit of the quantity.
@@ -33,13 +33,13 @@ pub(super) struct Claimed {
     pub(super) solver: String,
     /// Resolution of the solver.
     #[serde(default)]
-    pub(super) resolution: Knobs,
+    pub(super) resolution: ResolutionParameters,
     /// Expression over columns of the record.
     pub(super) value: String,
     /// Time (s) at which the value is read; the end of the run by default.
     pub(super) at: Option<f64>,
     /// Reduction over the samples, instead of the value at one time.
-    pub(super) over: Option<Over>,
+    pub(super) over: Option<SampleReduction>,
     /// Expected value, which may contain the time `t`. A claim has exactly one of `equals`, `follows`, `at_least`,
     /// `at_most` and `between`.
     pub(super) equals: Option<Formula>,
@@ -62,7 +62,7 @@ pub(super) struct Claimed {
     /// Reason for the tolerance.
     pub(super) because: String,
     /// Negative control.
-    pub(super) control: Controlled,
+    pub(super) control: ControlEntry,
 }
 
 /// Solver of claims that name none.
@@ -83,7 +83,7 @@ pub(super) enum Formula {
 /// Parameters of the resolution.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct Knobs {
+pub(super) struct ResolutionParameters {
     pub(super) time_step_fraction: Option<f64>,
     pub(super) time_step: Option<f64>,
     pub(super) cells: Option<f64>,
@@ -96,7 +96,7 @@ pub(super) struct Knobs {
 /// Reduction over the samples.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
-pub enum Over {
+pub enum SampleReduction {
     /// Each sample; the worst one decides.
     Course,
     /// Largest sample.
@@ -132,7 +132,7 @@ pub(super) struct Place {
 /// Negative control: wrong physics for which the claim must fail.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Controlled {
+pub(super) struct ControlEntry {
     /// Description of the wrong physics.
     pub(super) name: String,
     /// Keys of the scene with the wrong values.

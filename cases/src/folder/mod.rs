@@ -9,18 +9,18 @@ mod numbers;
 mod read;
 mod row;
 
-pub use claims_file::Over;
+pub use claims_file::SampleReduction;
 pub use expression::Expression;
 pub use numbers::Numbers;
-pub use read::Read;
+pub use read::RecordExpression;
 
 use crate::registry::HOME;
-use claims_file::{Claimed, ClaimsFile};
+use claims_file::{ClaimEntry, ClaimsFile};
 use grainbench_harness::case::{Case, Home, fraction};
 use grainbench_harness::claim::{Claim, claim};
 use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
-use grainbench_harness::run::Missing;
+use grainbench_harness::run::MissingData;
 use grainbench_harness::tolerance::exactly;
 use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::{line_of, written};
@@ -38,21 +38,21 @@ const DERIVATION: &str = "derivation.md";
 /// Error in the folder of a case: file, place in it, expected and found text.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {what}", file.display())]
-pub struct NoCase {
+pub struct CaseFolderError {
     file: PathBuf,
     what: String,
 }
 
 /// Error in a claim.
-enum Wrong {
+enum ClaimError {
     /// Error in a key: the key and the message.
     Key(String, String),
     /// Error in another file of the folder; the message names the place.
     Scene(String),
 }
 
-fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> Wrong {
-    Wrong::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
+fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> ClaimError {
+    ClaimError::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
 }
 
 /// Leaks a text, so that it lives as long as the program. The command line names only few cases.
@@ -64,9 +64,9 @@ fn kept(text: String) -> &'static str {
 ///
 /// # Errors
 /// The message names the file, the claim and the key, and gives the expected and the found text.
-pub fn read(folder: &Path) -> Result<&'static Case, NoCase> {
+pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     let file = folder.join(CLAIMS);
-    let no_case = |what: String| NoCase { file: file.clone(), what };
+    let no_case = |what: String| CaseFolderError { file: file.clone(), what };
     let text = text_of(&file)?;
     let claims: ClaimsFile = toml::from_str(&text).map_err(|error| {
         let line = line_of(&text, &error).unwrap_or(1);
@@ -129,7 +129,7 @@ pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
 /// Returns a claim that needs no run and always ends with an error.
 fn unreadable(reason: String) -> Claim {
     claim("claims that can be read", "1")
-        .holds("the file of claims is valid", move |_| Err(Missing(format!("claims that can be read: {reason}"))))
+        .holds("the file of claims is valid", move |_| Err(MissingData(format!("claims that can be read: {reason}"))))
         .within(exactly("there is nothing to measure"))
         .refuses(Control::scene("none", |_| ()))
 }
@@ -138,12 +138,12 @@ fn unreadable(reason: String) -> Claim {
 ///
 /// # Errors
 /// The message names the claim and the key, and gives the expected and the found text.
-fn rows(claims: Vec<Claimed>, reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
-    let row = |(place, claimed): (usize, Claimed)| {
+fn rows(claims: Vec<ClaimEntry>, reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
+    let row = |(place, claimed): (usize, ClaimEntry)| {
         let quantity = claimed.quantity.clone();
         reader.claim(claimed).map_err(|wrong| match wrong {
-            Wrong::Key(key, what) => format!("claim {} ({quantity}): {key}: {what}", place + 1),
-            Wrong::Scene(what) => format!("claim {} ({quantity}): {what}", place + 1),
+            ClaimError::Key(key, what) => format!("claim {} ({quantity}): {key}: {what}", place + 1),
+            ClaimError::Scene(what) => format!("claim {} ({quantity}): {what}", place + 1),
         })
     };
     claims.into_iter().enumerate().map(row).collect()
@@ -153,9 +153,9 @@ fn rows(claims: Vec<Claimed>, reader: &Reader<'_>) -> Result<Vec<Claim>, String>
 ///
 /// # Errors
 /// When one of the two files cannot be read.
-pub fn files(folder: &Path) -> Result<Vec<PathBuf>, NoCase> {
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, CaseFolderError> {
     let (scene, claims) = (folder.join(SCENE), folder.join(CLAIMS));
-    let no_case = |file: &Path, what: String| NoCase { file: file.to_owned(), what };
+    let no_case = |file: &Path, what: String| CaseFolderError { file: file.to_owned(), what };
     let source = SceneSource::read(&scene).map_err(|error| no_case(&scene, error.to_string()))?;
     let named = source.files().map_err(|error| no_case(&scene, error.to_string()))?;
     let table: toml::Table = toml::from_str(&text_of(&claims)?).map_err(|error| no_case(&claims, error.to_string()))?;
@@ -167,9 +167,11 @@ pub fn files(folder: &Path) -> Result<Vec<PathBuf>, NoCase> {
 }
 
 /// Reads the text of a file.
-fn text_of(file: &Path) -> Result<String, NoCase> {
-    let case_error =
-        |(expected, found)| NoCase { file: file.to_owned(), what: format!("expected {expected}, found {found}") };
+fn text_of(file: &Path) -> Result<String, CaseFolderError> {
+    let case_error = |(expected, found)| CaseFolderError {
+        file: file.to_owned(),
+        what: format!("expected {expected}, found {found}"),
+    };
     written(file).map_err(case_error)
 }
 

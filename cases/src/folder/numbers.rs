@@ -2,7 +2,7 @@
 //! external solvers get.
 
 use grainbench_reference::deck::Stepping;
-use grainbench_reference::outside::{Given, Resolved};
+use grainbench_reference::outside::{DiscretizedScene, Resolved};
 use grainbench_scene::scene::Scene;
 use toml::{Table, Value};
 
@@ -27,7 +27,7 @@ impl Numbers {
     pub fn new(file: Table, scene: &Scene) -> Result<Self, String> {
         // Steps belong to a run and not to a claim, so they are removed below.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
-        let resolved = Resolved::new(&Given { scene, stepping, grid: None });
+        let resolved = Resolved::new(&DiscretizedScene { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
         let mut definite = Value::try_from(resolved).map_err(|error| error.to_string())?;
         if let Some(table) = definite.as_table_mut() {

@@ -1,20 +1,20 @@
 //! Reading a number from a record: at one time, reduced over the samples, or at each sample.
 
-use super::claims_file::Over;
+use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
-use super::{Wrong, wrong};
-use grainbench_harness::claim::{Expecting, Quantity};
+use super::{ClaimError, wrong};
+use grainbench_harness::claim::{ClaimWithExpectation, Quantity};
 use grainbench_harness::course::Points;
-use grainbench_harness::run::{Done, Missing};
+use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::source::Source;
 use std::sync::Arc;
 
 /// Function that reads time and value of samples.
-type Samples = Arc<dyn Fn(&Done) -> Result<Points, Missing> + Send + Sync>;
+type Samples = Arc<dyn Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync>;
 
 /// Reading of a number from a record.
-pub struct Read {
+pub struct RecordExpression {
     /// Expression over columns of the record and numbers of the scene.
     pub value: Expression,
     /// Numbers of the scene.
@@ -22,12 +22,12 @@ pub struct Read {
     /// Time (s) of the reading; with neither `at` nor `over`, the end of the run.
     pub at: Option<f64>,
     /// Reduction over the samples.
-    pub over: Option<Over>,
+    pub over: Option<SampleReduction>,
 }
 
-impl Read {
+impl RecordExpression {
     /// Returns time and value of each sample.
-    fn all(&self, done: &Done) -> Result<Points, Missing> {
+    fn all(&self, done: &FinishedRun) -> Result<Points, MissingData> {
         let series = done.series();
         for name in self.value.names() {
             if self.numbers.is_of_record(name) {
@@ -42,14 +42,14 @@ impl Read {
             })
         };
         let points: Points = series.time.iter().enumerate().map(|(place, &t)| (t, at(place, t))).collect();
-        if points.is_empty() { Err(Missing("sample".to_owned())) } else { Ok(points) }
+        if points.is_empty() { Err(MissingData("sample".to_owned())) } else { Ok(points) }
     }
 
     /// Returns one value and its time.
     ///
     /// # Errors
     /// When the record has no such column.
-    pub fn one(&self, done: &Done) -> Result<(f64, f64), Missing> {
+    pub fn one(&self, done: &FinishedRun) -> Result<(f64, f64), MissingData> {
         let points = self.all(done)?;
         let end = points[points.len() - 1];
         let values = || points.iter().map(|point| point.1);
@@ -58,10 +58,10 @@ impl Read {
             values().reduce(|best, value| if value.is_nan() || better(value, best) { value } else { best })
         };
         let value = match self.over {
-            Some(Over::Max) => extreme(|value, best| value > best),
-            Some(Over::Min) => extreme(|value, best| value < best),
-            Some(Over::Mean) => Some(mean(&points)),
-            Some(Over::Course) | None => None,
+            Some(SampleReduction::Max) => extreme(|value, best| value > best),
+            Some(SampleReduction::Min) => extreme(|value, best| value < best),
+            Some(SampleReduction::Mean) => Some(mean(&points)),
+            Some(SampleReduction::Course) | None => None,
         };
         match (value, self.at) {
             (Some(_), _) if values().any(f64::is_nan) => Ok((end.0, f64::NAN)),
@@ -73,17 +73,19 @@ impl Read {
                 let nearest =
                     points.iter().copied().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
                 let nearest = nearest.filter(|point| (point.0 - moment).abs() <= 0.5 * apart * (1.0 + 1e-9));
-                nearest.ok_or_else(|| Missing(format!("sample at {moment} s")))
+                nearest.ok_or_else(|| MissingData(format!("sample at {moment} s")))
             }
         }
     }
 
     /// Returns the value as a function for a bound.
-    pub(super) fn bounded(self) -> Result<impl Fn(&[Done]) -> Result<f64, Missing> + Send + Sync + 'static, Wrong> {
-        if self.over == Some(Over::Course) {
+    pub(super) fn bounded(
+        self,
+    ) -> Result<impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static, ClaimError> {
+        if self.over == Some(SampleReduction::Course) {
             return Err(wrong("over", "`max`, `min` or `mean` with a bound", "`course`"));
         }
-        Ok(move |done: &[Done]| Ok(self.one(&done[0])?.1))
+        Ok(move |done: &[FinishedRun]| Ok(self.one(&done[0])?.1))
     }
 
     /// Returns each sample, or the samples between two times.
@@ -92,7 +94,7 @@ impl Read {
             let mut points = self.all(done)?;
             let [first, last] = within.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             points.retain(|(t, _)| (first..=last).contains(t));
-            if points.is_empty() { Err(Missing(format!("sample from {first} to {last} s"))) } else { Ok(points) }
+            if points.is_empty() { Err(MissingData(format!("sample from {first} to {last} s"))) } else { Ok(points) }
         })
     }
 }
@@ -104,10 +106,10 @@ pub(super) fn follow(
     samples: Samples,
     exact: impl Fn(f64) -> f64 + Clone + Send + Sync + 'static,
     scale: Option<f64>,
-) -> Expecting {
+) -> ClaimWithExpectation {
     let (again, expected) = (Arc::clone(&samples), exact.clone());
     let largest = move |points: Points| points.iter().map(|(t, _)| expected(*t).abs()).fold(0.0, f64::max);
-    let scale = move |done: &Done| scale.unwrap_or_else(|| again(done).map_or(f64::NAN, &largest));
+    let scale = move |done: &FinishedRun| scale.unwrap_or_else(|| again(done).map_or(f64::NAN, &largest));
     quantity.series(move |done| samples(done)).follows(source, move |_, t| exact(t), scale)
 }
 

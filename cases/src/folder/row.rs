@@ -1,17 +1,19 @@
 //! Conversion of a claim in a file to a claim of the harness.
 
-use super::claims_file::{Claimed, Controlled, CourseFile, DEM, Formula, Knobs, Over, Place};
+use super::claims_file::{
+    ClaimEntry, ControlEntry, CourseFile, DEM, Formula, Place, ResolutionParameters, SampleReduction,
+};
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
-use super::read::{Read, follow, interpolated};
-use super::{Wrong, kept, wrong};
+use super::read::{RecordExpression, follow, interpolated};
+use super::{ClaimError, kept, wrong};
 use crate::registry::read_grains;
 use crate::solvers;
 use grainbench_harness::case::PLAIN;
-use grainbench_harness::claim::{Claim, Expecting, Quantity, claim};
+use grainbench_harness::claim::{Claim, ClaimWithExpectation, Quantity, claim};
 use grainbench_harness::control::Control;
-use grainbench_harness::course::{Plate, Points};
-use grainbench_harness::expect::Measured;
+use grainbench_harness::course::{ClaimFigure, Points};
+use grainbench_harness::expect::Measurement;
 use grainbench_harness::run::Run;
 use grainbench_harness::source::{Kind, Source, Work};
 use grainbench_harness::tolerance::{Tolerance, computed, judged};
@@ -38,12 +40,12 @@ impl Reader<'_> {
     ///
     /// # Errors
     /// The message names the key and gives the expected and the found text.
-    pub(super) fn claim(&self, claimed: Claimed) -> Result<Claim, Wrong> {
+    pub(super) fn claim(&self, claimed: ClaimEntry) -> Result<Claim, ClaimError> {
         let variant = claimed.variant.as_deref().unwrap_or(PLAIN);
         let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
-        let in_scene = |error: grainbench_scene::error::SceneError| Wrong::Scene(error.to_string());
+        let in_scene = |error: grainbench_scene::error::SceneError| ClaimError::Scene(error.to_string());
         let scene = source.scene(&read_grains).map_err(in_scene)?;
-        let numbers = Numbers::new(source.table().map_err(in_scene)?, &scene).map_err(Wrong::Scene)?;
+        let numbers = Numbers::new(source.table().map_err(in_scene)?, &scene).map_err(ClaimError::Scene)?;
         let numbers = Arc::new(numbers);
         for (key, text) in [("quantity", &claimed.quantity), ("unit", &claimed.unit), ("because", &claimed.because)] {
             in_words(key, text)?;
@@ -64,7 +66,7 @@ impl Reader<'_> {
         let claim = expecting.within(tolerance).refuses(control);
         let claim = match (&claim.trace, claim.quantity.clone()) {
             (Some(_), words) if self.plots => {
-                let plate = Plate {
+                let plate = ClaimFigure {
                     name: kept(words.replace(|letter: char| !letter.is_alphanumeric(), "-").to_lowercase()),
                     title: kept(words),
                     caption: "",
@@ -82,8 +84,8 @@ impl Reader<'_> {
     }
 
     /// Returns the points of a curve in a table. All times must lie within the run.
-    fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, Wrong> {
-        let table = read_table(&self.folder.join(&file.file)).map_err(|error| Wrong::Scene(error.to_string()))?;
+    fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, ClaimError> {
+        let table = read_table(&self.folder.join(&file.file)).map_err(|error| ClaimError::Scene(error.to_string()))?;
         let column = |key: &'static str, name: &str| {
             let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
             let found = table.column(name).map(|at| table.values(at).collect::<Vec<_>>());
@@ -106,10 +108,10 @@ impl Reader<'_> {
 /// Adds the expectation to a claim.
 fn expecting(
     quantity: Quantity,
-    claimed: &Claimed,
+    claimed: &ClaimEntry,
     course: Option<Points>,
     (numbers, knows_columns): (&Arc<Numbers>, bool),
-) -> Result<Expecting, Wrong> {
+) -> Result<ClaimWithExpectation, ClaimError> {
     let value = expression("value", &claimed.value)?;
     let is_new = |name: &&str| numbers.is_of_record(name) && !numbers.columns.iter().any(|column| column == name);
     let unknown = value.names().into_iter().find(is_new);
@@ -129,33 +131,33 @@ fn expecting(
     if over.is_some() && claimed.at.is_some() {
         return Err(wrong("at", "a moment, or a reading `over` samples", "both"));
     }
-    let read = Read { value, numbers: Arc::clone(numbers), at: claimed.at, over };
-    let Claimed { equals, at_least, at_most, between, .. } = claimed;
+    let read = RecordExpression { value, numbers: Arc::clone(numbers), at: claimed.at, over };
+    let ClaimEntry { equals, at_least, at_most, between, .. } = claimed;
     match (equals, course, at_least, at_most, between) {
         (Some(formula), None, None, None, None) => {
             let exact = formula_of("equals", formula)?;
-            check_names("equals", &exact, numbers, matches!(over, None | Some(Over::Course)))?;
+            check_names("equals", &exact, numbers, matches!(over, None | Some(SampleReduction::Course)))?;
             let at = |t: f64| value_at(&exact, numbers, t);
-            if over != Some(Over::Course) && scale.is_none() && at(1.0) == 0.0 {
+            if over != Some(SampleReduction::Course) && scale.is_none() && at(1.0) == 0.0 {
                 return Err(wrong("scale", "a number, for zero is expected", "none"));
             }
             let of_scene = Arc::clone(numbers);
             let exact = move |t: f64| value_at(&exact, &of_scene, t);
-            if over == Some(Over::Course) {
+            if over == Some(SampleReduction::Course) {
                 return Ok(follow(quantity, source, read.samples(None), exact, scale));
             }
             Ok(quantity.equals(source, move |done| {
                 let (t, value) = read.one(&done[0])?;
                 let expected = exact(t);
-                Ok(Measured::new(value, expected, scale.unwrap_or(expected.abs())))
+                Ok(Measurement::new(value, expected, scale.unwrap_or(expected.abs())))
             }))
         }
         (None, Some(table), None, None, None) => {
-            if claimed.at.is_some() || !matches!(over, None | Some(Over::Course)) {
+            if claimed.at.is_some() || !matches!(over, None | Some(SampleReduction::Course)) {
                 return Err(wrong("follows", "every sample", "a moment or a reading `over` samples"));
             }
             let within = [table[0].0, table[table.len() - 1].0];
-            let read = Read { at: None, over: Some(Over::Course), ..read };
+            let read = RecordExpression { at: None, over: Some(SampleReduction::Course), ..read };
             let read = read.samples(Some(within));
             Ok(follow(quantity, source, read, move |t| interpolated(&table, t), scale))
         }
@@ -182,18 +184,23 @@ fn value_at(expression: &Expression, numbers: &Numbers, t: f64) -> f64 {
     expression.value(&|name| if name == TIME { Some(t) } else { numbers.get(name) })
 }
 
-fn expression(key: &'static str, text: &str) -> Result<Expression, Wrong> {
-    Expression::read(text).map_err(|error| Wrong::Key(key.to_owned(), error))
+fn expression(key: &'static str, text: &str) -> Result<Expression, ClaimError> {
+    Expression::read(text).map_err(|error| ClaimError::Key(key.to_owned(), error))
 }
 
-fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, Wrong> {
+fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, ClaimError> {
     match formula {
         Formula::Number(value) => Ok(Expression::Number(*value)),
         Formula::Text(text) => expression(key, text),
     }
 }
 
-fn check_names(key: &'static str, expression: &Expression, numbers: &Numbers, with_time: bool) -> Result<(), Wrong> {
+fn check_names(
+    key: &'static str,
+    expression: &Expression,
+    numbers: &Numbers,
+    with_time: bool,
+) -> Result<(), ClaimError> {
     let known = |name: &&str| numbers.get(name).is_some() || (with_time && *name == TIME);
     match expression.names().into_iter().find(|name| !known(name)) {
         None => Ok(()),
@@ -202,14 +209,14 @@ fn check_names(key: &'static str, expression: &Expression, numbers: &Numbers, wi
 }
 
 /// Returns a finite number of the scene.
-fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, Wrong> {
+fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, ClaimError> {
     let expression = formula_of(key, formula)?;
     check_names(key, &expression, numbers, false)?;
     let value = value_at(&expression, numbers, f64::NAN);
     if value.is_finite() { Ok(value) } else { Err(wrong(key, "a finite number", value.to_string())) }
 }
 
-fn tolerance(claimed: &Claimed, numbers: &Numbers) -> Result<Tolerance, Wrong> {
+fn tolerance(claimed: &ClaimEntry, numbers: &Numbers) -> Result<Tolerance, ClaimError> {
     let allowed = constant("allowed", &claimed.allowed, numbers)?;
     if allowed < 0.0 {
         return Err(wrong("allowed", "zero or more", allowed.to_string()));
@@ -222,7 +229,7 @@ fn tolerance(claimed: &Claimed, numbers: &Numbers) -> Result<Tolerance, Wrong> {
     })
 }
 
-fn source(claimed: &Claimed) -> Result<Source, Wrong> {
+fn source(claimed: &ClaimEntry) -> Result<Source, ClaimError> {
     let printed = |kind: Kind, place: &Place| {
         in_words("work", &place.work)?;
         in_words("place", &place.place)?;
@@ -240,7 +247,7 @@ fn source(claimed: &Claimed) -> Result<Source, Wrong> {
     }
 }
 
-fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Result<Control, Wrong> {
+fn control(controlled: &ControlEntry, source: &SceneSource, scene: &Scene) -> Result<Control, ClaimError> {
     in_words("control.name", &controlled.name)?;
     let set = controlled.set.iter().fold(source.clone(), |source, (key, value)| source.set(key, &value.to_string()));
     let given = set.scene(&read_grains).map_err(|error| wrong("control.set", "another scene", error.to_string()))?;
@@ -255,11 +262,11 @@ fn control(controlled: &Controlled, source: &SceneSource, scene: &Scene) -> Resu
 }
 
 /// Returns the resolution of a solver from the parameters of its method.
-fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, Wrong> {
+fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Result<Resolution, ClaimError> {
     let Some(method) = solvers::by_name(solver).and(Method::from_name(solver)) else {
         return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
     };
-    let Knobs { time_step_fraction, time_step, cells, points, courant, substeps, iterations } = *knobs;
+    let ResolutionParameters { time_step_fraction, time_step, cells, points, courant, substeps, iterations } = *knobs;
     let (step, grid) = (time_step_fraction.is_some() || time_step.is_some(), cells.is_some() || points.is_some());
     let (grid, rigid) = (grid || courant.is_some(), substeps.is_some() || iterations.is_some());
     let others = match method {
@@ -310,7 +317,7 @@ fn resolution(knobs: &Knobs, solver: &str, scene: &Scene) -> Result<Resolution, 
 }
 
 /// Checks that a text fits in a table and on a page: one line, at most 500 bytes, not empty.
-fn in_words(key: &'static str, text: &str) -> Result<(), Wrong> {
+fn in_words(key: &'static str, text: &str) -> Result<(), ClaimError> {
     const LONGEST: usize = 500;
     let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && tamed(text, |_| false) == text;
     if is_plain { Ok(()) } else { Err(wrong(key, "words on one line", quoted(text))) }

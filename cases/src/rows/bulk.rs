@@ -2,10 +2,10 @@
 //! averages afterwards. Against codes that share one packing: the mean over our own packings.
 
 use crate::rows::programs::row;
-use grainbench_harness::claim::Tolerated;
+use grainbench_harness::claim::ClaimWithTolerance;
 use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use grainbench_reference::round_robin::Spread;
 
@@ -34,8 +34,8 @@ pub(crate) fn mean(
         let (ours, theirs) = together(&done[0], &done[1], column)?;
         let first = done[1].series().time.partition_point(|&time| time < from);
         let estimate = difference(&theirs[first..], &ours[first..], BLOCKS);
-        let estimate = estimate.ok_or_else(|| Missing(format!("{BLOCKS} samples after {from} s")))?;
-        Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+        let estimate = estimate.ok_or_else(|| MissingData(format!("{BLOCKS} samples after {from} s")))?;
+        Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
     })
 }
 
@@ -45,10 +45,10 @@ pub(crate) fn mean(
 pub(crate) fn of_packings(
     (quantity, unit): (String, &'static str),
     runs: Vec<Run>,
-    (cited, half): (Cited, Cited),
-    value: impl Fn(&Done) -> Result<f64, Missing> + Send + Sync + 'static,
+    (cited, half): (CitedNumber, CitedNumber),
+    value: impl Fn(&FinishedRun) -> Result<f64, MissingData> + Send + Sync + 'static,
     because: &'static str,
-) -> Tolerated {
+) -> ClaimWithTolerance {
     claim(quantity, unit)
         .runs(runs)
         .equals(cited.source(), move |done| {
@@ -57,7 +57,7 @@ pub(crate) fn of_packings(
             let variance = values.iter().map(|value| (value - own).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0);
             let code = half.value * std::f64::consts::SQRT_2;
             let allowed = Spread { mean: cited.value, code, bed: variance.sqrt() }.allowed(values.len(), 1);
-            Ok(Measured::new(own, cited.value, allowed))
+            Ok(Measurement::new(own, cited.value, allowed))
         })
         .within(computed(1.0, because))
 }

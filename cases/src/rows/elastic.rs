@@ -41,7 +41,7 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
 ///
 /// # Errors
 /// When the run has no grain.
-pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }
@@ -53,7 +53,7 @@ pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
 /// two flats). s is zero between two flats. With an equal pair of forces across, which widens the disc,
 /// s = (4/π − 1) + ν/(1 − ν).
 #[derive(Clone, Copy, Debug)]
-pub struct Pressed {
+pub struct PressedDisc {
     /// E' = E/(1 − ν²) (Pa).
     pub modulus: f64,
     /// Poisson's ratio ν.
@@ -64,7 +64,7 @@ pub struct Pressed {
     pub sides: u8,
 }
 
-impl Pressed {
+impl PressedDisc {
     /// Reads the first grain of a scene; `None` if it is not deformable.
     #[must_use]
     pub fn from_scene(scene: &Scene, sides: u8) -> Option<Self> {
@@ -115,12 +115,12 @@ impl Pressed {
     /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics,
     /// eq. 5.57.
     #[must_use]
-    pub fn gives(&self, force: f64) -> Gives {
+    pub fn gives(&self, force: f64) -> DiscDisplacements {
         let n = self.poisson / (1.0 - self.poisson);
         let patch = self.patch(force);
         let u = 2.0 * (2.0 / patch).ln() - 1.25 - 0.25 * n;
         let v = -2.0 * 2.0_f64.ln() + 0.75 - 0.25 * n;
-        Gives { u, v, w: 2.0 - 0.5 * PI + 0.5 * PI * n }
+        DiscDisplacements { u, v, w: 2.0 - 0.5 * PI + 0.5 * PI * n }
     }
 
     /// Returns the mean square of the displacement about its mean, in units of (1/πE')², for forces at left, right,
@@ -162,7 +162,7 @@ impl Pressed {
 
 /// Displacements of a disc, in units of ΔF/(πE').
 #[derive(Clone, Copy, Debug)]
-pub struct Gives {
+pub struct DiscDisplacements {
     /// Mean displacement relative to the loaded contact.
     pub u: f64,
     /// Displacement of the opposite point relative to the mean.
@@ -209,9 +209,9 @@ mod tests {
                 assert!((row[0] * normal[0] + row[1] * normal[1]).abs() < 1e-12, "{angle}");
             }
         }
-        let disc = Pressed { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
+        let disc = PressedDisc { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
         let (n, force) = (1.0 / 3.0, 2e-3);
-        let Gives { u, v, .. } = disc.gives(force);
+        let DiscDisplacements { u, v, .. } = disc.gives(force);
         // E' du/dx over F/π, integrated: relative displacement of two points on the diameter.
         let apart = |from: f64, to: f64| -> f64 {
             let (parts, width) = (20_000, (to - from) / 20_000.0);
@@ -250,7 +250,7 @@ mod tests {
     /// Rotated loads, and loads of opposite sign, give the same value.
     #[test]
     fn what_is_stirred_does_not_depend_on_the_axis() {
-        let disc = Pressed { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
+        let disc = PressedDisc { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
         let [along, across, back] =
             [[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0], [-1.0, 1.0, 0.0, 0.0]].map(|loads| disc.stirred(loads));
         assert!((along / across - 1.0).abs() < 1e-12 && (along / back - 1.0).abs() < 1e-12);

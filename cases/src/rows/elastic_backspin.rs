@@ -11,17 +11,17 @@ pub(crate) const ROLLS: f64 = 0.5;
 const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid sphere has 10/7";
 
 /// Returns the displacement over the displacement of a rigid grain, minus one.
-pub(crate) fn excess(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_backspin(t).x - 1.0)
 }
 
 /// Returns mean velocity and mean surface speed ΩR over the time of rolling (m/s).
-pub(crate) fn rolling(done: &Done) -> Result<(f64, f64), Missing> {
+pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     let radius = done.scene.grains[0].radius;
     let states: Vec<_> = course(done)?.into_iter().filter(|(t, _)| *t >= ROLLS).collect();
     if states.is_empty() {
-        return Err(Missing("samples after .5 s".to_owned()));
+        return Err(MissingData("samples after .5 s".to_owned()));
     }
     let mean = |value: &dyn Fn(usize) -> f64| (0..states.len()).map(value).sum::<f64>() / states.len() as f64;
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))

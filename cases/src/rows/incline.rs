@@ -75,7 +75,7 @@ impl Incline {
 const RIGID: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 
-const COMPLIANCE: Plate = Plate {
+const COMPLIANCE: ClaimFigure = ClaimFigure {
     name: "compliance",
     title: "Error against the rigid answer is the contact's compliance",
     caption: "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), since the spring must first be stretched.",
@@ -172,10 +172,14 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
 ///
 /// # Errors
 /// When the record lacks the grain.
-pub fn end(done: &Done, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Result<Measured, Missing> {
+pub fn end(
+    done: &FinishedRun,
+    exact: impl Fn(&OneGrain, f64) -> State,
+    pick: fn(State) -> f64,
+) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let expected = pick(exact(&OneGrain::from_scene(&done.scene), t));
-    Ok(Measured::new(pick(state), expected, expected))
+    Ok(Measurement::new(pick(state), expected, expected))
 }
 
 /// Claims undamped slip against the exact compliant solution: a small error at a fine step, and second order in the
@@ -185,7 +189,7 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
     let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).slips_from());
-    let error = |done: &Done| end(done, OneGrain::compliant_incline, |state| state.x);
+    let error = |done: &FinishedRun| end(done, OneGrain::compliant_incline, |state| state.x);
     vec![
         claim("displacement at 1 s, undamped, against the elastic answer", "m")
             .run(run(FINE))
@@ -349,7 +353,7 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
                 let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.rolling_velocity(t, arm);
-                Ok(Measured::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
+                Ok(Measurement::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
             })
             .within(come_to_roll(case, slope.variant, |_| 0.0))
             .refuses(if at_contact {

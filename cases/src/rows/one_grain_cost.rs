@@ -5,7 +5,7 @@ use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
 use crate::registry;
 use crate::rows::incline::DAMPING;
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{Lane, Subject};
+use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::body::Settle;
 use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::scene::Duration;
@@ -27,7 +27,7 @@ pub fn displacement(
     seconds: f64,
     exact: fn(&OneGrain, f64) -> State,
     source: &'static str,
-) -> Vec<Subject> {
+) -> Vec<TargetQuantity> {
     let Some(case) = registry::by_name(name) else { return Vec::new() };
     variants.iter().map(|variant| subject(case, variant, seconds, exact, source)).collect()
 }
@@ -38,36 +38,36 @@ fn subject(
     seconds: f64,
     exact: fn(&OneGrain, f64) -> State,
     source: &'static str,
-) -> Subject {
-    let dem = OVERLAPS.map(|ratio| Lane {
+) -> TargetQuantity {
+    let dem = OVERLAPS.map(|ratio| SolverSetup {
         method: Method::Dem,
         knobs: format!("overlap/R = {ratio:e}"),
         prepare: Some(lasting(seconds, move |scene| rest_at_overlap(scene, ratio, DAMPING))),
         about: Resolution::CriticalFraction(0.1),
     });
-    let rigid = Lane {
+    let rigid = SolverSetup {
         method: Method::Rigid,
         knobs: String::new(),
         prepare: Some(lasting(seconds, touching)),
         about: Resolution::substeps(8),
     };
-    let grid = STIFFENED.map(|factor| Lane {
+    let grid = STIFFENED.map(|factor| SolverSetup {
         method: Method::Grid,
         knobs: if factor == 1.0 { String::new() } else { format!("moduli × {factor}") },
         prepare: Some(lasting(seconds, move |scene| settled(scene, factor))),
         about: Resolution::grid(8.0, 3),
     });
-    Subject {
+    TargetQuantity {
         case,
         variant,
         quantity: format!("displacement at {seconds} s"),
         unit: "m",
         source: source.to_owned(),
         measure: Arc::new(move |done| {
-            let done = done.first().ok_or_else(|| Missing("run".to_owned()))?;
+            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let (t, state) = last(done)?;
             let expected = exact(&OneGrain::from_scene(&done.scene), t).x;
-            Ok(Measured::new(state.x, expected, expected))
+            Ok(Measurement::new(state.x, expected, expected))
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
     }

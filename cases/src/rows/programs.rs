@@ -19,7 +19,7 @@ pub(crate) fn row(
     tolerance: Tolerance,
     runs: [Run; 2],
     control: Control,
-    measure: impl Fn(&[Done]) -> Result<Measured, Missing> + Send + Sync + 'static,
+    measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
 ) -> Claim {
     claim(format!("{quantity}, against {}", runs[1].solver), unit)
         .runs(runs)
@@ -71,7 +71,7 @@ fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
 /// Claims the separation velocity of two grains over their approach velocity.
 #[must_use]
 pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
-    fn restitution_coefficient(done: &Done) -> Result<f64, Missing> {
+    fn restitution_coefficient(done: &FinishedRun) -> Result<f64, MissingData> {
         let grains = &done.scene.grains;
         Ok((done.last("b.vx")? - done.last("a.vx")?) / (grains[0].velocity.x - grains[1].velocity.x))
     }
@@ -87,7 +87,7 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
             });
             let allowed = rounding(1.0, "the same cycle; in units of the approach velocity");
             claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
-                Ok(Measured::new(restitution_coefficient(&done[0])?, restitution_coefficient(&done[1])?, 1.0))
+                Ok(Measurement::new(restitution_coefficient(&done[0])?, restitution_coefficient(&done[1])?, 1.0))
             }));
         }
     }
@@ -110,7 +110,7 @@ const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
 pub fn nine_discs(
     variants: &[&'static str],
     resolution: Resolution,
-    travel: fn(&Done) -> f64,
+    travel: fn(&FinishedRun) -> f64,
     rounded: fn(&str) -> Tolerance,
 ) -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -140,7 +140,7 @@ pub fn nine_discs(
 pub fn turning_walls(
     variant: &'static str,
     resolution: Resolution,
-    travel: fn(&Done) -> f64,
+    travel: fn(&FinishedRun) -> f64,
     places: f64,
 ) -> Vec<Claim> {
     fn undamped(scene: &mut Scene) {

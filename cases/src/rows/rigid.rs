@@ -75,7 +75,7 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
             .equals(RIGID_SOURCE, move |done| {
                 let (t, state) = last(&done[0])?;
                 let expected = pick(exact(&OneGrain::from_scene(&done[0].scene), t));
-                Ok(Measured::new(pick(state), expected, expected))
+                Ok(Measurement::new(pick(state), expected, expected))
             })
             .within(tolerance)
             .refuses(control)
@@ -128,9 +128,9 @@ fn between_arms(case: &Case, row: Row) -> Claim {
                     let ahead = done.record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS) / t;
                     Ok((state.x / (1.0 + ahead) - shortest) / (longest - shortest))
                 });
-                let places = places.collect::<Result<Vec<f64>, Missing>>()?;
+                let places = places.collect::<Result<Vec<f64>, MissingData>>()?;
                 let farthest = places.into_iter().max_by(|a, b| (a - 0.5).abs().total_cmp(&(b - 0.5).abs()));
-                farthest.ok_or_else(|| Missing("runs".to_owned()))
+                farthest.ok_or_else(|| MissingData("runs".to_owned()))
             },
         )
         .within(computed(
@@ -198,7 +198,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
             |done| {
                 let (t, state) = last(&done[0])?;
                 let exact = rolling(&OneGrain::from_scene(&done[0].scene), t);
-                Ok(Measured::new(state.v, exact, exact))
+                Ok(Measurement::new(state.v, exact, exact))
             },
         )
         .within(computed(
@@ -268,7 +268,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
 
 /// Claims the restitution of a head-on impact.
 #[must_use]
-pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured, Missing>) -> Claim {
+pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<Measurement, MissingData>) -> Claim {
     claim("coefficient of restitution", "1")
         .run(Run::new(variant, RIGID, DEFAULT))
         .equals(Source::Derived("damped oscillator whose dashpot may pull (derivation)"), move |done| {
@@ -291,7 +291,7 @@ pub fn restitution(variant: &'static str, measured: fn(&Done) -> Result<Measured
 pub fn momentum(
     variant: &'static str,
     quantity: String,
-    worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
+    worst: impl Fn(&FinishedRun) -> Result<Measurement, MissingData> + Send + Sync + 'static,
 ) -> Claim {
     claim(quantity, "kg m/s")
         .run(Run::new(variant, RIGID, DEFAULT))
@@ -304,7 +304,7 @@ pub fn momentum(
 #[must_use]
 pub fn angular_momentum(
     variant: &'static str,
-    worst: impl Fn(&Done) -> Result<Measured, Missing> + Send + Sync + 'static,
+    worst: impl Fn(&FinishedRun) -> Result<Measurement, MissingData> + Send + Sync + 'static,
 ) -> Claim {
     claim("angular momentum, worst", "kg m²/s")
         .run(Run::new(variant, RIGID, DEFAULT))
@@ -321,7 +321,11 @@ pub fn angular_momentum(
 
 /// Claims the energy of a gas of elastic grains over some seconds instead of a number of cycles.
 #[must_use]
-pub fn gas_energy(variant: &'static str, seconds: f64, worst: fn(&Done) -> Result<Measured, Missing>) -> Claim {
+pub fn gas_energy(
+    variant: &'static str,
+    seconds: f64,
+    worst: fn(&FinishedRun) -> Result<Measurement, MissingData>,
+) -> Claim {
     let run = Run::new(variant, RIGID, DEFAULT).adjusted(&format!("{seconds} s"), move |scene| {
         scene.duration = Duration::Seconds(seconds);
     });

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 /// Parameters and exact values of one arrangement of discs.
 #[derive(Clone, Copy)]
-pub(crate) struct Ringing {
+pub(crate) struct FreeVibration {
     /// Variant of the case.
     pub(crate) variant: &'static str,
     /// Column of the force at a wall.
@@ -31,7 +31,7 @@ pub(crate) struct Ringing {
     pub(crate) cells: f64,
     pub(crate) fine: f64,
     /// Function that returns the exact values; `None` for discs that do not deform.
-    pub(crate) exact: fn(&Scene, f64) -> Option<Rung>,
+    pub(crate) exact: fn(&Scene, f64) -> Option<VibrationParameters>,
     /// n of ω² = n k_n/m of rigid discs on springs.
     pub(crate) springs: f64,
     /// Force at a wall at rest over k_n times the squeeze, of discs on springs.
@@ -45,7 +45,7 @@ pub(crate) struct Ringing {
 
 /// Discs at rest and the parameters of their free vibration.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rung {
+pub(crate) struct VibrationParameters {
     /// Force at a wall at rest (N/m).
     pub(crate) force: f64,
     /// Restoring force on a disc over its displacement (N/m²).
@@ -58,7 +58,7 @@ pub(crate) struct Rung {
     pub(crate) share: f64,
 }
 
-impl Ringing {
+impl FreeVibration {
     /// Makes the discs elastic and sets the walls' motion and stop.
     fn elastic(self, scene: &mut Scene) {
         let [bulk_modulus, shear_modulus] = self.moduli;
@@ -75,7 +75,7 @@ impl Ringing {
     /// Makes the discs rigid, on springs with the force of the elastic discs at rest.
     fn on_springs(self, scene: &mut Scene) {
         self.elastic(scene);
-        if let Some(Rung { force, .. }) = (self.exact)(scene, self.squeeze) {
+        if let Some(VibrationParameters { force, .. }) = (self.exact)(scene, self.squeeze) {
             scene.change_laws(|law| {
                 let (normal, tangential) = (force / (self.share * self.squeeze), law.tangential_stiffness());
                 law.springs = Springs::Linear { normal, tangential };
@@ -96,23 +96,23 @@ impl Ringing {
     }
 
     /// Returns the exact values for the scene of a run.
-    pub(crate) fn exact(self, done: &Done) -> Result<Rung, Missing> {
-        (self.exact)(&done.scene, self.squeeze).ok_or_else(|| Missing("moduli in its scene".to_owned()))
+    pub(crate) fn exact(self, done: &FinishedRun) -> Result<VibrationParameters, MissingData> {
+        (self.exact)(&done.scene, self.squeeze).ok_or_else(|| MissingData("moduli in its scene".to_owned()))
     }
 
     /// Returns the angular frequency of elastic discs in closed form (rad/s).
-    fn expected(self, done: &Done) -> Result<f64, Missing> {
-        let Rung { restoring, stirred, .. } = self.exact(done)?;
+    fn expected(self, done: &FinishedRun) -> Result<f64, MissingData> {
+        let VibrationParameters { restoring, stirred, .. } = self.exact(done)?;
         Ok((restoring / (done.scene.grains[0].mass * (1.0 + stirred))).sqrt())
     }
 
     /// Returns times and wall forces after the walls have stopped.
-    fn ringing(self, done: &Done) -> Result<(Vec<f64>, Vec<f64>), Missing> {
+    fn ringing(self, done: &FinishedRun) -> Result<(Vec<f64>, Vec<f64>), MissingData> {
         let force = done.column(self.column)?;
         Ok(done.series().time.iter().zip(force).filter(|(time, _)| **time > self.ramp).unzip())
     }
 
-    fn frequency(self, done: &Done) -> Result<f64, Missing> {
+    fn frequency(self, done: &FinishedRun) -> Result<f64, MissingData> {
         let near = self.expected(done)?;
         let (time, force) = self.ringing(done)?;
         Ok(dominant_frequency(&time, &force, 0.5 * near, 1.6 * near))
@@ -122,7 +122,7 @@ impl Ringing {
     /// material.
     fn softened(self, mut scene: Scene, cells: f64) -> f64 {
         self.elastic(&mut scene);
-        let soft = |rung: Rung| 0.5 * rung.share * PI * 0.4 / (2.0 * cells * rung.patch);
+        let soft = |rung: VibrationParameters| 0.5 * rung.share * PI * 0.4 / (2.0 * cells * rung.patch);
         (self.exact)(&scene, self.squeeze).map_or(f64::NAN, soft)
     }
 
@@ -142,7 +142,7 @@ impl Ringing {
                 .run(run)
                 .equals(exact, move |done| {
                     let expected = self.expected(&done[0])?;
-                    Ok(Measured::new(self.frequency(&done[0])?, expected, expected))
+                    Ok(Measurement::new(self.frequency(&done[0])?, expected, expected))
                 })
                 .within(softened(cells))
                 .refuses(softer())
@@ -153,7 +153,7 @@ impl Ringing {
                 .equals(exact, move |done| {
                     let force = self.exact(&done[0])?.force;
                     let (_, found) = self.ringing(&done[0])?;
-                    Ok(Measured::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
+                    Ok(Measurement::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
                 })
                 .within(estimated(self.allowed, self.because))
                 .refuses(softer()),
@@ -163,11 +163,11 @@ impl Ringing {
                 .run(set(self.discs(self.cells)))
                 .run(self.rigid().aside())
                 .equals(exact, move |done| {
-                    let Rung { force, restoring, stirred, .. } = self.exact(&done[0])?;
+                    let VibrationParameters { force, restoring, stirred, .. } = self.exact(&done[0])?;
                     // m cancels. k_n is the stiffness at which the springs have this force.
                     let spring = force / (self.share * self.squeeze);
                     let expected = (restoring / (self.springs * spring * (1.0 + stirred))).sqrt();
-                    Ok(Measured::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))
+                    Ok(Measurement::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))
                 })
                 .within(softened(self.cells))
                 .refuses(softer()),

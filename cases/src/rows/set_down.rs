@@ -18,7 +18,7 @@ use crate::rows::incline::STEP;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::{Duration, Sampling};
 
-const SPRINGS: Plate = Plate {
+const SPRINGS: ClaimFigure = ClaimFigure {
     name: "set-down",
     title: "Set down half as deep again as it rests",
     caption: "A contact that neither opens nor slips shows its springs and dashpots.",

@@ -14,14 +14,14 @@ const STRESS: f64 = 2.4;
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
 
 /// Returns both figures; none if a run has no table of axes or of forces.
-pub(super) fn all(done: &Done, flow: Flow) -> Vec<Figure> {
+pub(super) fn all(done: &FinishedRun, flow: Flow) -> Vec<Figure> {
     let Some(kinds) = kinds(done) else { return Vec::new() };
     let time = done.table("whole").ok().and_then(|whole| whole.column("time")?.last().copied()).unwrap_or(f64::NAN);
     [whole(done, flow, time, &kinds), detail(done, flow, time, kinds)].into_iter().flatten().collect()
 }
 
 /// Returns the axes of each block as lines.
-fn kinds(done: &Done) -> Option<Vec<Lines>> {
+fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
     let table = done.table("axes").ok()?;
     let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
     let [smallest, middle, largest] =
@@ -55,7 +55,7 @@ fn labels() -> [String; 2] {
 }
 
 /// Returns the figure of all blocks (figure 4).
-fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> {
+fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> {
     let domain = done.scene.domain.as_ref()?;
     let places = rows(done.table("axes").ok()?, ["x", "z"]);
     let top = places.iter().map(|row| row[1]).fold(0.0, f64::max) + 2.5;
@@ -78,7 +78,7 @@ fn whole(done: &Done, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> 
 }
 
 /// Returns the figure of the blocks in a part of the silo and the single forces there (figure 5).
-fn detail(done: &Done, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
+fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
     let forces = rows(done.table("forces").ok()?, ["from_x", "from_z", "to_x", "to_z", "force"]);
     let largest = forces.iter().map(|row| row[4]).fold(0.0, f64::max);
     if largest <= 0.0 {

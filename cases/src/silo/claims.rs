@@ -6,27 +6,27 @@ use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 /// Function that returns a quantity of a silo.
-pub(crate) type Quantity = fn(&Done, Flow) -> Result<f64, Missing>;
+pub(crate) type Quantity = fn(&FinishedRun, Flow) -> Result<f64, MissingData>;
 
 /// Values of the prototype for every silo.
 pub(crate) struct Numbers {
-    pub(crate) sine: Cited,
-    pub(crate) packing: Cited,
+    pub(crate) sine: CitedNumber,
+    pub(crate) packing: CitedNumber,
 }
 
 /// Values of the prototype for silos that drain.
-pub(crate) struct Drained {
-    pub(crate) plateau: Cited,
-    pub(crate) onset: Cited,
+pub(crate) struct DrainNumbers {
+    pub(crate) plateau: CitedNumber,
+    pub(crate) onset: CitedNumber,
     /// Angles between axes: for single frames, and for means over 20 frames.
-    pub(crate) angles: [Cited; 2],
+    pub(crate) angles: [CitedNumber; 2],
     /// Correlations: of the two friction criteria, and of the rates found by two methods.
-    pub(crate) correlations: [Cited; 2],
+    pub(crate) correlations: [CitedNumber; 2],
     /// Packing fractions in the first bins of |I₀|.
-    pub(crate) bins: &'static [Cited],
+    pub(crate) bins: &'static [CitedNumber],
 }
 
 /// A silo and the origin of its tolerances.
@@ -100,37 +100,37 @@ fn turned_gravity() -> Control {
 }
 
 /// Returns the mean sin φ of the elements in steady flow.
-fn sine(done: &Done, flow: Flow) -> Result<f64, Missing> {
+fn sine(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&steady(done, flow, "sine_of_friction")?))
 }
 
 /// Returns the mean packing fraction of the elements in steady flow.
-fn packing(done: &Done, flow: Flow) -> Result<f64, Missing> {
+fn packing(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&steady(done, flow, "packing_fraction")?))
 }
 
 /// Returns the number of grains that have left.
-pub(crate) fn gone(done: &Done, _: Flow) -> Result<f64, Missing> {
+pub(crate) fn gone(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::gone(done)
 }
 
 /// Returns the packing fraction of strained tracers.
-fn plateau(done: &Done, _: Flow) -> Result<f64, Missing> {
+fn plateau(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::plateau(done)
 }
 
 /// Returns the median over tracers of the largest sin φ before dilation.
-fn onset(done: &Done, _: Flow) -> Result<f64, Missing> {
+fn onset(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::onset(done)
 }
 
 /// Returns the mean angle between the axes of largest T and D.
-fn angle(done: &Done, flow: Flow) -> Result<f64, Missing> {
+fn angle(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&ensemble::angles(done, flow, false, "largest")?))
 }
 
 /// Returns the mean angle between the axes of largest T and D for means over windows of frames.
-fn angle_of_windows(done: &Done, flow: Flow) -> Result<f64, Missing> {
+fn angle_of_windows(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&ensemble::angles(done, flow, true, "largest")?))
 }
 
@@ -156,7 +156,7 @@ impl Silo {
 
     /// Returns the claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over
     /// the inertial number.
-    pub(crate) fn of_drains(&self, numbers: &Drained) -> Vec<Claim> {
+    pub(crate) fn of_drains(&self, numbers: &DrainNumbers) -> Vec<Claim> {
         let mut all = vec![
             self.equals(PLATEAU, numbers.plateau, no_springs(), plateau),
             self.equals(ONSET, numbers.onset, no_springs(), onset),
@@ -180,7 +180,7 @@ impl Silo {
     pub(crate) fn equals(
         &self,
         [quantity, unit]: [&'static str; 2],
-        cited: Cited,
+        cited: CitedNumber,
         control: Control,
         read: Quantity,
     ) -> Claim {
@@ -206,7 +206,7 @@ impl Silo {
     }
 
     /// Claims two correlations, which vanish for shuffled elements.
-    fn correlations(&self, cited: [Cited; 2]) -> Vec<Claim> {
+    fn correlations(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
         let asked = cited.map(|cited| format!("asked for before; the prototype has {}", cited.value));
         let [for_criteria, for_rates] = asked;
         let [criteria, rates] = cited.map(|cited| cited.source());
@@ -227,7 +227,7 @@ impl Silo {
     }
 
     /// Claims the coaxiality of stress and rate.
-    fn coaxiality(&self, cited: [Cited; 2]) -> Vec<Claim> {
+    fn coaxiality(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
         let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
         vec![
             self.equals(
@@ -241,7 +241,7 @@ impl Silo {
     }
 
     /// Claims the mean rotation from stress to rate, counted outwards in both halves. It is small for a symmetric flow.
-    pub(crate) fn turn(&self, cited: Cited) -> Claim {
+    pub(crate) fn turn(&self, cited: CitedNumber) -> Claim {
         let control = Control::misread("D turned by 10°", ensemble::rate_turned);
         self.equals(["turn from T to D in the plane, with the sign of x", "deg"], cited, control, ensemble::turn)
     }
@@ -251,14 +251,14 @@ impl Silo {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
             .run(self.run.clone())
             .holds("scene, walls and slit are their own mirror image in x = 0", |done| {
-                Ok(Measured::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
+                Ok(Measurement::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
             })
             .within(judged(0.03, "the deposit is not its own mirror image; 10° of gravity are .07 in the prototype"))
             .refuses(turned_gravity())
     }
 
     /// Claims φ over |I₀|: in the bins of the prototype, and the mean error over the bins of flowing elements.
-    fn over_inertia(&self, bins: &'static [Cited]) -> Vec<Claim> {
+    fn over_inertia(&self, bins: &'static [CitedNumber]) -> Vec<Claim> {
         let cited = move || bins.iter().map(|cited| cited.value).enumerate();
         let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
         vec![
@@ -268,7 +268,7 @@ impl Silo {
                     let full = cited().take(ensemble::FULL);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, full)?;
                     let [found, expected] = ensemble::worst(&pairs);
-                    Ok(Measured::new(found, expected, 1.0))
+                    Ok(Measurement::new(found, expected, 1.0))
                 })
                 .within(required(
                     0.008,
@@ -283,7 +283,7 @@ impl Silo {
                     let middle = cited().skip(1).take(bins.len() - 2);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia_flowing(&done[0])?, middle)?;
                     let off: Vec<f64> = pairs.iter().map(|[found, expected]| found - expected).collect();
-                    Ok(Measured::new(mean(&off), 0.0, 1.0))
+                    Ok(Measurement::new(mean(&off), 0.0, 1.0))
                 })
                 .within(computed(self.spread(mean_off), format!("{PACKINGS}; in units of φ")))
                 .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one)),
@@ -291,7 +291,7 @@ impl Silo {
     }
 
     /// Claims the packing fraction of the deposit.
-    pub(crate) fn deposit(&self, cited: Cited) -> Claim {
+    pub(crate) fn deposit(&self, cited: CitedNumber) -> Claim {
         let control = Control::misread("radii a hundredth too large", ensemble::larger_radii);
         self.equals(["packing fraction of the deposit", "1"], cited, control, |done, _| ensemble::deposit(done))
     }
@@ -307,7 +307,7 @@ impl Silo {
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
         let allowed = computed(apart / mean, format!("{because}; in units of the mean of ten packings"));
         row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
-            Ok(Measured::new(read(&done[0], flow)?, read(&done[1], flow)?, mean))
+            Ok(Measurement::new(read(&done[0], flow)?, read(&done[1], flow)?, mean))
         })
     }
 

@@ -8,7 +8,7 @@ use grainbench_harness::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A flow of this size: its case, the variant that is read as elements, and its label in figures.
-pub(crate) struct Other {
+pub(crate) struct ComparedFlow {
     pub(crate) case: &'static str,
     pub(crate) variant: &'static str,
     pub(crate) label: &'static str,
@@ -17,53 +17,53 @@ pub(crate) struct Other {
 }
 
 /// The other two flows at a tenth of the paper's size.
-pub(crate) const TENTH: [Other; 2] = [
-    Other { case: "silo-wide", variant: "drained", label: "wide silo, drained", strained: 5 },
-    Other { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
+pub(crate) const TENTH: [ComparedFlow; 2] = [
+    ComparedFlow { case: "silo-wide", variant: "drained", label: "wide silo, drained", strained: 5 },
+    ComparedFlow { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
 ];
 
 /// The pushed silo at the paper's size.
-const DEEP: Other = Other { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 };
+const DEEP: ComparedFlow = ComparedFlow { case: "silo-push", variant: "deep", label: "tall silo, pushed", strained: 3 };
 
 /// The flows that are compared with the tall silo at the paper's size.
-pub(crate) const PAPER: [Other; 2] =
-    [Other { case: "silo-wide", variant: "paper", label: "wide silo, drained", strained: 5 }, DEEP];
+pub(crate) const PAPER: [ComparedFlow; 2] =
+    [ComparedFlow { case: "silo-wide", variant: "paper", label: "wide silo, drained", strained: 5 }, DEEP];
 
 /// The flows that are compared with the wide silo at the paper's size.
-pub(crate) const BESIDE_WIDE: [Other; 2] =
-    [Other { case: "silo-tall", variant: "paper", label: "tall silo, drained", strained: 5 }, DEEP];
+pub(crate) const BESIDE_WIDE: [ComparedFlow; 2] =
+    [ComparedFlow { case: "silo-tall", variant: "paper", label: "tall silo, drained", strained: 5 }, DEEP];
 
 /// Stored result of a flow with its case and variant.
-type Read = ([&'static str; 2], Result<Done, String>);
+type FlowResult = ([&'static str; 2], Result<FinishedRun, String>);
 
-impl Other {
+impl ComparedFlow {
     /// Returns the stored result. It is read once, because several claims and figures use it.
-    pub(super) fn done(&self) -> Result<Done, Missing> {
-        static READ: Mutex<Vec<Read>> = Mutex::new(Vec::new());
+    pub(super) fn done(&self) -> Result<FinishedRun, MissingData> {
+        static READ: Mutex<Vec<FlowResult>> = Mutex::new(Vec::new());
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
         let name = [self.case, self.variant];
         if let Some((_, left)) = read.iter().find(|(known, _)| *known == name) {
-            return left.clone().map_err(Missing);
+            return left.clone().map_err(MissingData);
         }
         let left = self.read().map_err(|reason| format!("kept run of {}/{}: {reason}", self.case, self.variant));
         read.push((name, left.clone()));
-        left.map_err(Missing)
+        left.map_err(MissingData)
     }
 
-    fn read(&self) -> Result<Done, String> {
+    fn read(&self) -> Result<FinishedRun, String> {
         let case = by_name(self.case).ok_or("there is no such case")?;
         let mut runs = (case.claims)().into_iter().flat_map(|claim| claim.runs);
         let run = runs.find(|run| run.kept && run.variant == self.variant).ok_or("none is read")?;
         let scene = case.variant(run.variant).map_err(|error| error.to_string())?;
         let left = kept::load(case, &run, &scene, None).ok_or("nothing is kept")?.map_err(|error| error.to_string())?;
         let (scene, record, tables) = (Arc::new(scene), Arc::new(left.record), Arc::new(left.tables));
-        Ok(Done { scene, record, tables, kept: Some(left.made) })
+        Ok(FinishedRun { scene, record, tables, kept: Some(left.made) })
     }
 }
 
 /// Claims that a draining silo lies on the curve of φ over |I₀| of another silo, for the duration of the other flow.
 /// `which` and `size` name the other silo and the size.
-pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2]) -> Claim {
+pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .run(run)
         .agrees(Source::Ourselves("what is kept of that silo's run"), move |done| {
@@ -73,7 +73,7 @@ pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2
             let until = other.scene.duration.seconds().unwrap_or(f64::INFINITY);
             let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, theirs)?;
             let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measured::new(found, expected, 1.0))
+            Ok(Measurement::new(found, expected, 1.0))
         })
         .within(required(0.008, "asked for before: two drains of the prototype are .005 to .008 apart; in units of φ"))
         .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
@@ -83,7 +83,7 @@ pub(crate) fn of_drains(run: Run, other: &'static Other, [which, size]: [&str; 2
 const FEW_STRAINS: usize = 3;
 
 /// Claims that three flows lie on one curve of φ over |E|.
-pub(crate) fn of_strained(run: Run, others: &'static [Other], size: &str) -> Claim {
+pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .run(run)
         .agrees(Source::Ourselves("what is kept of the other silos' runs"), move |done| {
@@ -93,12 +93,12 @@ pub(crate) fn of_strained(run: Run, others: &'static [Other], size: &str) -> Cla
                 let theirs = ensemble::over_strain(&other.done()?, &STRAIN)?;
                 for bin in FEW_STRAINS..FEW_STRAINS + other.strained {
                     let lacking =
-                        || Missing(format!("tracers with |E| of {:?}, or {} has none", STRAIN[bin], other.label));
+                        || MissingData(format!("tracers with |E| of {:?}, or {} has none", STRAIN[bin], other.label));
                     pairs.push([ours[bin].ok_or_else(lacking)?, theirs[bin].ok_or_else(lacking)?]);
                 }
             }
             let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measured::new(found, expected, 1.0))
+            Ok(Measurement::new(found, expected, 1.0))
         })
         .within(required(0.013, "asked for before: runs of the prototype agree within .013 there; in units of φ"))
         .refuses(Control::misread("radii a hundredth too large", ensemble::larger_radii))

@@ -3,7 +3,7 @@
 
 use super::reader::STEADY;
 use grainbench_harness::reading::Table;
-use grainbench_harness::run::{Done, Missing};
+use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::statistics::median;
 
 /// Cause of the flow.
@@ -51,10 +51,10 @@ struct Rows<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Rows<'a, N> {
-    fn from_table(table: &'a Table, names: [&str; N]) -> Result<Self, Missing> {
+    fn from_table(table: &'a Table, names: [&str; N]) -> Result<Self, MissingData> {
         let mut columns: [&[f64]; N] = [&[]; N];
         for (column, name) in columns.iter_mut().zip(names) {
-            *column = table.column(name).ok_or_else(|| Missing(format!("column `{name}` of `{}`", table.name)))?;
+            *column = table.column(name).ok_or_else(|| MissingData(format!("column `{name}` of `{}`", table.name)))?;
         }
         Ok(Self { columns, rows: table.rows() })
     }
@@ -67,7 +67,7 @@ impl<'a, const N: usize> Rows<'a, N> {
 }
 
 /// Returns a quantity of the elements of the bulk that flow steadily, far from the cause of the flow.
-pub(crate) fn steady(done: &Done, flow: Flow, quantity: &str) -> Result<Vec<f64>, Missing> {
+pub(crate) fn steady(done: &FinishedRun, flow: Flow, quantity: &str) -> Result<Vec<f64>, MissingData> {
     let names = ["time", "x", "z", "side", "surface", "shear_rate", quantity];
     let rows = Rows::from_table(done.table("elements")?, names)?;
     let values: Vec<f64> = rows
@@ -83,8 +83,12 @@ pub(crate) fn steady(done: &Done, flow: Flow, quantity: &str) -> Result<Vec<f64>
 /// Smallest number of values of an ensemble.
 const FEWEST: usize = 16;
 
-fn enough(values: Vec<f64>, what: &str) -> Result<Vec<f64>, Missing> {
-    if values.len() < FEWEST { Err(Missing(format!("{FEWEST} {what} (it has {})", values.len()))) } else { Ok(values) }
+fn enough(values: Vec<f64>, what: &str) -> Result<Vec<f64>, MissingData> {
+    if values.len() < FEWEST {
+        Err(MissingData(format!("{FEWEST} {what} (it has {})", values.len())))
+    } else {
+        Ok(values)
+    }
 }
 
 /// Returns the mean.
@@ -98,28 +102,28 @@ pub(crate) fn share(values: &[f64], [low, high]: [f64; 2]) -> f64 {
 }
 
 /// Returns a pair of quantities of all elements of the bulk whose shear rate is at least `rate`.
-fn pairs(done: &Done, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
+fn pairs(done: &FinishedRun, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, MissingData> {
     pairs_of(done.table("elements")?, f64::INFINITY, rate, names)
 }
 
 /// Returns a pair of quantities of the elements in a table, up to a time.
-fn pairs_of(table: &Table, until: f64, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Missing> {
+fn pairs_of(table: &Table, until: f64, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, MissingData> {
     let [a, b] = names;
     let rows = Rows::from_table(table, ["time", "side", "surface", "shear_rate", a, b])?;
     let is_seen = |time: f64| (STEADY - 1e-9..until + 1e-9).contains(&time);
     let flows = |row: &[f64; 6]| is_seen(row[0]) && row[1] + row[2] == 0.0 && row[3] >= rate;
     let found: Vec<[f64; 2]> = rows.whole().filter(flows).map(|row| [row[4], row[5]]).collect();
-    if found.len() < FEWEST { Err(Missing(format!("{FEWEST} flowing elements"))) } else { Ok(found) }
+    if found.len() < FEWEST { Err(MissingData(format!("{FEWEST} flowing elements"))) } else { Ok(found) }
 }
 
 /// Returns Pearson's correlation between the Mohr-Coulomb sin φ and the Drucker-Prager ratio.
-pub(crate) fn of_criteria(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn of_criteria(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(correlation(&pairs(done, FLOWING, ["sine_of_friction", "drucker_prager"])?))
 }
 
 /// Returns Pearson's correlation between the logarithms of the instantaneous |D₀| and of |D₀| from displacements over
 /// 0.2 τ.
-pub(crate) fn of_rates(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn of_rates(done: &FinishedRun) -> Result<f64, MissingData> {
     let pairs = pairs(done, FLOWING, ["shear_rate", "shear_rate_between"])?;
     Ok(correlation(&pairs.into_iter().map(|pair| pair.map(f64::ln)).collect::<Vec<_>>()))
 }
@@ -153,12 +157,12 @@ pub(crate) const FULL: usize = 6;
 
 /// Returns the mean packing fraction in each bin of |I₀|, over flowing and creeping elements of the bulk without the
 /// sides. `None` for a bin with few elements.
-pub(crate) fn over_inertia(done: &Done) -> Result<[Option<f64>; INERTIA.len()], Missing> {
+pub(crate) fn over_inertia(done: &FinishedRun) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
     over_inertia_until(done, f64::INFINITY)
 }
 
 /// Returns [`over_inertia`] of the flow up to a time.
-pub(crate) fn over_inertia_until(done: &Done, time: f64) -> Result<[Option<f64>; INERTIA.len()], Missing> {
+pub(crate) fn over_inertia_until(done: &FinishedRun, time: f64) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
     // For a large silo, the table of elements skips some frames; the table of rates has all of them.
     let table = done.table("rates").or_else(|_| done.table("elements"))?;
     let pairs = pairs_of(table, time, 0.0, ["inertial_number", "packing_fraction"])?;
@@ -167,7 +171,7 @@ pub(crate) fn over_inertia_until(done: &Done, time: f64) -> Result<[Option<f64>;
 
 /// Returns [`over_inertia`] of flowing elements. The first bin has none, because |D₀| = 0.02/τ is |I₀| = 0.007 at the
 /// pressure at 15 d.
-pub(crate) fn over_inertia_flowing(done: &Done) -> Result<[Option<f64>; INERTIA.len()], Missing> {
+pub(crate) fn over_inertia_flowing(done: &FinishedRun) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
     let pairs = pairs(done, FLOWING, ["inertial_number", "packing_fraction"])?;
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
 }
@@ -176,14 +180,14 @@ pub(crate) fn over_inertia_flowing(done: &Done) -> Result<[Option<f64>; INERTIA.
 pub(crate) fn in_bins_of(
     found: &[Option<f64>; INERTIA.len()],
     others: impl Iterator<Item = (usize, f64)>,
-) -> Result<Vec<[f64; 2]>, Missing> {
+) -> Result<Vec<[f64; 2]>, MissingData> {
     let pair = |(bin, other): (usize, f64)| {
         let [low, high] = INERTIA[bin];
-        let lacking = || Missing(format!("{FEWEST} elements with |I₀| of {low} to {high}"));
+        let lacking = || MissingData(format!("{FEWEST} elements with |I₀| of {low} to {high}"));
         found[bin].map(|found| [found, other]).ok_or_else(lacking)
     };
     let pairs: Vec<[f64; 2]> = others.map(pair).collect::<Result<_, _>>()?;
-    if pairs.is_empty() { Err(Missing("bin of |I₀| to compare".to_owned())) } else { Ok(pairs) }
+    if pairs.is_empty() { Err(MissingData("bin of |I₀| to compare".to_owned())) } else { Ok(pairs) }
 }
 
 /// Returns the pair with the largest difference.
@@ -202,19 +206,19 @@ fn in_bin(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<f64> {
 const PLATEAU: f64 = 0.4;
 
 /// Returns the height above which tracers are read (d). Below it, tracers leave, or boxes of 5 d contain fixed grains.
-pub(crate) fn lowest(done: &Done) -> f64 {
+pub(crate) fn lowest(done: &FinishedRun) -> f64 {
     if done.scene.driven.is_empty() { 2.5 } else { 10.0 }
 }
 
 /// Returns strain |E| and packing fraction of tracers.
-pub(crate) fn strained(done: &Done) -> Result<Vec<[f64; 2]>, Missing> {
+pub(crate) fn strained(done: &FinishedRun) -> Result<Vec<[f64; 2]>, MissingData> {
     let rows = Rows::from_table(done.table("tracers")?, ["z", "strain", "packing_fraction"])?;
     let lowest = lowest(done);
     Ok(rows.whole().filter(|row| row[0] > lowest).map(|[_, strain, packing]| [strain, packing]).collect())
 }
 
 /// Returns the mean packing fraction of tracers strained beyond [`PLATEAU`].
-pub(crate) fn plateau(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn plateau(done: &FinishedRun) -> Result<f64, MissingData> {
     let pairs = strained(done)?.into_iter().filter(|pair| pair[0] > PLATEAU).map(|pair| pair[1]);
     Ok(mean(&enough(pairs.collect(), "strained tracers")?))
 }
@@ -224,7 +228,7 @@ pub(crate) const STRAIN: [[f64; 2]; 8] =
     [[0.02, 0.04], [0.04, 0.08], [0.08, 0.1], [0.1, 0.15], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.8]];
 
 /// Returns the mean packing fraction of tracers in bins of strain.
-pub(crate) fn over_strain(done: &Done, bins: &[[f64; 2]]) -> Result<Vec<Option<f64>>, Missing> {
+pub(crate) fn over_strain(done: &FinishedRun, bins: &[[f64; 2]]) -> Result<Vec<Option<f64>>, MissingData> {
     let pairs = strained(done)?;
     Ok(bins.iter().map(|&bin| in_bin(&pairs, bin)).collect())
 }
@@ -235,7 +239,7 @@ const FEWEST_TRACERS: usize = 8;
 const DILATION: f64 = 0.02;
 
 /// Returns the largest sin φ before dilation, for each tracer that dilates.
-pub(crate) fn before_dilation(done: &Done) -> Result<Vec<f64>, Missing> {
+pub(crate) fn before_dilation(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let rows = Rows::from_table(done.table("tracers")?, ["tracer", "packing_fraction", "sine_of_friction"])?;
     let mut courses: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for [tracer, packing, sine] in rows.whole() {
@@ -249,16 +253,20 @@ pub(crate) fn before_dilation(done: &Done) -> Result<Vec<f64>, Missing> {
         Some(course[..dilated].iter().map(|[_, sine]| *sine).fold(0.0, f64::max))
     };
     let found: Vec<f64> = courses.iter().filter_map(peak_sine).collect();
-    if found.len() < FEWEST_TRACERS { Err(Missing(format!("{FEWEST_TRACERS} tracers that dilate"))) } else { Ok(found) }
+    if found.len() < FEWEST_TRACERS {
+        Err(MissingData(format!("{FEWEST_TRACERS} tracers that dilate")))
+    } else {
+        Ok(found)
+    }
 }
 
 /// Returns the median of the largest sin φ before dilation.
-pub(crate) fn onset(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn onset(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(median(&before_dilation(done)?))
 }
 
 /// Returns an angle of the flowing blocks of the bulk, for single frames or for windows.
-pub(crate) fn angles(done: &Done, flow: Flow, averaged: bool, name: &str) -> Result<Vec<f64>, Missing> {
+pub(crate) fn angles(done: &FinishedRun, flow: Flow, averaged: bool, name: &str) -> Result<Vec<f64>, MissingData> {
     let names = ["time", "frames", "x", "z", "side", "surface", "shear_rate", name];
     let rows = Rows::from_table(done.table("blocks")?, names)?;
     let flows = |&[time, frames, x, z, side, surface, rate, _]: &[f64; 8]| {
@@ -269,36 +277,36 @@ pub(crate) fn angles(done: &Done, flow: Flow, averaged: bool, name: &str) -> Res
             && flow.is_far_block(x, z)
     };
     let values: Vec<f64> = rows.whole().filter(flows).map(|row| row[7]).collect();
-    if values.len() < 4 { Err(Missing("four flowing blocks".to_owned())) } else { Ok(values) }
+    if values.len() < 4 { Err(MissingData("four flowing blocks".to_owned())) } else { Ok(values) }
 }
 
 /// Returns the mean rotation about y from the axes of T to the axes of D, multiplied by the sign of x. With this sign,
 /// both halves of a symmetric flow contribute equally.
-pub(crate) fn turn(done: &Done, flow: Flow) -> Result<f64, Missing> {
+pub(crate) fn turn(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     let (turns, places) = (angles(done, flow, false, "turn")?, angles(done, flow, false, "x")?);
     // The sense from x to z is opposite to a positive rotation about y.
     Ok(turns.iter().zip(&places).map(|(turn, x)| -turn * x.signum()).sum::<f64>() / turns.len() as f64)
 }
 
 /// Returns a column of the table of the whole silo, in steady flow.
-pub(crate) fn whole(done: &Done, name: &str) -> Result<Vec<f64>, Missing> {
+pub(crate) fn whole(done: &FinishedRun, name: &str) -> Result<Vec<f64>, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["time", name])?;
     Ok(rows.whole().filter(|row| row[0] >= STEADY - 1e-9).map(|row| row[1]).collect())
 }
 
 /// Returns the packing fraction of the deposit: the bulk in the first frame.
-pub(crate) fn deposit(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn deposit(done: &FinishedRun) -> Result<f64, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["packing_fraction"])?;
     let first = rows.whole().next();
-    first.map(|[packing]| packing).ok_or_else(|| Missing("a bulk at the start".to_owned()))
+    first.map(|[packing]| packing).ok_or_else(|| MissingData("a bulk at the start".to_owned()))
 }
 
 /// Returns the number of grains that have left by the last frame: their centres are below the floor, or they are
 /// removed.
-pub(crate) fn gone(done: &Done) -> Result<f64, Missing> {
+pub(crate) fn gone(done: &FinishedRun) -> Result<f64, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["grains"])?;
     let last = rows.whole().last();
-    let there = last.map(|[grains]| grains).ok_or_else(|| Missing("a frame".to_owned()))?;
+    let there = last.map(|[grains]| grains).ok_or_else(|| MissingData("a frame".to_owned()))?;
     Ok(done.scene.grains.len() as f64 - there)
 }
 

@@ -6,7 +6,7 @@ use super::reader::{ELEMENT, STEADY};
 use grainbench_fields::element_picture::{Sheet, Units};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 use nalgebra::Vector3;
 
 /// Frames of the animation on a page.
@@ -19,7 +19,7 @@ const STILL: f64 = 1e-5;
 
 /// Returns all figures of a silo: the animation, axes of stress and rate, single forces, φ over |I₀| with the
 /// prototype's bins, sin φ over φ along tracers, φ over strain.
-pub(crate) fn all(done: &Done, flow: Flow, bins: &[Cited]) -> Vec<Figure> {
+pub(crate) fn all(done: &FinishedRun, flow: Flow, bins: &[CitedNumber]) -> Vec<Figure> {
     let axes = axes::all(done, flow).into_iter();
     let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
     film(done).into_iter().chain(axes).chain(graphs).collect()
@@ -42,7 +42,7 @@ pub(super) fn thinned(points: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
 }
 
 /// Returns an animation of speed, sin φ, φ and |D₀| (figures 2 and 3 of the paper).
-fn film(done: &Done) -> Option<Figure> {
+fn film(done: &FinishedRun) -> Option<Figure> {
     let table = done.table("elements").ok()?;
     let domain = done.scene.domain.as_ref()?;
     let mut times: Vec<f64> = table.column("time")?.to_vec();
@@ -83,7 +83,7 @@ fn film(done: &Done) -> Option<Figure> {
 }
 
 /// Returns |I₀| and φ of the elements of the bulk in steady flow, without fixed grains.
-pub(super) fn flowing(done: &Done) -> Vec<(f64, f64)> {
+pub(super) fn flowing(done: &FinishedRun) -> Vec<(f64, f64)> {
     let Ok(table) = done.table("elements") else { return Vec::new() };
     let all = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
     let flows = |row: &[f64; 5]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= STILL;
@@ -91,7 +91,7 @@ pub(super) fn flowing(done: &Done) -> Vec<(f64, f64)> {
 }
 
 /// Returns the figure of φ over |I₀| (figure 6).
-fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
+fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let cloud = flowing(done);
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
     let ours = over_inertia(done).ok()?;
@@ -116,7 +116,7 @@ fn over_rate(done: &Done, bins: &[Cited]) -> Option<Figure> {
 }
 
 /// Returns the figure of sin φ over φ along tracers (figure 7).
-fn along_tracers(done: &Done) -> Option<Figure> {
+fn along_tracers(done: &FinishedRun) -> Option<Figure> {
     let table = done.table("tracers").ok()?;
     let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
     let lowest = super::ensemble::lowest(done);
@@ -149,7 +149,7 @@ fn along_tracers(done: &Done) -> Option<Figure> {
 }
 
 /// Returns the figure of φ over |E| (figure 8).
-fn over_hencky(done: &Done) -> Option<Figure> {
+fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let cloud = strained(done).ok()?.into_iter().map(|[strain, packing]| (strain, packing)).collect();
     let means = over_strain(done, &STRAIN).ok()?;
     let means =

@@ -1,6 +1,6 @@
 //! Three flows in one figure: figures 6, 7 and 8 of the paper, each of which shows all of its simulations.
 
-use super::collapse::Other;
+use super::collapse::ComparedFlow;
 use super::ensemble::{self, INERTIA, STRAIN};
 use super::figures::{flowing, rows, thinned};
 use grainbench_harness::prelude::*;
@@ -13,10 +13,10 @@ const SMOOTH: usize = 5;
 const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.8], [0.0, 0.9]];
 
 /// Flows with their labels.
-type Flows = [(&'static str, Done)];
+type Flows = [(&'static str, FinishedRun)];
 
 /// Returns the figures of a run and of the stored results of other flows.
-pub(crate) fn figures(done: &Done, label: &'static str, others: &[Other]) -> Vec<Figure> {
+pub(crate) fn figures(done: &FinishedRun, label: &'static str, others: &[ComparedFlow]) -> Vec<Figure> {
     let mut flows = vec![(label, done.clone())];
     flows.extend(others.iter().filter_map(|other| Some((other.label, other.done().ok()?))));
     vec![over_rate(&flows), along_tracers(&flows), over_strain(&flows)]
@@ -45,7 +45,7 @@ fn over_rate(flows: &Flows) -> Figure {
 }
 
 /// Returns the paths of the tracers of a flow in two quantities, averaged over some frames.
-fn courses(done: &Done, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
+fn courses(done: &FinishedRun, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     let Ok(table) = done.table("tracers") else { return Vec::new() };
     let all = rows(table, ["tracer", "z", names[0], names[1]]);
     let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
@@ -68,7 +68,7 @@ const WIDTH: f64 = 0.15;
 
 /// Returns the plot of the tracer paths of all flows.
 fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2], means: Vec<Lines>) -> LinePlot {
-    let kind = |(label, done): &(&str, Done)| Lines { label: (*label).to_owned(), lines: courses(done, names) };
+    let kind = |(label, done): &(&str, FinishedRun)| Lines { label: (*label).to_owned(), lines: courses(done, names) };
     let kinds = flows.iter().map(kind).chain(means).collect();
     let sheet = Sheet { title: format!("tracers, means over {SMOOTH} frames"), seen, marked: None, kinds };
     LinePlot { axes: axes.map(str::to_owned), to_scale: false, sheets: vec![sheet] }

@@ -4,7 +4,7 @@
 use super::ensemble::{FLOWING, Flow};
 use grainbench_fields::element::Element;
 use grainbench_fields::grid::Grid;
-use grainbench_fields::mask::Masked;
+use grainbench_fields::mask::MaskReasons;
 use grainbench_fields::tensor::{deviator, principal};
 use grainbench_harness::reading::Table;
 use grainbench_scene::record::{Partner, Snapshot};
@@ -41,7 +41,7 @@ pub(super) const fn part(flow: Flow) -> [[f64; 2]; 2] {
 }
 
 /// Returns the axes of the blocks that contain enough grains.
-pub(super) fn axes(blocks: &[Element], masked: &[Masked], grid: &Grid) -> Table {
+pub(super) fn axes(blocks: &[Element], masked: &[MaskReasons], grid: &Grid) -> Table {
     let mut table = Table::new("axes", &AXES);
     for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few && !masked[*cell].surface) {
         let Some(stress) = element.stress else { continue };

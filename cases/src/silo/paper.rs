@@ -5,13 +5,13 @@
 //! derivation states this.
 
 use super::ELEMENTS;
-use super::collapse::{self, Other};
+use super::collapse::{self, ComparedFlow};
 use super::ensemble::{self, Flow, mean, share, steady};
 use super::flows;
 use crate::sources::literature::rycroft_2009 as paper;
 use grainbench_harness::claim::Quantity;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::Cited;
+use grainbench_harness::source::CitedNumber;
 
 /// A silo at the paper's size.
 pub(crate) struct PaperSize {
@@ -24,25 +24,25 @@ pub(crate) struct PaperSize {
     /// Time step.
     pub(crate) step: Level,
     /// Packing fractions of the prototype in the first bins of |I₀|.
-    pub(crate) bins: &'static [Cited],
+    pub(crate) bins: &'static [CitedNumber],
     /// Expected values, if the silo drains. In draining silos, enough elements strain for paths of tracers and for
     /// curves over the inertial number.
-    pub(crate) drained: Option<Drained>,
+    pub(crate) drained: Option<DrainExpectations>,
 }
 
 /// Expected values of a draining silo at the paper's size.
-pub(crate) struct Drained {
+pub(crate) struct DrainExpectations {
     /// Packing fraction of strained tracers in the prototype.
-    pub(crate) plateau: Cited,
+    pub(crate) plateau: CitedNumber,
     /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which is not met (derivation).
-    pub(crate) onset: Cited,
+    pub(crate) onset: CitedNumber,
     /// Number of bins of |I₀| that are compared up to 14 τ. A last bin outside this number is compared by its mean over
     /// the whole flow, because few elements over the slit are in it.
     pub(crate) bins: usize,
     /// Another draining silo, for the curve over |I₀|. If present, all other flows are compared over |E|.
-    pub(crate) beside: Option<&'static Other>,
+    pub(crate) beside: Option<&'static ComparedFlow>,
     /// Other flows in the figures.
-    pub(crate) others: &'static [Other],
+    pub(crate) others: &'static [ComparedFlow],
 }
 
 /// Returns the control: sin φ read as its tangent, which matches the paper's wording for μ.
@@ -70,13 +70,13 @@ const PROTOTYPE: f64 = 14.0;
 const STRAINED: &str = "after 14 τ, the end of the prototype, the packing fraction of slow elements is 0.009 to 0.018 lower: \
                         they have a larger strain, and φ is a function of |I₀| only for elements in steady shear";
 /// Claims φ over |I₀| up to a time against the prototype, in each bin of the prototype.
-fn over_inertia(quantity: Quantity, bins: &'static [Cited], until: f64, control: Control) -> Claim {
+fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity
         .equals(bins[0].source(), move |done| {
             let cited = bins.iter().map(|cited| cited.value).enumerate();
             let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, cited)?;
             let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measured::new(found, expected, 1.0))
+            Ok(Measurement::new(found, expected, 1.0))
         })
         .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
         .refuses(control)
@@ -105,7 +105,7 @@ impl PaperSize {
     /// Returns the claims.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let flow = self.flow;
-        let angle = |quantity: &str, cited: Cited, allowed: f64, averaged: bool| {
+        let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
             self.claim(quantity, "deg")
                 .equals_cited(cited, cited.value, move |done| {
                     Ok(mean(&ensemble::angles(&done[0], flow, averaged, "largest")?))
@@ -131,7 +131,7 @@ impl PaperSize {
     }
 
     /// Returns the claims on a draining silo.
-    fn of_drains(&self, numbers: &Drained) -> Vec<Claim> {
+    fn of_drains(&self, numbers: &DrainExpectations) -> Vec<Claim> {
         let (bins, over_the_slit) = self.bins.split_at(numbers.bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
         let one = |quantity: &str| self.claim(quantity, "1");
@@ -168,8 +168,8 @@ impl PaperSize {
                     .equals(last.source(), move |done| {
                         let all = ensemble::over_inertia(&done[0])?;
                         let found =
-                            all.last().copied().flatten().ok_or_else(|| Missing("elements so fast".to_owned()))?;
-                        Ok(Measured::new(found, last.value, 1.0))
+                            all.last().copied().flatten().ok_or_else(|| MissingData("elements so fast".to_owned()))?;
+                        Ok(Measurement::new(found, last.value, 1.0))
                     })
                     .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
                     .refuses(larger()),

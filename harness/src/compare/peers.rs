@@ -4,7 +4,7 @@
 //! between the runs and the change from halving their time step.
 
 use super::pointwise::largest;
-use crate::expect::{Measured, larger, weight};
+use crate::expect::{Measurement, larger, weight};
 use grainbench_scene::record::Series;
 use std::collections::VecDeque;
 
@@ -19,7 +19,7 @@ pub struct Peer {
 }
 
 /// A column of the observed series, compared with the nearest run.
-pub struct Compared<'a> {
+pub struct ColumnComparison<'a> {
     /// Name of the column.
     pub name: &'a str,
     /// Its unit.
@@ -48,7 +48,7 @@ pub struct Sample {
 }
 
 /// The sample that decides the result of a column.
-pub struct Decisive {
+pub struct DecisiveSample {
     /// The sample.
     pub sample: Sample,
     /// Largest |error| that passes at the sample.
@@ -62,12 +62,12 @@ pub struct Decisive {
 /// Allowed error, as a fraction of the scale, above which a sample is too uncertain to decide.
 pub const WIDE: f64 = 0.05;
 
-impl Compared<'_> {
+impl ColumnComparison<'_> {
     /// Returns the sample with the largest ratio of error to allowed error.
     ///
     /// If no sample is outside, samples that allow more than [`WIDE`] are skipped as long as other samples remain.
     #[must_use]
-    pub fn decisive(&self, allowed: impl Fn(&Sample) -> f64) -> Option<Decisive> {
+    pub fn decisive(&self, allowed: impl Fn(&Sample) -> f64) -> Option<DecisiveSample> {
         let ratio = |sample: &Sample| weight((sample.found - sample.expected) / self.scale) / allowed(sample);
         let is_wide = |sample: &Sample| allowed(sample) > WIDE;
         let worst = |samples: &mut dyn Iterator<Item = &Sample>| {
@@ -81,13 +81,13 @@ impl Compared<'_> {
                 .or_else(|| worst(&mut self.samples.iter())),
         }?;
         let wide = self.samples.iter().filter(|sample| is_wide(sample)).count();
-        Some(Decisive { sample, allowed: allowed(&sample), wide, first_outside })
+        Some(DecisiveSample { sample, allowed: allowed(&sample), wide, first_outside })
     }
 
     /// Returns the observed value at a sample with its expected value and scale.
     #[must_use]
-    pub fn measured(&self, sample: &Sample) -> Measured {
-        Measured::new(sample.found, sample.expected, self.scale)
+    pub fn measured(&self, sample: &Sample) -> Measurement {
+        Measurement::new(sample.found, sample.expected, self.scale)
     }
 }
 
@@ -101,7 +101,7 @@ pub fn against<'a>(
     peers: &'a [Peer],
     is_compared: impl Fn(&str) -> bool,
     scale: impl Fn(&dyn Fn(&str) -> f64, &str) -> f64,
-) -> Option<(&'a str, Vec<Compared<'a>>)> {
+) -> Option<(&'a str, Vec<ColumnComparison<'a>>)> {
     let mut columns: Vec<_> = observed.columns.iter().enumerate().collect();
     let known = |name: &str| peers.iter().all(|peer| peer.series.column(name).is_some());
     columns.retain(|(_, column)| is_compared(&column.name) && known(&column.name));
@@ -142,7 +142,7 @@ pub fn against<'a>(
             between,
             halved: halved.as_ref().map_or(0.0, |envelope| envelope.at(*time)) / scale,
         };
-        (scale > 0.0).then(|| Compared {
+        (scale > 0.0).then(|| ColumnComparison {
             name: &column.name,
             unit: &column.unit,
             scale,

@@ -10,8 +10,8 @@
 use super::pointwise::{largest, together};
 use crate::claim::{Claim, claim};
 use crate::control::Control;
-use crate::expect::Measured;
-use crate::run::{Done, Missing, Run};
+use crate::expect::Measurement;
+use crate::run::{FinishedRun, MissingData, Run};
 use crate::source::Source;
 use crate::statistics::{BLOCKS, difference as of_blocks};
 use crate::tolerance::{computed, one_interval};
@@ -25,13 +25,13 @@ pub const PERTURBED: &str = "one position moved by 1 ulp";
 
 /// Columns of the series in which the divergence of perturbed runs is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Parting {
+pub struct DivergenceColumns {
     /// The columns.
     pub columns: &'static [&'static str],
 }
 
 /// Returns the index of the last sample up to which the perturbed run is within [`PARTED`].
-fn last_together(columns: Parting, run: &Done, perturbed: &Done) -> Result<usize, Missing> {
+fn last_together(columns: DivergenceColumns, run: &FinishedRun, perturbed: &FinishedRun) -> Result<usize, MissingData> {
     let mut last = run.series().step.len();
     for column in columns.columns {
         let (b, a) = together(perturbed, run, column)?;
@@ -39,11 +39,11 @@ fn last_together(columns: Parting, run: &Done, perturbed: &Done) -> Result<usize
         let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > scale;
         last = last.min(a.iter().zip(&b).position(parted).unwrap_or(last));
     }
-    last.checked_sub(1).ok_or_else(|| Missing("moment at which perturbed runs are together".to_owned()))
+    last.checked_sub(1).ok_or_else(|| MissingData("moment at which perturbed runs are together".to_owned()))
 }
 
 /// Returns the step number of the horizon, from our run and its perturbed run.
-fn step_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result<u64, Missing> {
+fn step_of_horizon(columns: DivergenceColumns, run: &FinishedRun, perturbed: &FinishedRun) -> Result<u64, MissingData> {
     Ok(run.series().step[last_together(columns, run, perturbed)?])
 }
 
@@ -51,19 +51,23 @@ fn step_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result<u64
 ///
 /// # Errors
 /// When a column is missing.
-pub fn time_of_horizon(columns: Parting, run: &Done, perturbed: &Done) -> Result<f64, Missing> {
+pub fn time_of_horizon(
+    columns: DivergenceColumns,
+    run: &FinishedRun,
+    perturbed: &FinishedRun,
+) -> Result<f64, MissingData> {
     Ok(run.series().time[last_together(columns, run, perturbed)?])
 }
 
 /// Returns the claim about the horizon itself. The expected value is a regression value from when the case was written.
 #[must_use]
-pub fn horizon(columns: Parting, steps: u64, runs: [Run; 2]) -> Claim {
+pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
     claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
         .runs(runs)
         .equals(
             Source::Regression("steps until a run and its perturbed run, one position moved by one unit in the last place, part"),
-            move |done| Ok(Measured::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
+            move |done| Ok(Measurement::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
         )
         .within(computed(
             0.25,
@@ -79,13 +83,13 @@ pub fn horizon(columns: Parting, steps: u64, runs: [Run; 2]) -> Claim {
 ///
 /// The third and the fourth run give the horizon.
 #[must_use]
-pub fn pointwise(columns: Parting, runs: Vec<Run>, control: Control) -> Claim {
+pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
     claim(format!("energy and stress up to the horizon, worst, against {program}"), "1")
         .runs(runs)
         .agrees(Source::Program, move |done| {
             let horizon = step_of_horizon(columns, &done[2], &done[3])?;
-            let found: Result<Vec<Measured>, Missing> = columns
+            let found: Result<Vec<Measurement>, MissingData> = columns
                 .columns
                 .iter()
                 .map(|column| {
@@ -95,10 +99,10 @@ pub fn pointwise(columns: Parting, runs: Vec<Run>, control: Control) -> Claim {
                     let until = series.step.partition_point(|&step| step <= horizon);
                     let relative =
                         |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
-                    Ok(Measured::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
+                    Ok(Measurement::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
                 })
                 .collect();
-            Measured::worst_among(found?).ok_or_else(|| Missing("columns to compare".to_owned()))
+            Measurement::worst_among(found?).ok_or_else(|| MissingData("columns to compare".to_owned()))
         })
         .within(computed(
             ALLOWED,
@@ -127,7 +131,7 @@ pub struct Sum {
 /// The error is in units of half the confidence interval of the difference.
 #[must_use]
 pub fn statistics(
-    columns: Parting,
+    columns: DivergenceColumns,
     Sum { column, words, unit, logarithm }: Sum,
     runs: Vec<Run>,
     control: Control,
@@ -143,8 +147,8 @@ pub fn statistics(
                 values[from..].iter().map(|value| if logarithm { value.ln() } else { *value }).collect()
             };
             let estimate = of_blocks(&read(&theirs), &read(&ours), BLOCKS)
-                .ok_or_else(|| Missing(format!("{BLOCKS} samples after the horizon, at step {horizon}")))?;
-            Ok(Measured::new(estimate.second, estimate.first, estimate.half_width))
+                .ok_or_else(|| MissingData(format!("{BLOCKS} samples after the horizon, at step {horizon}")))?;
+            Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
         })
         .within(one_interval(
             "in units of half the 99 % confidence interval of the difference, from the means over 8 blocks of time",

@@ -1,13 +1,13 @@
 //! Comparison of two runs sample by sample.
 
-use crate::expect::Measured;
-use crate::run::{Done, Missing};
+use crate::expect::Measurement;
+use crate::run::{FinishedRun, MissingData};
 
 /// Returns a column of two runs at the steps of the second run. A stored run has only some of the steps.
 ///
 /// # Errors
 /// When the column is missing, or the first run lacks a step of the second.
-pub fn together(first: &Done, second: &Done, column: &str) -> Result<(Vec<f64>, Vec<f64>), Missing> {
+pub fn together(first: &FinishedRun, second: &FinishedRun, column: &str) -> Result<(Vec<f64>, Vec<f64>), MissingData> {
     let of_second = second.column(column)?.to_vec();
     let steps = &second.series().step;
     Ok((steps.iter().map(|&step| first.at_step(column, step)).collect::<Result<_, _>>()?, of_second))
@@ -19,21 +19,21 @@ pub fn together(first: &Done, second: &Done, column: &str) -> Result<(Vec<f64>, 
 ///
 /// # Errors
 /// When a column is missing, or our run lacks a step of the program.
-pub fn worst(done: &[Done], columns: &[&str], scale: f64) -> Result<Measured, Missing> {
-    let [ours, theirs, ..] = done else { return Err(Missing("second run to compare with".to_owned())) };
-    let found: Result<Vec<Measured>, Missing> = columns
+pub fn worst(done: &[FinishedRun], columns: &[&str], scale: f64) -> Result<Measurement, MissingData> {
+    let [ours, theirs, ..] = done else { return Err(MissingData("second run to compare with".to_owned())) };
+    let found: Result<Vec<Measurement>, MissingData> = columns
         .iter()
         .map(|column| {
             let (values, expected) = together(ours, theirs, column)?;
-            Ok(Measured::worst_of(&theirs.series().time, &values, &expected, scale))
+            Ok(Measurement::worst_of(&theirs.series().time, &values, &expected, scale))
         })
         .collect();
-    Measured::worst_among(found?).ok_or_else(|| Missing("columns to compare".to_owned()))
+    Measurement::worst_among(found?).ok_or_else(|| MissingData("columns to compare".to_owned()))
 }
 
 /// Returns time (s) and |difference| of a column where the runs differ, divided by the largest value of the second run.
 #[must_use]
-pub fn difference(first: &Done, second: &Done, column: &str) -> Vec<(f64, f64)> {
+pub fn difference(first: &FinishedRun, second: &FinishedRun, column: &str) -> Vec<(f64, f64)> {
     let Ok((a, b)) = together(first, second, column) else { return Vec::new() };
     let largest = largest(&b);
     let parted = a.iter().zip(&b).map(|(a, b)| (a - b).abs() / largest);

@@ -127,13 +127,13 @@ fn pump(record: &mut Record) {
 }
 
 /// A solver with a flaw.
-pub struct Flawed<'a> {
+pub struct FlawedSolver<'a> {
     solver: &'a dyn Solver,
     flaw: Flaw,
     runs: AtomicU64,
 }
 
-impl<'a> Flawed<'a> {
+impl<'a> FlawedSolver<'a> {
     /// Adds a flaw to a solver.
     #[must_use]
     pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Self {
@@ -149,7 +149,7 @@ impl<'a> Flawed<'a> {
     }
 }
 
-impl Solver for Flawed<'_> {
+impl Solver for FlawedSolver<'_> {
     fn name(&self) -> String {
         self.solver.name()
     }
@@ -207,9 +207,9 @@ mod tests {
     use grainbench_scene::solver::Resolution;
 
     /// A solver that refuses every scene.
-    struct Refuses;
+    struct RefusingSolver;
 
-    impl Solver for Refuses {
+    impl Solver for RefusingSolver {
         fn name(&self) -> String {
             "refuses".to_owned()
         }
@@ -221,8 +221,10 @@ mod tests {
 
     #[test]
     fn a_solver_that_refused_scenes_is_not_caught_up_with_by_one_that_ran_before() {
-        let [first, again] =
-            [Flawed::new(&Refuses, Flaw::Irreproducible), Flawed::again(&Refuses, Flaw::Irreproducible)];
+        let [first, again] = [
+            FlawedSolver::new(&RefusingSolver, Flaw::Irreproducible),
+            FlawedSolver::again(&RefusingSolver, Flaw::Irreproducible),
+        ];
         for named in super::super::scenes::collisions().into_iter().flatten() {
             let _ = first.run(&named.scene, &Resolution::CriticalFraction(0.1), &mut ());
             assert_ne!(first.runs.load(Ordering::Relaxed), again.runs.load(Ordering::Relaxed));

@@ -2,7 +2,7 @@
 
 use super::end::End;
 use super::moved::APART;
-use super::row::{Found, Rows};
+use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
@@ -33,6 +33,6 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         let (far, fast) = exact.reach();
         let lag = if second_order { 0.0 } else { 0.5 * gravity.norm() * end.time_step };
         let allowed = f64::EPSILON * end.steps * (fast + far / time) + lag;
-        Ok(Found::deviation(end.apart(&exact), fast, allowed))
+        Ok(PropertyValue::deviation(end.apart(&exact), fast, allowed))
     })
 }

@@ -23,12 +23,12 @@ mod row;
 mod scenes;
 mod turning;
 
-use once::Once;
+use once::CachedRuns;
 use row::Rows;
 
-pub use flaw::{Flaw, Flawed};
+pub use flaw::{Flaw, FlawedSolver};
 
-use crate::control::Red;
+use crate::control::FailureMode;
 use crate::evidence::Evidence;
 use crate::verdict::{Control, Outcome, Verdict};
 use grainbench_scene::solver::Solver;
@@ -103,7 +103,7 @@ pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>)
 #[must_use]
 pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
-    let once = Once::new(kept);
+    let once = CachedRuns::new(kept);
     for property in ALL {
         let found = property.check_again(&once, itself, terms);
         let passed = |row: &Verdict| {
@@ -114,12 +114,12 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let start = Instant::now();
             let flaw = property.flaw(terms);
             // Flawed runs may use finished runs too, because only the flaw has to be detected.
-            let [flawed, again] = [Flawed::new(&once, flaw), Flawed::again(kept, flaw)];
+            let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(kept, flaw)];
             // An exception of the method does not excuse a flaw.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
-            controls.extend(tried.map(|row| Control::new(row, flaw.words(), Red::Value, seconds)));
+            controls.extend(tried.map(|row| Control::new(row, flaw.words(), FailureMode::Value, seconds)));
         }
         rows.extend(found);
     }

@@ -4,7 +4,7 @@
 //! R₁ + R₂ apart do not conserve it. The case `collision` distinguishes these conventions.
 
 use super::end::End;
-use super::row::{Found, Rows};
+use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
@@ -49,9 +49,9 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 }
 
 /// Returns the change of a sum. Its scale is the sum of the norms of its parts, before or after, whichever is larger.
-fn kept(before: &[Vector3<f64>], after: &[Vector3<f64>], steps: f64) -> Found {
+fn kept(before: &[Vector3<f64>], after: &[Vector3<f64>], steps: f64) -> PropertyValue {
     let change = after.iter().sum::<Vector3<f64>>() - before.iter().sum::<Vector3<f64>>();
     let size = |parts: &[Vector3<f64>]| parts.iter().map(Vector3::norm).sum::<f64>();
     let scale = size(before).max(size(after));
-    Found::deviation(change.norm(), scale, scale * f64::EPSILON * steps)
+    PropertyValue::deviation(change.norm(), scale, scale * f64::EPSILON * steps)
 }

@@ -3,7 +3,7 @@
 
 use super::end::NoEnd;
 use super::end::{End, rounding};
-use super::row::Found;
+use super::row::PropertyValue;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;
@@ -51,11 +51,11 @@ impl View {
     }
 
     /// Returns the difference between the run of the transformed scene, transformed back, and the run of the scene.
-    pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<Found, NoEnd> {
+    pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<PropertyValue, NoEnd> {
         let straight = End::from_solver(solver, scene, &terms.resolution)?;
         let seen = End::from_solver(solver, &self.seen(scene), &terms.resolution)?;
         let allowed = rounding(scene, [&straight, &seen]);
-        Ok(Found::deviation(straight.apart(&self.undone(&seen)), straight.reach().1, allowed))
+        Ok(PropertyValue::deviation(straight.apart(&self.undone(&seen)), straight.reach().1, allowed))
     }
 }
 

@@ -1,9 +1,9 @@
 //! Objectivity: rigid rotation of grains at rest relative to walls that turn with them, and of free deformable bodies.
 
 use super::end::{End, NoEnd};
-use super::row::{Found, Rows};
-use super::scenes::Named;
-use super::turning::{self, Turning};
+use super::row::{PropertyValue, Rows};
+use super::scenes::NamedScene;
+use super::turning::{self, RotatingScene};
 use super::{Flaw, Property};
 use crate::evidence::Evidence;
 use crate::expect::larger;
@@ -47,10 +47,10 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
     // A grain whose contacts turn only about their normals gets no torque.
     let spinning = turning::all().map(|all| only(all, |turning| turning.across > 0.0 || turning.carried));
-    let place = |turning: &Turning| {
+    let place = |turning: &RotatingScene| {
         worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
     };
-    let spin = |turning: &Turning| {
+    let spin = |turning: &RotatingScene| {
         let spinning = |end: &End| (spin_off(turning, end), spin_allowed(turning, end, rows.terms));
         worst(rows, turning, spinning, turning.spin.norm())
     };
@@ -66,73 +66,78 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
 ///
 /// The solver runs at its resolution and, if it claims an order, also at four times the step. The tolerance depends on
 /// the step with that order.
-fn worst(rows: &Rows<'_>, turning: &Turning, read: impl Fn(&End) -> (f64, f64), scale: f64) -> Result<Found, NoEnd> {
+fn worst(
+    rows: &Rows<'_>,
+    turning: &RotatingScene,
+    read: impl Fn(&End) -> (f64, f64),
+    scale: f64,
+) -> Result<PropertyValue, NoEnd> {
     let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
     let mut worst: Option<(f64, f64)> = None;
     for resolution in [Some(rows.terms.resolution), coarse].into_iter().flatten() {
         let (off, allowed) = read(&End::from_solver(rows.solver, &turning.named.scene, &resolution)?);
         if off.is_nan() {
-            return Ok(Found::deviation(off, scale, allowed));
+            return Ok(PropertyValue::deviation(off, scale, allowed));
         }
         if worst.is_none_or(|(most, passes)| off / allowed > most / passes) {
             worst = Some((off, allowed));
         }
     }
     let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
-    Ok(Found::deviation(off, scale, allowed))
+    Ok(PropertyValue::deviation(off, scale, allowed))
 }
 
-fn only(all: Vec<Turning>, wanted: impl Fn(&Turning) -> bool) -> Vec<Turning> {
+fn only(all: Vec<RotatingScene>, wanted: impl Fn(&RotatingScene) -> bool) -> Vec<RotatingScene> {
     all.into_iter().filter(wanted).collect()
 }
 
 /// Returns one result for each rotating scene.
 fn each(
     rows: &Rows<'_>,
-    scenes: Result<Vec<Turning>, SceneError>,
+    scenes: Result<Vec<RotatingScene>, SceneError>,
     quantity: (&str, &str),
-    find: impl Fn(&Turning) -> Result<Found, NoEnd>,
+    find: impl Fn(&RotatingScene) -> Result<PropertyValue, NoEnd>,
 ) -> Vec<Verdict> {
-    rows.each_of(scenes, &rows.terms.resolution, quantity, |turning: &Turning| &turning.named, find)
+    rows.each_of(scenes, &rows.terms.resolution, quantity, |turning: &RotatingScene| &turning.named, find)
 }
 
 /// Returns the largest distance of a grain from its exact position (m).
-fn place_off(turning: &Turning, end: &End) -> f64 {
+fn place_off(turning: &RotatingScene, end: &End) -> f64 {
     let grains = end.grains.iter().zip(turning.named.scene.grains.iter());
     let off = grains.map(|(grain, start)| (grain.position - turning.place(start.position, end.time)).norm());
     off.fold(0.0, larger)
 }
 
 /// Returns the largest error of a spin times the radius (m/s).
-fn spin_off(turning: &Turning, end: &End) -> f64 {
+fn spin_off(turning: &RotatingScene, end: &End) -> f64 {
     let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
     off.fold(0.0, larger)
 }
 
 /// Returns the relative error that a scheme of the claimed order may have after a rotation by the angle.
-fn scheme(turning: &Turning, end: &End, terms: &Terms) -> f64 {
+fn scheme(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
     let step = turning.spin.norm() * end.time_step;
-    let angle = 1.0 + Turning::angle();
+    let angle = 1.0 + RotatingScene::angle();
     if terms.order.is_some_and(|order| order.expected >= 2.0) { (step * angle).powi(2) } else { step * angle }
 }
 
 /// Returns the largest distance from the exact position that passes (m).
-fn place_allowed(rows: &Rows<'_>, turning: &Turning, end: &End) -> f64 {
+fn place_allowed(rows: &Rows<'_>, turning: &RotatingScene, end: &End) -> f64 {
     let terms = rows.terms;
     let rate = turning.spin.norm();
     let softness = |frequency: f64| 2.0 * (rate / frequency).powi(2);
     let swing = turning.frequency().map_or(0.0, |frequency| {
         let phase = frequency * end.time * (frequency * end.time_step).powi(2) / 24.0;
-        let arms = 0.5 * turning.across * Turning::angle().min(2.0);
+        let arms = 0.5 * turning.across * RotatingScene::angle().min(2.0);
         softness(frequency) * (arms + if terms.order.is_some() { phase } else { 1.0 })
     });
-    let lever = if turning.carried { 2.0 * turning.overlap * Turning::angle() } else { 0.0 };
+    let lever = if turning.carried { 2.0 * turning.overlap * RotatingScene::angle() } else { 0.0 };
     let rigid = if is_rigid(&terms.resolution) { turning.overlap } else { 0.0 };
     turning.reach() * (scheme(turning, end, terms) + swing) + lever + rigid
 }
 
 /// Returns the largest error of spin times radius that passes (m/s).
-fn spin_allowed(turning: &Turning, end: &End, terms: &Terms) -> f64 {
+fn spin_allowed(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
     turning.spin.norm() * (scheme(turning, end, terms) + 2.0 * turning.overlap)
 }
 
@@ -144,7 +149,7 @@ pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
 /// Returns the results of deformable bodies.
 fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
-    let judge = |named: &Named, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
+    let judge = |named: &NamedScene, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
         let mut worst: Option<(f64, f64)> = None;
         for resolution in levels.iter().flatten() {
             let record = rows.solver.run(&named.scene, resolution, &mut ())?;
@@ -154,7 +159,7 @@ fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
             }
         }
         let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
-        Ok(Found::deviation(off, 1.0, allowed))
+        Ok(PropertyValue::deviation(off, 1.0, allowed))
     };
     let resolution = &rows.terms.resolution;
     let size = rows.each(turning::free(), resolution, SIZE, |named| judge(named, 1.0, size_off));

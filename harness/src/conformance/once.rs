@@ -5,21 +5,21 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
 use std::sync::{Mutex, PoisonError};
 
-type Known = (Scene, Resolution, Result<Record, RunError>);
+type CachedRun = (Scene, Resolution, Result<Record, RunError>);
 
 /// Remembers the result of each scene at each resolution. Repeated and observed runs must use the solver itself.
-pub(super) struct Once<'a> {
+pub(super) struct CachedRuns<'a> {
     solver: &'a dyn Solver,
-    known: Mutex<Vec<Known>>,
+    known: Mutex<Vec<CachedRun>>,
 }
 
-impl<'a> Once<'a> {
+impl<'a> CachedRuns<'a> {
     pub(super) const fn new(solver: &'a dyn Solver) -> Self {
         Self { solver, known: Mutex::new(Vec::new()) }
     }
 }
 
-impl Solver for Once<'_> {
+impl Solver for CachedRuns<'_> {
     fn name(&self) -> String {
         self.solver.name()
     }

@@ -1,12 +1,12 @@
 //! Order of convergence in smooth motion, compared with the order that the solver claims.
 
 use super::end::{End, NoEnd};
-use super::row::{Found, Rows};
-use super::scenes::Named;
+use super::row::{PropertyValue, Rows};
+use super::scenes::NamedScene;
 use super::{Flaw, Property, scenes, turning};
 use crate::evidence::Evidence;
-use crate::expect::{Bound, Expected, Measured};
-use crate::tolerance::{ASYMPTOTIC, Made, asymptotic};
+use crate::expect::{Bound, ExpectedValue, Measurement};
+use crate::tolerance::{ASYMPTOTIC, ToleranceOrigin, asymptotic};
 use crate::verdict::Verdict;
 use grainbench_scene::solver::Resolution;
 
@@ -39,14 +39,19 @@ const QUANTITY: (&str, &str) = ("order in the time step of the end", "1");
 
 /// Returns the order from three levels. The reference is the solver's own finest run, so the contact convention has no
 /// effect.
-fn observed(rows: &Rows<'_>, named: &Named, levels: [Resolution; 3], bound: Bound) -> Result<Found, NoEnd> {
+fn observed(
+    rows: &Rows<'_>,
+    named: &NamedScene,
+    levels: [Resolution; 3],
+    bound: Bound,
+) -> Result<PropertyValue, NoEnd> {
     let run = |at: usize| End::from_solver(rows.solver, &named.scene, &levels[at]);
     let ends = [run(0)?, run(1)?, run(2)?];
     let (coarse, fine) = (ends[0].apart(&ends[1]), ends[1].apart(&ends[2]));
     let claimed = rows.terms.order.map_or(f64::NAN, |order| order.expected);
-    Ok(Found {
-        measured: Measured::new((coarse / fine).log2(), Expected::Bound(bound), 1.0),
+    Ok(PropertyValue {
+        measured: Measurement::new((coarse / fine).log2(), ExpectedValue::Bound(bound), 1.0),
         allowed: asymptotic(claimed).allowed(&[]),
-        made: Made::Required,
+        made: ToleranceOrigin::Required,
     })
 }

@@ -2,12 +2,12 @@
 
 use super::end::{End, NoEnd};
 use super::objectivity::is_rigid;
-use super::row::{Found, Rows};
-use super::scenes::{self, Named, scene_of};
+use super::row::{PropertyValue, Rows};
+use super::scenes::{self, NamedScene, scene_of};
 use super::{Flaw, Property};
 use crate::evidence::Evidence;
-use crate::expect::{Bound, Expected, Measured, larger};
-use crate::tolerance::Made;
+use crate::expect::{Bound, ExpectedValue, Measurement, larger};
+use crate::tolerance::ToleranceOrigin;
 use crate::verdict::Verdict;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
@@ -55,12 +55,16 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     [collisions, bouncing, work].concat()
 }
 
-fn gained(gain: f64, allowed: f64) -> Found {
-    Found { measured: Measured::new(gain, Expected::Bound(Bound::AtMost(0.0)), 1.0), allowed, made: Made::Computed }
+fn gained(gain: f64, allowed: f64) -> PropertyValue {
+    PropertyValue {
+        measured: Measurement::new(gain, ExpectedValue::Bound(Bound::AtMost(0.0)), 1.0),
+        allowed,
+        made: ToleranceOrigin::Computed,
+    }
 }
 
 /// Returns one scene per contact law and friction coefficient: a grain between two planes, without or with some slip.
-fn bouncing(rows: &Rows<'_>) -> Result<Vec<Named>, SceneError> {
+fn bouncing(rows: &Rows<'_>) -> Result<Vec<NamedScene>, SceneError> {
     let linear =
         |friction: f64| format!("normal_stiffness = 1e4\ntangential_stiffness = 5e3\nfriction = {friction:?}\n");
     let hertz = |friction: f64| format!("law = 'hertz'\nfriction = {friction:?}\n");
@@ -80,7 +84,7 @@ fn bouncing(rows: &Rows<'_>) -> Result<Vec<Named>, SceneError> {
 }
 
 /// Returns the scene of a grain of mass 1 kg and radius 1 m between two planes.
-fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Named, SceneError> {
+fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<NamedScene, SceneError> {
     let flat = dimension == 2;
     let density = if flat { 1.0 } else { 0.75 } / std::f64::consts::PI;
     let moduli = if law.contains("hertz") {
@@ -115,7 +119,7 @@ const COARSE: f64 = 5.0;
 
 /// Returns the gain of energy at the solver's resolution. If it claims an order, also at a quarter of that step and at
 /// a coarse one.
-fn levels(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
+fn levels(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     let order = rows.terms.order.map_or(0.0, |order| order.expected);
     let factors: &[f64] = if order > 0.0 { &[1.0, 0.25, COARSE] } else { &[1.0] };
     let (mut worst, mut most) = (0.0, f64::NAN);
@@ -213,7 +217,7 @@ const LEG: f64 = 0.02;
 /// The first is sheared while shallow and sheared back while deep. A spring that uses its present stiffness gains
 /// energy there. The second is sheared while deep and sheared back while shallow. A spring that keeps its force while
 /// unloading gains energy there.
-fn cycles() -> Result<Vec<Named>, SceneError> {
+fn cycles() -> Result<Vec<NamedScene>, SceneError> {
     let legs = |name, [first, second]: [f64; 2]| {
         cycle(name, &[[0.0, first], [SHEAR, first], [SHEAR, second], [0.0, second], [0.0, 0.0]])
     };
@@ -221,7 +225,7 @@ fn cycles() -> Result<Vec<Named>, SceneError> {
 }
 
 /// Returns the scene of a ball that is pressed on a plane, with prescribed shear displacements and overlaps (m).
-fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<Named, SceneError> {
+fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<NamedScene, SceneError> {
     let place = |(leg, [shear, overlap]): (usize, &[f64; 2])| {
         format!(", [{:?}, {shear:?}, 0.0, {:?}]", LEG * (leg + 1) as f64, -overlap)
     };
@@ -241,7 +245,7 @@ fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<Named, SceneError> {
 
 /// Returns the work gained in a closed cycle, divided by the energy that the tangential spring stores at the largest
 /// overlap.
-fn work(rows: &Rows<'_>, named: &Named) -> Result<Found, NoEnd> {
+fn work(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     let record = rows.solver.run(&named.scene, &rows.terms.resolution, &mut ())?;
     let column =
         |name: &str| record.series.column(name).ok_or_else(|| NoEnd::Record(format!("the record has no {name}")));
@@ -267,9 +271,9 @@ mod tests {
     use grainbench_scene::terms::Terms;
 
     /// A solver that runs nothing.
-    struct Nothing;
+    struct IdleSolver;
 
-    impl Solver for Nothing {
+    impl Solver for IdleSolver {
         fn name(&self) -> String {
             "nothing".to_owned()
         }
@@ -281,10 +285,11 @@ mod tests {
 
     #[test]
     fn every_scene_is_right() {
-        let scenes =
-            |terms: &Terms| bouncing(&Rows { solver: &Nothing, again: &Nothing, terms, property: &PROPERTY }).unwrap();
+        let scenes = |terms: &Terms| {
+            bouncing(&Rows { solver: &IdleSolver, again: &IdleSolver, terms, property: &PROPERTY }).unwrap()
+        };
         assert_eq!((scenes(&Terms::SECOND_ORDER).len(), cycles().unwrap().len()), (4, 2));
-        let steps = |named: &Named| Resolution::CriticalFraction(0.02).steps(&named.scene).unwrap().1;
+        let steps = |named: &NamedScene| Resolution::CriticalFraction(0.02).steps(&named.scene).unwrap().1;
         assert!(scenes(&Terms::SECOND_ORDER.at_length()).iter().all(|named| steps(named) >= 100_000));
     }
 }

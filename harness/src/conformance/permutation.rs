@@ -2,7 +2,7 @@
 
 use super::end::{End, rounding};
 use super::moved::{APART, ROUNDING};
-use super::row::{Found, Rows};
+use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
@@ -33,6 +33,6 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
             restored.grains[old_place(place)] = end.grains[place].clone();
         }
         let allowed = rounding(&named.scene, [&straight, &end]);
-        Ok(Found::deviation(straight.apart(&restored), straight.reach().1, allowed))
+        Ok(PropertyValue::deviation(straight.apart(&restored), straight.reach().1, allowed))
     })
 }

@@ -1,7 +1,7 @@
 //! Determinism: a repeated run gives the same bits.
 
 use super::end::NoEnd;
-use super::row::{Found, Rows};
+use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
@@ -25,7 +25,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     rows.each(scenes::collisions(), &terms.resolution, quantity, |named| {
         let run = |solver: &dyn Solver| solver.run(&named.scene, &terms.resolution, &mut ()).map_err(NoEnd::Run);
         let differ = differing(run(solver)?, run(rows.again)?)?;
-        Ok(Found::deviation(differ as f64, 1.0, 0.0))
+        Ok(PropertyValue::deviation(differ as f64, 1.0, 0.0))
     })
 }
 

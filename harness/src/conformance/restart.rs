@@ -2,12 +2,12 @@
 
 use super::end::NoEnd;
 use super::rerun::differing;
-use super::row::{Found, Rows};
+use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench_scene::solver::{Ahead, RunError, Solver, Watch};
+use grainbench_scene::solver::{RunError, RunOutline, Solver, Watch};
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",
@@ -27,11 +27,11 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
         Ok(all)
     });
     rows.each(scenes, &terms.resolution, quantity, |named| {
-        let mut halfway = Halfway::default();
+        let mut halfway = HalfwayCheckpoint::default();
         let whole = solver.run(&named.scene, &terms.resolution, &mut halfway)?;
         let checkpoint = halfway.through_a_file().map_err(NoEnd::Run)?.ok_or_else(|| no_checkpoint(solver))?;
         let continued = solver.restart(&named.scene, &terms.resolution, &checkpoint, &mut ())?;
-        Ok(Found::deviation(differing(whole, continued)? as f64, 1.0, 0.0))
+        Ok(PropertyValue::deviation(differing(whole, continued)? as f64, 1.0, 0.0))
     })
 }
 
@@ -41,12 +41,12 @@ fn no_checkpoint(solver: &dyn Solver) -> RunError {
 
 /// Stores the checkpoint after half of the steps.
 #[derive(Default)]
-struct Halfway {
+struct HalfwayCheckpoint {
     steps: u64,
     checkpoint: Option<Checkpoint>,
 }
 
-impl Halfway {
+impl HalfwayCheckpoint {
     /// Returns the checkpoint after it has been written to bytes and read back.
     fn through_a_file(self) -> Result<Option<Checkpoint>, RunError> {
         let reread = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes()?);
@@ -54,8 +54,8 @@ impl Halfway {
     }
 }
 
-impl Watch for Halfway {
-    fn begin(&mut self, ahead: Ahead) {
+impl Watch for HalfwayCheckpoint {
+    fn begin(&mut self, ahead: RunOutline) {
         self.steps = ahead.steps;
     }
 

@@ -2,9 +2,9 @@
 
 use super::Property;
 use super::end::NoEnd;
-use super::scenes::{Named, flat};
-use crate::expect::Measured;
-use crate::tolerance::Made;
+use super::scenes::{NamedScene, flat};
+use crate::expect::Measurement;
+use crate::tolerance::ToleranceOrigin;
 use crate::verdict::{Outcome, Verdict};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::solver::{Resolution, Solver};
@@ -20,16 +20,20 @@ pub(super) struct Rows<'a> {
 }
 
 /// Measured value of a property on one scene, and its tolerance.
-pub(super) struct Found {
-    pub(super) measured: Measured,
+pub(super) struct PropertyValue {
+    pub(super) measured: Measurement,
     pub(super) allowed: f64,
-    pub(super) made: Made,
+    pub(super) made: ToleranceOrigin,
 }
 
-impl Found {
+impl PropertyValue {
     /// Returns a deviation from zero. `allowed` has the unit of `value`.
     pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
-        Self { measured: Measured::new(value, 0.0, scale), allowed: allowed / scale, made: Made::Computed }
+        Self {
+            measured: Measurement::new(value, 0.0, scale),
+            allowed: allowed / scale,
+            made: ToleranceOrigin::Computed,
+        }
     }
 }
 
@@ -37,10 +41,10 @@ impl Rows<'_> {
     /// Returns one result for each scene. `find` measures the quantity.
     pub(super) fn each(
         &self,
-        scenes: Result<Vec<Named>, SceneError>,
+        scenes: Result<Vec<NamedScene>, SceneError>,
         resolution: &Resolution,
         (quantity, unit): (&str, &str),
-        find: impl Fn(&Named) -> Result<Found, NoEnd>,
+        find: impl Fn(&NamedScene) -> Result<PropertyValue, NoEnd>,
     ) -> Vec<Verdict> {
         self.each_of(scenes, resolution, (quantity, unit), |named| named, find)
     }
@@ -51,8 +55,8 @@ impl Rows<'_> {
         scenes: Result<Vec<T>, SceneError>,
         resolution: &Resolution,
         (quantity, unit): (&str, &str),
-        named: impl Fn(&T) -> &Named,
-        find: impl Fn(&T) -> Result<Found, NoEnd>,
+        named: impl Fn(&T) -> &NamedScene,
+        find: impl Fn(&T) -> Result<PropertyValue, NoEnd>,
     ) -> Vec<Verdict> {
         match scenes {
             Ok(scenes) => {
@@ -71,7 +75,7 @@ impl Rows<'_> {
         scene: &str,
         resolution: &Resolution,
         (quantity, unit): (&str, &str),
-        found: Result<Found, NoEnd>,
+        found: Result<PropertyValue, NoEnd>,
     ) -> Verdict {
         let row = Verdict {
             variant: format!("{}/{scene}", self.property.name),
@@ -85,7 +89,7 @@ impl Rows<'_> {
         match found {
             Err(NoEnd::Run(error)) => row.ended(&error),
             Err(NoEnd::Record(lack)) => row.left(Outcome::Fail, lack),
-            Ok(Found { measured, allowed, made }) => {
+            Ok(PropertyValue { measured, allowed, made }) => {
                 let row = Verdict { allowed, tolerance: made, ..row }.judged(&measured);
                 match self.terms.less_of(self.property.name, quantity) {
                     Some(less) if row.outcome == Outcome::Fail && measured.error().abs() <= less.at_most => {

@@ -6,7 +6,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
 /// A scene with a name for its results.
-pub(super) struct Named {
+pub(super) struct NamedScene {
     pub(super) name: &'static str,
     pub(super) scene: Scene,
     /// True if friction lets grains apply torques to one another.
@@ -129,18 +129,18 @@ const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\ndura
 /// Friction so high that nothing slips. No dashpots: their lag of half a step has first order in every code we know.
 const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
 
-fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<Named, SceneError> {
+fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedScene, SceneError> {
     scene_of(name, &parts.concat(), frictional)
 }
 
 /// Builds a scene from the text of a scene file.
-pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<Named, SceneError> {
+pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<NamedScene, SceneError> {
     let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
-    Ok(Named { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
+    Ok(NamedScene { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
 }
 
 /// Returns collisions in free space: in two and three dimensions, without friction, and with friction and dashpots.
-pub(super) fn collisions() -> Result<Vec<Named>, SceneError> {
+pub(super) fn collisions() -> Result<Vec<NamedScene>, SceneError> {
     Ok(vec![
         scene("2d", &[COLLISION_2D, SPRINGS], false)?,
         scene("2d-friction", &[COLLISION_2D, SPRINGS, FRICTION], true)?,
@@ -150,7 +150,7 @@ pub(super) fn collisions() -> Result<Vec<Named>, SceneError> {
 }
 
 /// Returns scenes of free flight with and without gravity. Some have friction, so that solvers integrate the spin.
-pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
+pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
         scene("2d", &[FLIGHT_2D, SPRINGS], false)?,
         scene("3d-friction", &[FLIGHT_3D, SPRINGS, FRICTION], true)?,
@@ -168,7 +168,7 @@ pub(super) fn flights() -> Result<Vec<Named>, SceneError> {
 /// Motion along both would lower the order. If the lever arm is R − overlap/2 and the overlap changes, velocities at
 /// mid-step are combined with lever arms at the end of the step. This error has first order, with a coefficient as
 /// small as the overlap.
-pub(super) fn held() -> Result<Vec<Named>, SceneError> {
+pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
         scene("held-2d", &[HELD_2D, SPRINGS], false)?,
         scene("held-2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,

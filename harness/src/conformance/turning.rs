@@ -3,7 +3,7 @@
 //! All scenes rotate at Ω about an axis through the origin, without gravity. In the rotating frame, a grain is subject
 //! to the centrifugal force, the Coriolis force and the contact forces of a frame at rest.
 
-use super::scenes::{Named, scene_of};
+use super::scenes::{NamedScene, scene_of};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 use nalgebra::{Rotation3, Vector3};
@@ -36,8 +36,8 @@ enum Course {
 }
 
 /// A rotating scene.
-pub(super) struct Turning {
-    pub(super) named: Named,
+pub(super) struct RotatingScene {
+    pub(super) named: NamedScene,
     /// Angular velocity Ω of all bodies (rad/s).
     pub(super) spin: V,
     course: Course,
@@ -51,7 +51,7 @@ pub(super) struct Turning {
     pub(super) across: f64,
 }
 
-impl Turning {
+impl RotatingScene {
     /// Returns the exact position of a grain (m) at a time (s).
     ///
     /// A sprung grain whose springs begin without load at r₀ obeys r̈ = −ω²(r − r₀(t)). Here r₀(t) rotates at Ω, and
@@ -201,7 +201,7 @@ impl Builder {
         self.wall(name, &format!("rectangle = {{ corner = {corner}, edges = {edges} }}"))
     }
 
-    fn scene(&self, name: &'static str) -> Result<Named, SceneError> {
+    fn scene(&self, name: &'static str) -> Result<NamedScene, SceneError> {
         scene_of(name, &self.text, true)
     }
 }
@@ -212,7 +212,7 @@ fn clamped(
     (builder, walls): (Builder, Walls),
     normal: V,
     centre: V,
-) -> Result<Turning, SceneError> {
+) -> Result<RotatingScene, SceneError> {
     let normal = normal.normalize();
     let off = normal * (1.0 - HELD);
     let builder = builder.grain("a", centre);
@@ -223,12 +223,17 @@ fn clamped(
     let twisted = spin.dot(&normal).abs() > 1e-9;
     let across = spin.cross(&normal).norm() / RATE;
     let course = Course::Sprung(frequency);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
+    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
 }
 
 /// Returns a scene with two grains in a row between two walls. The row intersects the axis at a right angle, so the
 /// forces on the two sides of a grain differ by m Ω² r.
-fn row(name: &'static str, law: Law, (builder, walls): (Builder, Walls), normal: V) -> Result<Turning, SceneError> {
+fn row(
+    name: &'static str,
+    law: Law,
+    (builder, walls): (Builder, Walls),
+    normal: V,
+) -> Result<RotatingScene, SceneError> {
     let normal = normal.normalize();
     let first = 0.6;
     let builder = walls(builder, "low", normal * (first - 1.0 + HELD), normal).grain("a", normal * first);
@@ -240,11 +245,11 @@ fn row(name: &'static str, law: Law, (builder, walls): (Builder, Walls), normal:
     let builder = builder.grain("b", normal * second);
     let builder = walls(builder, "high", normal * (second + 1.0 - overlap), -normal);
     let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
+    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
 /// Returns a scene with a sphere on the inside of a drum: k δ = m Ω² (R_drum − R + δ).
-fn drum(name: &'static str, law: Law, axis: V) -> Result<Turning, SceneError> {
+fn drum(name: &'static str, law: Law, axis: V) -> Result<RotatingScene, SceneError> {
     let axis = axis.normalize();
     let mut overlap = 0.0;
     for _ in 0..100 {
@@ -255,11 +260,11 @@ fn drum(name: &'static str, law: Law, axis: V) -> Result<Turning, SceneError> {
     let ends = [builder.vector(axis * -5.0), builder.vector(axis * 5.0)].join(", ");
     let builder = builder.wall("drum", &format!("cylinder = {{ axis = [{ends}], radius = {DRUM:?} }}"));
     let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(Turning { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
+    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
 /// Returns the scenes of rigid grains and of grains with contact springs.
-pub(super) fn all() -> Result<Vec<Turning>, SceneError> {
+pub(super) fn all() -> Result<Vec<RotatingScene>, SceneError> {
     let [rolls, free, hertz] = [Law::Linear(0.1), Law::Linear(0.0), Law::Hertz(0.1)];
     let (flat, along) = (V::new(-0.3, 0.95, 0.0), V::new(2.0, -1.0, 2.0));
     let (across, oblique, near) = (V::new(1.0, 2.0, 0.0), V::new(1.0, 2.0, 2.0), V::new(0.9, -0.5, 0.4));
@@ -276,7 +281,7 @@ pub(super) fn all() -> Result<Vec<Turning>, SceneError> {
 }
 
 /// Returns the scenes that show the order of a scheme. Errors of lever arms do not depend on the time step.
-pub(super) fn smooth() -> Result<Vec<Named>, SceneError> {
+pub(super) fn smooth() -> Result<Vec<NamedScene>, SceneError> {
     let shown = ["planes-2d", "rectangles-3d-oblique", "drum-3d"];
     Ok(all()?.into_iter().map(|turning| turning.named).filter(|named| shown.contains(&named.name)).collect())
 }
@@ -289,7 +294,7 @@ fn slow_spin(scene: &Scene) -> f64 {
 
 /// Returns freely rotating deformable bodies of each constitutive law: about the normal of the plane, and about an
 /// oblique axis.
-pub(super) fn free() -> Result<Vec<Named>, SceneError> {
+pub(super) fn free() -> Result<Vec<NamedScene>, SceneError> {
     let laws = [
         ("free-2d-neo-hookean", 2, "neo-hookean", ""),
         ("free-2d-hypoelastic", 2, "hypoelastic", ""),
@@ -300,7 +305,7 @@ pub(super) fn free() -> Result<Vec<Named>, SceneError> {
     laws.into_iter().map(|(name, dimension, law, more)| one_free(name, dimension, &format!("'{law}'{more}"))).collect()
 }
 
-fn one_free(name: &'static str, dimension: usize, law: &str) -> Result<Named, SceneError> {
+fn one_free(name: &'static str, dimension: usize, law: &str) -> Result<NamedScene, SceneError> {
     let density = if dimension == 2 { 1.0 } else { 0.75 } / std::f64::consts::PI;
     let centre = [0.13, -0.21, 0.07];
     let text = format!(

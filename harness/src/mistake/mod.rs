@@ -7,7 +7,7 @@ pub mod small_dem;
 
 use crate::case::Case;
 use crate::claim::Claim;
-use crate::control::{Control, Wrong};
+use crate::control::{Control, WrongPhysics};
 use crate::evidence::Evidence;
 use crate::run::{Run, Set};
 use crate::runner::Runner;
@@ -17,7 +17,7 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::file::GrainShape;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Method, Resolution};
-use small_dem::{Slip, SmallDem};
+use small_dem::{MethodMistake, SmallDem};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread;
@@ -43,7 +43,7 @@ enum Mistake {
     /// The negative control of each claim, identified by its name.
     Control(&'static str),
     /// A wrong method.
-    Method(Slip),
+    Method(MethodMistake),
 }
 
 impl Mistake {
@@ -57,7 +57,7 @@ impl Mistake {
 }
 
 /// A claim of a case and its result.
-struct Judged<'a> {
+struct ClaimResult<'a> {
     claim: &'a Claim,
     row: &'a Verdict,
 }
@@ -90,11 +90,11 @@ fn hints(
 ) -> Vec<Option<String>> {
     let failed = |row: &Verdict| row.outcome == Outcome::Fail && row.error.is_some();
     let scenes = |claim: &Claim| claim.runs.iter().map(Run::scene_words).collect::<BTreeSet<String>>();
-    let judged: Vec<Judged<'_>> =
-        claims.iter().zip(rows).filter_map(|(claim, row)| Some(Judged { claim, row: row.as_ref()? })).collect();
+    let judged: Vec<ClaimResult<'_>> =
+        claims.iter().zip(rows).filter_map(|(claim, row)| Some(ClaimResult { claim, row: row.as_ref()? })).collect();
     let in_question: BTreeSet<String> =
         judged.iter().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
-    let judged: Vec<Judged<'_>> = judged
+    let judged: Vec<ClaimResult<'_>> = judged
         .into_iter()
         .filter(|judged| failed(judged.row) || judged.row.outcome == Outcome::Pass)
         .filter(|judged| judged.row.error.is_some() && scenes(judged.claim).is_subset(&in_question))
@@ -134,8 +134,8 @@ fn explains(error: Option<f64>, row: &Verdict) -> bool {
 }
 
 /// Returns the number of failed results that a mistake explains, minus the number of results that it contradicts.
-fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
-    let agreement = |(error, judged): (&Option<f64>, &Judged<'_>)| match (error, judged.row.outcome) {
+fn score(candidate: &Candidate, judged: &[ClaimResult<'_>]) -> i64 {
+    let agreement = |(error, judged): (&Option<f64>, &ClaimResult<'_>)| match (error, judged.row.outcome) {
         (None, _) => 0,
         (Some(_), Outcome::Fail) if explains(*error, judged.row) => 1,
         (Some(error), Outcome::Pass) if error.abs() <= 2.0 * judged.row.allowed => 0,
@@ -145,7 +145,7 @@ fn score(candidate: &Candidate, judged: &[Judged<'_>]) -> i64 {
 }
 
 /// Computes the errors with each mistake on all processors.
-fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<'_>]) -> Vec<Candidate> {
+fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimResult<'_>]) -> Vec<Candidate> {
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
     let can: Vec<[bool; 2]> = judged.iter().map(|judged| limits(&plain, judged.claim)).collect();
@@ -163,7 +163,7 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<
             Mistake::Method(slip) => small(case, solvers, Some(*slip)),
             Mistake::Scene(_) | Mistake::Control(_) => Runner::new(case, Arc::clone(solvers)),
         };
-        let candidate_error = |(place, judged): (usize, &Judged<'_>)| match mistake {
+        let candidate_error = |(place, judged): (usize, &ClaimResult<'_>)| match mistake {
             Mistake::Method(_) if is_right(place) => changed(method_error(&runner, judged), by_method[place]),
             Mistake::Scene(control) if can[place][0] => {
                 changed(scene_error(&runner, judged.claim, control.clone()), by_scene[place])
@@ -190,12 +190,12 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[Judged<
 }
 
 /// Returns a runner of the small method, with or without a mistake.
-fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<Slip>) -> Runner {
+fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<MethodMistake>) -> Runner {
     Runner::new(case, Arc::clone(solvers)).with_solver(Arc::new(SmallDem { mistake })).controlled(false)
 }
 
 /// Returns the error of a claim with a runner of the small method.
-fn method_error(runner: &Runner, judged: &Judged<'_>) -> Option<f64> {
+fn method_error(runner: &Runner, judged: &ClaimResult<'_>) -> Option<f64> {
     let runs = judged.claim.runs.iter().map(with_step).collect();
     runner.judge(&Claim { runs, ..judged.claim.clone() }).error
 }
@@ -244,7 +244,7 @@ fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
 }
 
 /// Returns the mistakes that can affect these claims.
-fn mistakes(runner: &Runner, judged: &[Judged<'_>]) -> Vec<Mistake> {
+fn mistakes(runner: &Runner, judged: &[ClaimResult<'_>]) -> Vec<Mistake> {
     let mut known = BTreeSet::new();
     let mut found: Vec<Mistake> = Vec::new();
     let mut add = |mistake: Mistake| {
@@ -255,11 +255,11 @@ fn mistakes(runner: &Runner, judged: &[Judged<'_>]) -> Vec<Mistake> {
     for claim in judged.iter().map(|judged| judged.claim) {
         let scenes = claim.runs.iter().filter_map(|run| runner.scene(run).ok());
         scenes.flat_map(|scene| of_scene(&scene)).for_each(|control| add(Mistake::Scene(control)));
-        if matches!(claim.control.wrong, Wrong::Scene(_)) {
+        if matches!(claim.control.wrong, WrongPhysics::Scene(_)) {
             add(Mistake::Control(claim.control.name));
         }
     }
-    Slip::ALL.into_iter().for_each(|slip| add(Mistake::Method(slip)));
+    MethodMistake::ALL.into_iter().for_each(|slip| add(Mistake::Method(slip)));
     found
 }
 

@@ -6,7 +6,7 @@
 
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
-use grainbench_scene::record::{ContactState, Cost, GrainState, Look, Partner, Provenance, Record, Snapshot};
+use grainbench_scene::record::{ContactState, Cost, GrainState, Partner, Provenance, Record, Snapshot, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
@@ -17,7 +17,7 @@ type V = Vector3<f64>;
 
 /// A mistake in the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slip {
+pub enum MethodMistake {
     /// The tangential spring keeps its direction in space when its contact rotates.
     SpringNotTurned,
     /// The tangential spring is projected on the tangent plane and does not follow the rotation about the normal.
@@ -64,7 +64,7 @@ pub enum Slip {
     OldVelocity,
 }
 
-impl Slip {
+impl MethodMistake {
     /// All mistakes.
     pub const ALL: [Self; 22] = [
         Self::SpringNotTurned,
@@ -125,7 +125,7 @@ impl Slip {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmallDem {
     /// Mistake; none for the correct method.
-    pub mistake: Option<Slip>,
+    pub mistake: Option<MethodMistake>,
 }
 
 /// The second side of a contact, a grain or a wall, over one step.
@@ -170,7 +170,7 @@ struct Body {
 
 struct State<'a> {
     scene: &'a Scene,
-    mistake: Option<Slip>,
+    mistake: Option<MethodMistake>,
     step: f64,
     count: u64,
     bodies: Vec<Body>,
@@ -292,8 +292,8 @@ impl State<'_> {
         self.contacts[place] = contact;
         let [force, torque, opposite] = answer;
         let (torque, opposite) = match self.mistake {
-            Some(Slip::NoSecondTorque) => (torque, V::zeros()),
-            Some(Slip::TorqueReversed) => (-torque, -opposite),
+            Some(MethodMistake::NoSecondTorque) => (torque, V::zeros()),
+            Some(MethodMistake::TorqueReversed) => (-torque, -opposite),
             _ => (torque, opposite),
         };
         let body = &mut self.bodies[first];
@@ -327,7 +327,7 @@ impl State<'_> {
             self.drive(driven, time);
         }
         for body in &mut self.bodies {
-            let velocity = if self.mistake == Some(Slip::OldVelocity) { body.before } else { body.velocity };
+            let velocity = if self.mistake == Some(MethodMistake::OldVelocity) { body.before } else { body.velocity };
             body.before = body.position;
             body.position += velocity * step;
         }
@@ -340,11 +340,11 @@ impl State<'_> {
         }
     }
 
-    fn look(&self) -> Look {
+    fn look(&self) -> StepState {
         let half = 0.5 * self.step;
         let is_driven = |id: usize| self.scene.driven.iter().any(|driven| driven.grains.contains(&id));
         let grains = self.bodies.iter().enumerate().map(|(id, body)| {
-            let is_old = self.mistake == Some(Slip::HalfStepOld);
+            let is_old = self.mistake == Some(MethodMistake::HalfStepOld);
             let free = if is_driven(id) || is_old { 0.0 } else { half };
             GrainState {
                 position: body.position,
@@ -372,28 +372,28 @@ impl State<'_> {
         snapshot.contacts = Some(shown.collect());
         let driven =
             self.scene.driven.iter().map(|group| group.grains.iter().map(|&grain| self.bodies[grain].force).sum());
-        Look { driven: driven.collect(), ..Look::of_rigid(snapshot, 0.0) }
+        StepState { driven: driven.collect(), ..StepState::of_rigid(snapshot, 0.0) }
     }
 }
 
 /// Returns the lever arms of both sides (m). Their sum is the distance of the centres; at a wall, it is the distance of
 /// the wall.
-fn arms(mistake: Option<Slip>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
+fn arms(mistake: Option<MethodMistake>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
     if wall {
         return [distance, 0.0];
     }
     let [first, second] = radii.map(|radius| radius - 0.5 * overlap);
     match mistake {
-        Some(Slip::MeanArm) => [0.5 * (first + second); 2],
-        Some(Slip::OneArm) => [first; 2],
+        Some(MethodMistake::MeanArm) => [0.5 * (first + second); 2],
+        Some(MethodMistake::OneArm) => [first; 2],
         _ => [first, second],
     }
 }
 
 /// Returns the rotation of a contact over a step: the rotation of its normal, then the mean rotation of both sides
 /// about it.
-fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
-    if mistake == Some(Slip::SpringNotTurned) {
+fn turn(mistake: Option<MethodMistake>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
+    if mistake == Some(MethodMistake::SpringNotTurned) {
         return Rotation3::identity();
     }
     let across = from.cross(&to);
@@ -403,7 +403,7 @@ fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> R
     } else {
         Rotation3::identity()
     };
-    if mistake == Some(Slip::TwistNotFollowed) {
+    if mistake == Some(MethodMistake::TwistNotFollowed) {
         return tilt;
     }
     let twist = (spins[0] + spins[1]).dot(&to) * 0.5 * elapsed;
@@ -412,7 +412,7 @@ fn turn(mistake: Option<Slip>, from: V, to: V, spins: [V; 2], elapsed: f64) -> R
 
 /// Returns the force and the torque on the first side, and the torque on the second side.
 fn respond(
-    mistake: Option<Slip>,
+    mistake: Option<MethodMistake>,
     law: &ContactLaw,
     body: &Body,
     side: &Side,
@@ -423,41 +423,42 @@ fn respond(
     let normal = side.between[1] / distance;
     let middle = (side.between[0] + side.between[1]).normalize();
     let wall = side.radius.is_none();
-    let is_whole = wall || mistake == Some(Slip::WholeRadius);
+    let is_whole = wall || mistake == Some(MethodMistake::WholeRadius);
     let effective = if is_whole { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
-    let is_whole = mistake == Some(Slip::WholeMass);
+    let is_whole = mistake == Some(MethodMistake::WholeMass);
     let mass = if is_whole { body.grain.mass } else { 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass) };
     let [first, second] = arms(mistake, radii, wall, distance, overlap);
     let between = 0.5 * (side.between[0].norm() + side.between[1].norm());
     let moving = arms(mistake, radii, wall, between, radii[0] + radii[1] - between);
     let second_spin = if wall { V::zeros() } else { side.spin };
     let sign = match mistake {
-        Some(Slip::WrongSpin) => -1.0,
-        Some(Slip::NoSpin) => 0.0,
+        Some(MethodMistake::WrongSpin) => -1.0,
+        Some(MethodMistake::NoSpin) => 0.0,
         _ => 1.0,
     };
     let relative =
         body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
     let slip = relative - middle * relative.dot(&middle);
     let (stiff, _) = law.springs.stiffness(overlap, effective);
-    let ratio = if mistake == Some(Slip::Pulls) { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) };
+    let ratio =
+        if mistake == Some(MethodMistake::Pulls) { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) };
     let damping = law.normal_damping * mass + 2.0 * ratio * (stiff * mass * damped_share(law)).sqrt();
     let secant = law.springs.secant_stiffness(overlap, effective);
     let push = secant * overlap + damping * (body.velocity - side.velocity).dot(&normal);
-    let push = if mistake == Some(Slip::Pulls) { push } else { push.max(0.0) };
-    let base = if mistake == Some(Slip::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
+    let push = if mistake == Some(MethodMistake::Pulls) { push } else { push.max(0.0) };
+    let base = if mistake == Some(MethodMistake::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
     let limit = law.friction * base + law.cohesion;
     shear(mistake, law, [effective, overlap, elapsed, limit], (slip, normal, [body.spin, side.spin]), contact);
     let dashpot = slip * (law.tangential_damping * mass);
-    contact.shear = if mistake == Some(Slip::LimitOnSpring) {
+    contact.shear = if mistake == Some(MethodMistake::LimitOnSpring) {
         contact.spring - dashpot
     } else {
         (contact.spring - dashpot).cap_magnitude(limit)
     };
-    if mistake == Some(Slip::SpringForgotten) {
+    if mistake == Some(MethodMistake::SpringForgotten) {
         contact.spring = V::zeros();
     }
-    let spin = if wall && mistake == Some(Slip::WallSpinDropped) { V::zeros() } else { side.spin };
+    let spin = if wall && mistake == Some(MethodMistake::WallSpinDropped) { V::zeros() } else { side.spin };
     let moment = roll(mistake, law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
     (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
     let force = contact.shear - normal * push;
@@ -471,7 +472,7 @@ fn damped_share(law: &ContactLaw) -> f64 {
 
 /// Updates the tangential spring.
 fn shear(
-    mistake: Option<Slip>,
+    mistake: Option<MethodMistake>,
     law: &ContactLaw,
     [effective, overlap, elapsed, limit]: [f64; 4],
     (slip, normal, spins): (V, V, [V; 2]),
@@ -485,20 +486,22 @@ fn shear(
     let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
     let (was, is) = (contact.overlap, overlap);
     let kept = match (law.springs, mistake) {
-        (Springs::Hertz { .. }, Some(Slip::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
-        (Springs::Hertz { .. }, mistake) if is < was && mistake != Some(Slip::NotRescaled) => (is / was).sqrt(),
+        (Springs::Hertz { .. }, Some(MethodMistake::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
+        (Springs::Hertz { .. }, mistake) if is < was && mistake != Some(MethodMistake::NotRescaled) => {
+            (is / was).sqrt()
+        }
         _ => 1.0,
     };
     contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
     contact.slipping = contact.spring.norm() > limit;
-    if mistake != Some(Slip::SpringNotCut) {
+    if mistake != Some(MethodMistake::SpringNotCut) {
         contact.spring = contact.spring.cap_magnitude(limit);
     }
 }
 
 /// Returns the moment on the first side that resists rolling.
 fn roll(
-    mistake: Option<Slip>,
+    mistake: Option<MethodMistake>,
     law: &ContactLaw,
     [effective, secant, elapsed, push]: [f64; 4],
     (spin, normal): (V, V),
@@ -514,7 +517,7 @@ fn roll(
     contact.rolled -= normal * contact.rolled.dot(&normal);
     let most = arm * push;
     let moment = (-contact.rolled * stiffness).cap_magnitude(most);
-    if mistake != Some(Slip::RollingNotCut) {
+    if mistake != Some(MethodMistake::RollingNotCut) {
         contact.rolled = -moment / stiffness;
     }
     moment
@@ -539,7 +542,7 @@ impl Solver for SmallDem {
             before: grain.position,
             position: grain.position,
             velocity: grain.velocity,
-            spin: if self.mistake == Some(Slip::SpinsDropped) { V::zeros() } else { grain.spin },
+            spin: if self.mistake == Some(MethodMistake::SpinsDropped) { V::zeros() } else { grain.spin },
             force: V::zeros(),
             torque: V::zeros(),
         });

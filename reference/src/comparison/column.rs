@@ -37,14 +37,14 @@ pub struct Sample {
 
 /// Printed digits of a column in a file.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Printed {
+pub(super) struct PrintedDigits {
     pub(super) digits: Digits,
     pub(super) of_file: Digits,
     /// Box length by which a scaled coordinate is multiplied.
     pub(super) scale: Option<f64>,
 }
 
-impl Printed {
+impl PrintedDigits {
     /// Returns half a unit of the last printed digit of a value.
     fn half_unit(&self, value: f64) -> f64 {
         match self.scale {
@@ -57,7 +57,7 @@ impl Printed {
 /// Column whose difference is accumulated.
 pub(super) struct Column {
     difference: Difference,
-    printed: [Printed; 2],
+    printed: [PrintedDigits; 2],
     is_coordinate: bool,
     starts: [Vec<f64>; 2],
     /// Largest magnitude in each output.
@@ -67,7 +67,7 @@ pub(super) struct Column {
 }
 
 impl Column {
-    pub(super) fn new(name: &str, printed: [Printed; 2]) -> Self {
+    pub(super) fn new(name: &str, printed: [PrintedDigits; 2]) -> Self {
         let (first, second, name) = (f64::NAN, f64::NAN, name.to_owned());
         let is_coordinate = ["x", "y", "z"].contains(&name.as_str());
         let difference = Difference { name, first, second, scale: 0.0, open: 0.0, course: Vec::new() };

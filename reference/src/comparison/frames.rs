@@ -5,7 +5,7 @@ use std::path::Path;
 use std::vec;
 
 use super::Options;
-use super::column::Printed;
+use super::column::PrintedDigits;
 use crate::observer::Names;
 use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
@@ -52,10 +52,10 @@ pub(super) struct Frames {
     partial: bool,
     /// Position where the file is truncated, if that is allowed.
     pub(super) cut: Option<String>,
-    from: From,
+    from: FrameSource,
 }
 
-enum From {
+enum FrameSource {
     Grains {
         files: vec::IntoIter<RunFile>,
         reader: Option<Snapshots>,
@@ -77,12 +77,12 @@ impl Frames {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
             let files = in_order(&[path.to_owned()])?.into_iter();
-            From::Grains { files, reader: None, is_new: true, snapshot: DumpSnapshot::default() }
+            FrameSource::Grains { files, reader: None, is_new: true, snapshot: DumpSnapshot::default() }
         } else {
             let table = read_table(path)?;
             let time = ["time", "t"].into_iter().find_map(|name| table.column(names.in_file(name)));
             let (step, rows) = (table.column(names.in_file("step")), (0..table.rows()).collect::<Vec<_>>());
-            From::Table { step, time, rows: rows.into_iter(), table }
+            FrameSource::Table { step, time, rows: rows.into_iter(), table }
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
         let (wanted, ids, partial) = (Vec::new(), Ids::default(), options.partial);
@@ -102,7 +102,7 @@ impl Frames {
             renamed.map_or_else(|| theirs.to_owned(), |(ours, _)| ours.clone())
         };
         match &self.from {
-            From::Grains { snapshot, .. } => {
+            FrameSource::Grains { snapshot, .. } => {
                 let axes: Vec<_> = (0..3).filter_map(|axis| Some((axis, self.coordinate(snapshot, axis)?))).collect();
                 let mut names: Vec<String> = axes.iter().map(|(axis, _)| AXES[*axis].to_owned()).collect();
                 let others = snapshot.columns.iter().enumerate().filter(|(at, column)| {
@@ -111,7 +111,7 @@ impl Frames {
                 names.extend(others.map(|(_, column)| ours(&column.name)));
                 names
             }
-            From::Table { table, step, time, .. } => {
+            FrameSource::Table { table, step, time, .. } => {
                 let keys = [*step, *time];
                 let columns = table.columns.iter().enumerate().filter(|(at, _)| !keys.contains(&Some(*at)));
                 columns.map(|(_, column)| ours(&column.name)).collect()
@@ -168,12 +168,12 @@ impl Frames {
     fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
         match &mut self.from {
-            From::Grains { .. } => {
+            FrameSource::Grains { .. } => {
                 if !self.next_snapshot()? {
                     return Ok(None);
                 }
             }
-            From::Table { rows, table, step, time } => {
+            FrameSource::Table { rows, table, step, time } => {
                 let Some(row) = rows.next() else { return Ok(None) };
                 let numbers = table.rows_from(row, 1).to_vec();
                 let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
@@ -185,7 +185,7 @@ impl Frames {
                 return Ok(Some((Frame { place, ids: None, values }, numbers)));
             }
         }
-        let From::Grains { snapshot, .. } = &self.from else { return Ok(None) };
+        let FrameSource::Grains { snapshot, .. } = &self.from else { return Ok(None) };
         if let Some(id) = snapshot.column(self.names.in_file("id")) {
             self.ids.check(&self.file, snapshot, id)?;
         }
@@ -195,7 +195,7 @@ impl Frames {
 
     /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if that is allowed.
     fn next_snapshot(&mut self) -> Result<bool, ReadError> {
-        let From::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
+        let FrameSource::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
         loop {
             let open = match reader {
                 Some(open) => open,
@@ -231,8 +231,8 @@ impl Frames {
     /// Returns the unit system that the file names.
     pub(super) fn units(&self) -> Option<&str> {
         match &self.from {
-            From::Grains { snapshot, .. } => snapshot.units.as_deref(),
-            From::Table { .. } => None,
+            FrameSource::Grains { snapshot, .. } => snapshot.units.as_deref(),
+            FrameSource::Table { .. } => None,
         }
     }
 
@@ -261,27 +261,31 @@ impl Frames {
     }
 
     /// Returns the printed digits of a column. They are complete after all frames have been read.
-    pub(super) fn printed(&self, name: &str) -> Printed {
+    pub(super) fn printed(&self, name: &str) -> PrintedDigits {
         match &self.from {
-            From::Grains { snapshot, .. } => {
+            FrameSource::Grains { snapshot, .. } => {
                 let of_file = snapshot.digits();
                 let axis = AXES.iter().position(|axis| *axis == name);
                 if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
                     let digits = snapshot.columns[coordinate.column].digits;
                     let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
-                    return Printed { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
+                    return PrintedDigits { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
                 }
                 let at = snapshot.column(self.names.in_file(name));
-                at.map_or(Printed::default(), |at| Printed {
+                at.map_or(PrintedDigits::default(), |at| PrintedDigits {
                     digits: snapshot.columns[at].digits,
                     of_file,
                     scale: None,
                 })
             }
-            From::Table { table, .. } => {
+            FrameSource::Table { table, .. } => {
                 let of_file = table.digits();
                 let at = table.column(self.names.in_file(name));
-                at.map_or(Printed::default(), |at| Printed { digits: table.columns[at].digits, of_file, scale: None })
+                at.map_or(PrintedDigits::default(), |at| PrintedDigits {
+                    digits: table.columns[at].digits,
+                    of_file,
+                    scale: None,
+                })
             }
         }
     }

@@ -11,7 +11,7 @@ use std::path::Path;
 use crate::observer::Names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::run_files::kind;
-use column::{Column, Printed};
+use column::{Column, PrintedDigits};
 use frames::{Frame, Frames, Place};
 
 pub use column::{Difference, Sample};
@@ -132,7 +132,7 @@ struct Survey {
     /// Columns that are compared.
     columns: Vec<String>,
     /// Printed digits of these columns in each file.
-    printed: Vec<[Printed; 2]>,
+    printed: Vec<[PrintedDigits; 2]>,
     /// Columns that only one of the files has.
     lonely: [Vec<String>; 2],
     /// Positions of the samples in each file.

@@ -8,7 +8,7 @@ use crate::read::log::Log;
 
 /// Column of the log that is also a column of the series.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Logged {
+pub(crate) struct LogColumn {
     /// Column of the series, for example `floor.force_x`.
     pub(crate) column: String,
     /// Name of the variable. It is short and plain, because LIGGGHTS truncates the names of columns.
@@ -37,12 +37,12 @@ pub(crate) struct Sums<'a> {
 ///
 /// The pressure of the programs contains the forces between grains at the time of the step. It is divided by the
 /// volume of a box that grows with the grains. The formula converts it to the volume of the scene's domain.
-pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<Logged>), String> {
+pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<LogColumn>), String> {
     let Sums { temperature, grains, force, advance } = program;
     let (mut commands, mut all) = (String::new(), Vec::new());
     let mut take = |column: String, formula: String| {
         let name = format!("g{}", all.len() + 1);
-        all.push(Logged { column, name, formula });
+        all.push(LogColumn { column, name, formula });
     };
     for probe in &scene.probes {
         match probe.target {
@@ -81,16 +81,16 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
             _ => {}
         }
     }
-    for Logged { name, formula, .. } in &all {
+    for LogColumn { name, formula, .. } in &all {
         commands.push_str(&format!("variable {name} equal {formula}\n"));
     }
     Ok((commands.trim_end().to_owned(), all))
 }
 
 /// Returns the values of the log at the steps of a series, one column per quantity.
-pub(crate) fn read(logged: &[Logged], log: &Log, series: &Series) -> Vec<(String, Vec<f64>)> {
+pub(crate) fn read(logged: &[LogColumn], log: &Log, series: &Series) -> Vec<(String, Vec<f64>)> {
     let mut columns = Vec::new();
-    for Logged { column, name, .. } in logged {
+    for LogColumn { column, name, .. } in logged {
         let mut values = vec![f64::NAN; series.step.len()];
         for run in &log.runs {
             let (Some(step), Some(at)) = (

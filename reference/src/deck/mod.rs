@@ -45,7 +45,7 @@ pub struct Deck {
     /// Time steps and samples of the run.
     pub stepping: Stepping,
     /// Columns of the log.
-    pub(crate) logged: Vec<logged::Logged>,
+    pub(crate) logged: Vec<logged::LogColumn>,
     /// Names of force columns in the dumps.
     pub(crate) names: Names,
 }
@@ -113,14 +113,14 @@ pub fn write_deck(scene: &Scene, resolution: &Resolution, program: Program) -> R
     let stepping = Stepping::new(scene, resolution).map_err(DeckError::Resolution)?;
     let unsupported = |reason: String| DeckError::Unsupported { program, reason };
     outline::refuse_what_neither_has(scene).map_err(unsupported)?;
-    let Written { files, logged, names } = program.peer().write(scene, &stepping).map_err(unsupported)?;
+    let DeckFiles { files, logged, names } = program.peer().write(scene, &stepping).map_err(unsupported)?;
     Ok(Deck { files, stepping, logged, names })
 }
 
 /// Files of a deck, columns of its log, and names of force columns in its dumps.
-pub(crate) struct Written {
+pub(crate) struct DeckFiles {
     pub(crate) files: Vec<(String, String)>,
-    pub(crate) logged: Vec<logged::Logged>,
+    pub(crate) logged: Vec<logged::LogColumn>,
     pub(crate) names: Names,
 }
 
@@ -146,7 +146,7 @@ fn asks_for_pairs(scene: &Scene) -> bool {
 }
 
 /// Returns the lines that select the output of the log. It is the end of the run only, or sums at every sample.
-fn thermo(commands: &str, logged: &[logged::Logged], stepping: &Stepping) -> String {
+fn thermo(commands: &str, logged: &[logged::LogColumn], stepping: &Stepping) -> String {
     if logged.is_empty() {
         return format!("thermo_style custom step time ke atoms\nthermo {}", stepping.steps.max(1));
     }

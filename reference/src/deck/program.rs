@@ -6,7 +6,7 @@ use grainbench_scene::scene::Scene;
 
 use super::lammps::Lammps;
 use super::liggghts::Liggghts;
-use super::{Stepping, Written};
+use super::{DeckFiles, Stepping};
 
 /// Interface of a program. The command `executable -in in.name -log file` runs it in the folder of its deck. The
 /// program writes dumps and a log in the format of LAMMPS.
@@ -21,7 +21,7 @@ pub(crate) trait Peer: Sync {
     ///
     /// # Errors
     /// If the program cannot express the scene, with the reason.
-    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String>;
+    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String>;
 }
 
 /// Program that decks are written for.

@@ -10,17 +10,17 @@ use std::time::{Duration, SystemTime};
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Solver, Watch};
 
 use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::grain_dump::contacts_of;
-use crate::observer::{Due, Observed, Observer};
+use crate::observer::{DumpRecord, Observer, SnapshotSchedule};
 use crate::pair_forces::PairForces;
-use crate::process::{self, Limits, Started};
+use crate::process::{self, Limits, ProcessStart};
 use crate::read::dump::DumpReader;
 use crate::read::log::read_log;
-use crate::read::numbers::NotFinite;
+use crate::read::numbers::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 
@@ -34,13 +34,13 @@ const LOG: &str = "log.run";
 
 /// Program that is run as a solver.
 #[derive(Debug, Clone)]
-pub struct Live {
+pub struct LiveProgram {
     program: Program,
     executable: Result<PathBuf, String>,
     time_limit: Duration,
 }
 
-impl Live {
+impl LiveProgram {
     /// Finds the program that `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names, or else `lmp` or `liggghts` on
     /// `PATH`. The time limit of a run is ten minutes, or the number of seconds in `GRAINBENCH_TIME_LIMIT`.
     #[must_use]
@@ -101,7 +101,7 @@ impl Live {
     }
 }
 
-impl Solver for Live {
+impl Solver for LiveProgram {
     fn name(&self) -> String {
         self.program.name().to_owned()
     }
@@ -115,7 +115,7 @@ impl Solver for Live {
         let executable = self.executable()?;
         let stepping = deck.stepping;
         let particles = scene.grains.len() as u64;
-        watch.begin(Ahead { time_step: stepping.time_step, steps: stepping.steps, particles });
+        watch.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let files = deck.files.iter().map(|(name, text)| (name.as_str(), text.as_str()));
         let folder = process::scratch(files).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
@@ -123,7 +123,7 @@ impl Solver for Live {
         let limits = Limits { deadline, bytes: most_bytes(scene, stepping), memory: None, threads: 1 };
         let arguments = ["-in", &deck.files[0].0, "-log", LOG].map(str::to_owned);
         let started =
-            Started { executable, arguments: &arguments, folder: folder.path(), at: None, errors_apart: false };
+            ProcessStart { executable, arguments: &arguments, folder: folder.path(), at: None, errors_apart: false };
         let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
         let screen = ended.last_lines;
         if ended.code != 0 {
@@ -206,7 +206,7 @@ pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> 
 
 /// Reads the files of a deck's run in a folder until the deadline. Values that are not finite are kept, and errors
 /// later name their column and step.
-fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<Observed, Failure> {
+fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<DumpRecord, Failure> {
     let stepping = deck.stepping;
     let mut snapshot = DumpSnapshot::default();
     let ids: Vec<u64> = (1..=scene.grains.len() as u64).collect();
@@ -216,7 +216,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
             continue;
         }
         let path = plain_file(folder, name)?;
-        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NotFinite::Kept);
+        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NonFiniteNumbers::Kept);
         while reader.read(&mut snapshot).map_err(output)? {
             deadline.check()?;
             pairs.take(name, &snapshot, &deck.names, None).map_err(output)?;
@@ -224,13 +224,13 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
     }
     let mut observer = Observer::new(scene).with_pairs(pairs);
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
-    let mut due = Due(recorder.snapshot_steps());
+    let mut due = SnapshotSchedule(recorder.snapshot_steps());
     for name in [SAMPLES, END] {
         if name == END && stepping.ends_on_a_sample() {
             continue;
         }
         let path = plain_file(folder, name)?;
-        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NotFinite::Kept);
+        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NonFiniteNumbers::Kept);
         while reader.read(&mut snapshot).map_err(output)? {
             deadline.check()?;
             let keep = due.is_at(snapshot.step);

@@ -1,6 +1,6 @@
 //! Features of a scene that a program does not declare.
 
-use super::manifest::{Can, Manifest, Wall};
+use super::manifest::{Capabilities, Manifest, Wall};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
 use grainbench_scene::solver::Resolution;
@@ -25,7 +25,7 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
 }
 
 /// Returns the missing feature for grains that keep their shape.
-fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
+fn lacks_law(can: &Capabilities, scene: &Scene) -> Option<String> {
     if let Some(what) = scene.needs_deformable() {
         return Some(match can.deformable[..] {
             [] => format!("it declares no bodies that deform (`can.deformable`), and the scene has {what}"),
@@ -42,7 +42,7 @@ fn lacks_law(can: &Can, scene: &Scene) -> Option<String> {
 }
 
 /// Returns the missing feature for grains and bodies that deform. Their contacts have friction and no springs.
-fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
+fn lacks_material(can: &Capabilities, scene: &Scene) -> Option<String> {
     if can.deformable.is_empty() {
         return Some("it declares no bodies that deform (`can.deformable`)".to_owned());
     }
@@ -63,7 +63,7 @@ fn lacks_material(can: &Can, scene: &Scene) -> Option<String> {
     })
 }
 
-fn lacks_wall(can: &Can, scene: &Scene) -> Option<String> {
+fn lacks_wall(can: &Capabilities, scene: &Scene) -> Option<String> {
     scene.walls.iter().find_map(|wall| {
         let (kind, word) = match wall.shape {
             WallShape::Plane { .. } => (Wall::Plane, "plane"),
@@ -76,7 +76,7 @@ fn lacks_wall(can: &Can, scene: &Scene) -> Option<String> {
     })
 }
 
-fn lacks_effect(can: &Can, scene: &Scene, deforms: bool) -> Option<String> {
+fn lacks_effect(can: &Capabilities, scene: &Scene, deforms: bool) -> Option<String> {
     if !scene.driven.is_empty() && !can.driven {
         return Some("it does not declare driven grains (`can.driven`)".to_owned());
     }

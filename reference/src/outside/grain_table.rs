@@ -1,7 +1,7 @@
 //! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
 
 use crate::deck::Stepping;
-use crate::observer::{Due, Names, Observed, Observer};
+use crate::observer::{DumpRecord, Names, Observer, SnapshotSchedule};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};
@@ -17,13 +17,13 @@ pub(super) fn observe(
     name: &str,
     names: &Names,
     stepping: &Stepping,
-) -> Result<Observed, ReadError> {
+) -> Result<DumpRecord, ReadError> {
     let table = read_table(path)?;
     let time_step = stepping.time_step;
     let steps = steps(&table, name, names, time_step)?;
     let mut observer = Observer::new(scene);
     let recorder = Recorder::new(scene, time_step, stepping.steps);
-    let mut due = Due(recorder.snapshot_steps());
+    let mut due = SnapshotSchedule(recorder.snapshot_steps());
     let (mut row, mut last) = (0, None);
     while row < table.rows() {
         let step = steps[row];

@@ -44,10 +44,10 @@ pub struct Manifest {
     #[serde(default)]
     pub scene: SceneFormat,
     /// Features of the program.
-    pub can: Can,
+    pub can: Capabilities,
     /// Parameters of the runs that measure convergence and computing time.
     #[serde(default)]
-    pub knobs: Knobs,
+    pub knobs: ParameterValues,
     /// Output of the program.
     pub output: Output,
     /// Limits of a run.
@@ -69,7 +69,7 @@ pub enum SceneFormat {
 /// Features that a program declares. A scene that requires more is not run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Can {
+pub struct Capabilities {
     /// Supported numbers of dimensions.
     pub dimension: Vec<usize>,
     /// Contact laws of grains that keep their shape.
@@ -108,7 +108,7 @@ pub enum Wall {
 /// Parameters that are varied.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Knobs {
+pub struct ParameterValues {
     /// Time steps as fractions of the critical time step.
     #[serde(default)]
     pub critical_fraction: Vec<f64>,

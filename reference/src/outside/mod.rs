@@ -15,24 +15,26 @@ mod report;
 mod resolved;
 mod worker;
 
-pub use manifest::{Can, GrainFormat, Grains, Knobs, Limits, Manifest, ManifestError, Output, SceneFormat, Wall};
-pub use resolved::{Given, Resolved, schema};
+pub use manifest::{
+    Capabilities, GrainFormat, Grains, Limits, Manifest, ManifestError, Output, ParameterValues, SceneFormat, Wall,
+};
+pub use resolved::{DiscretizedScene, Resolved, schema};
 
 use crate::deadline::Deadline;
 use crate::deck::Stepping;
 use crate::live::{complete, most_bytes, output, plain_file};
-use crate::observer::Observed;
+use crate::observer::DumpRecord;
 use crate::outputs::{OutputError, Outputs, Sources};
-use crate::process::{self, ERRORS, Ended, SCREEN, Started};
+use crate::process::{self, ERRORS, ProcessEnd, ProcessStart, SCREEN};
 use crate::read::read_error::one_line;
 use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::record::{Cost, Provenance, Record};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Ahead, Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Solver, Watch};
 use grainbench_scene::terms::Terms;
-use report::{OwnReport, Seconds};
+use report::{ProgramReport, Seconds};
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
@@ -61,7 +63,7 @@ const CONFORMING: Resolution = Resolution::CriticalFraction(0.02);
 
 /// External program with its manifest.
 #[derive(Debug)]
-pub struct Outside {
+pub struct ExternalProgram {
     manifest: Manifest,
     /// Folder of the manifest.
     folder: PathBuf,
@@ -74,7 +76,7 @@ pub struct Outside {
     start_up: Mutex<BTreeMap<usize, f64>>,
 }
 
-impl Outside {
+impl ExternalProgram {
     /// Reads the manifest at a path.
     ///
     /// # Errors
@@ -146,7 +148,7 @@ impl Outside {
         let executable = self.executable(name)?;
         let scratch = process::scratch([]).map_err(|error| error.to_string())?;
         let arguments = self.words(command, Path::new(""), &self.folder);
-        let started = Started {
+        let started = ProcessStart {
             executable: &executable,
             arguments: &arguments,
             folder: scratch.path(),
@@ -267,7 +269,7 @@ impl Outside {
     }
 
     /// Runs the program with a scene and waits until it ends.
-    fn start(&self, given: &Given<'_>) -> Result<Finished, RunError> {
+    fn start(&self, given: &DiscretizedScene<'_>) -> Result<ProgramResult, RunError> {
         let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
         let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
         let format = self.manifest.scene;
@@ -282,7 +284,7 @@ impl Outside {
         let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
         let mut start = Instant::now();
         let (message, last_lines) = if self.manifest.worker.is_empty() {
-            let started = Started {
+            let started = ProcessStart {
                 executable: &executable,
                 arguments: &arguments,
                 folder: folder.path(),
@@ -293,7 +295,7 @@ impl Outside {
             let failed = |failure| fail(failure, ended.last_lines.clone());
             let own = self.manifest.output.report.as_ref();
             let own = own.map(|name| report::read(&folder.path().join(name), name)).transpose().map_err(failed)?;
-            (Said::by_process(&ended, own.unwrap_or_default(), folder.path()), ended.last_lines)
+            (ProgramMessage::by_process(&ended, own.unwrap_or_default(), folder.path()), ended.last_lines)
         } else {
             let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
             let waiting = idle().pop();
@@ -305,9 +307,9 @@ impl Outside {
             let answer = answer.map_err(|(failure, last_lines)| fail(failure, last_lines))?;
             let last_lines = worker.last_lines();
             idle().push(worker);
-            (Said::by_worker(answer), last_lines)
+            (ProgramMessage::by_worker(answer), last_lines)
         };
-        Ok(Finished { folder, said: message, last_lines, seconds: start.elapsed().as_secs_f64() })
+        Ok(ProgramResult { folder, said: message, last_lines, seconds: start.elapsed().as_secs_f64() })
     }
 
     /// Returns the path of the program that is started.
@@ -317,24 +319,24 @@ impl Outside {
     }
 
     /// Returns the time of a run with zero steps (s).
-    fn start_up(&self, given: &Given<'_>) -> f64 {
+    fn start_up(&self, given: &DiscretizedScene<'_>) -> f64 {
         let grains = given.scene.grains.len();
         let known =
             |program: &Self| program.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
         known(self).unwrap_or_else(|| {
             let stepping = Stepping { steps: 0, interval: 1, ..given.stepping };
-            let seconds = self.start(&Given { stepping, ..*given }).map_or(0.0, |finished| finished.seconds);
+            let seconds = self.start(&DiscretizedScene { stepping, ..*given }).map_or(0.0, |finished| finished.seconds);
             self.start_up.lock().unwrap_or_else(PoisonError::into_inner).insert(grains, seconds);
             seconds
         })
     }
 
     /// Reads the output of a run.
-    fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<Observed, Failure> {
+    fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<DumpRecord, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
         let mut observed = match grains.as_ref().filter(|_| !scene.grains.is_empty()) {
             Some(grains) => observe_grains(scene, stepping, folder, (grains, contacts.as_deref()))?,
-            None => Observed::without_grains(stepping),
+            None => DumpRecord::without_grains(stepping),
         };
         if let Some(name) = series {
             let table = read_table(&plain_file(folder, name)?).map_err(output)?;
@@ -372,7 +374,7 @@ fn observe_grains(
     stepping: &Stepping,
     folder: &Path,
     (grains, contacts): (&Grains, Option<&str>),
-) -> Result<Observed, Failure> {
+) -> Result<DumpRecord, Failure> {
     let output_failure = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
     let names = grains.names();
     let observed = match grains.format {
@@ -403,16 +405,16 @@ fn observe_grains(
 }
 
 /// Result of a program that ended regularly.
-struct Finished {
+struct ProgramResult {
     folder: tempfile::TempDir,
-    said: Said,
+    said: ProgramMessage,
     last_lines: Vec<String>,
     /// Elapsed time (s).
     seconds: f64,
 }
 
 /// Message of a program about its run.
-enum Said {
+enum ProgramMessage {
     /// The run succeeded. The times are present if the program reports them.
     Ran(Option<Seconds>),
     /// The program cannot express the scene, for this reason.
@@ -420,9 +422,9 @@ enum Said {
     Failed(Failure),
 }
 
-impl Said {
+impl ProgramMessage {
     /// Returns the message that follows from the exit code, the report and the printed text in the folder.
-    fn by_process(ended: &Ended, own: OwnReport, folder: &Path) -> Self {
+    fn by_process(ended: &ProcessEnd, own: ProgramReport, folder: &Path) -> Self {
         if ended.code == CANNOT {
             let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
             let screen = String::from_utf8_lossy(&screen).into_owned();
@@ -465,7 +467,7 @@ fn without(folder: &Path, text: &str) -> String {
     text.replace(&format!("{}/", folder.display()), "")
 }
 
-impl Solver for Outside {
+impl Solver for ExternalProgram {
     fn name(&self) -> String {
         self.manifest.name.clone()
     }
@@ -488,18 +490,18 @@ impl Solver for Outside {
         if let Some(reason) = can::lacks(&self.manifest, scene, resolution) {
             return Err(cannot(reason));
         }
-        let given =
-            Given::new(scene, resolution).map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
+        let given = DiscretizedScene::new(scene, resolution)
+            .map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         let stepping = given.stepping;
         self.prepare()?;
         let particles = scene.grains.len() as u64;
-        watch.begin(Ahead { time_step: stepping.time_step, steps: stepping.steps, particles });
-        let Finished { folder, said: message, last_lines, seconds } = self.start(&given)?;
+        watch.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
+        let ProgramResult { folder, said: message, last_lines, seconds } = self.start(&given)?;
         let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
         let times = match message {
-            Said::Ran(times) => times,
-            Said::Cannot(reason) => return Err(cannot(reason)),
-            Said::Failed(failure) => return Err(fail(failure)),
+            ProgramMessage::Ran(times) => times,
+            ProgramMessage::Cannot(reason) => return Err(cannot(reason)),
+            ProgramMessage::Failed(failure) => return Err(fail(failure)),
         };
         let mut observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
         observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));

@@ -12,11 +12,11 @@ const MOST: u64 = 1 << 20;
 
 /// Report of a program. Unknown keys are ignored.
 #[derive(Clone, Debug, Default, Deserialize)]
-pub(super) struct OwnReport {
+pub(super) struct ProgramReport {
     /// Times of its parts (s).
     pub(super) seconds: Option<Seconds>,
     /// Description of a failure.
-    pub(super) failed: Option<Failed>,
+    pub(super) failed: Option<FailureReport>,
 }
 
 /// Times (s).
@@ -35,14 +35,14 @@ impl Seconds {
 
 /// Time, position and reason of a failure. Each can be any JSON value.
 #[derive(Clone, Debug, Deserialize)]
-pub(super) struct Failed {
+pub(super) struct FailureReport {
     when: Option<Value>,
     #[serde(rename = "where")]
     place: Option<Value>,
     why: Option<Value>,
 }
 
-impl Failed {
+impl FailureReport {
     /// Returns the description as text.
     pub(super) fn words(&self) -> String {
         let text = |value: &Option<Value>| {
@@ -53,17 +53,17 @@ impl Failed {
 }
 
 /// Reads a report. Returns an empty report if there is no file.
-pub(super) fn read(path: &Path, name: &str) -> Result<OwnReport, Failure> {
+pub(super) fn read(path: &Path, name: &str) -> Result<ProgramReport, Failure> {
     let wrong = |expected: &str, found: String| Failure::Output(format!("{name}: expected {expected}, found {found}"));
     match fs::symlink_metadata(path) {
-        Err(_) => return Ok(OwnReport::default()),
+        Err(_) => return Ok(ProgramReport::default()),
         Ok(found) if !found.is_file() || found.len() > MOST => {
             return Err(wrong("a plain file of at most a megabyte", "something else".to_owned()));
         }
         Ok(_) => {}
     }
     let text = fs::read(path).map_err(|error| wrong("a file that can be read", error.to_string()))?;
-    let report: OwnReport =
+    let report: ProgramReport =
         serde_json::from_slice(&text).map_err(|error| wrong("a report", one_line(&error.to_string())))?;
     match report.seconds.filter(|seconds| !seconds.is_a_time()) {
         Some(Seconds { solve }) => Err(wrong("seconds.solve of zero or more", solve.to_string())),

@@ -73,7 +73,7 @@ pub struct Resolved {
 
 /// Scene with time steps and grid for a program.
 #[derive(Clone, Copy)]
-pub struct Given<'s> {
+pub struct DiscretizedScene<'s> {
     /// The scene.
     pub scene: &'s Scene,
     /// Time steps of the scene.
@@ -82,7 +82,7 @@ pub struct Given<'s> {
     pub grid: Option<Grid>,
 }
 
-impl<'s> Given<'s> {
+impl<'s> DiscretizedScene<'s> {
     /// Returns the time steps and the grid of a scene at a resolution.
     ///
     /// # Errors
@@ -245,8 +245,8 @@ pub struct Driven {
 impl Resolved {
     /// Returns a scene with explicit values.
     #[must_use]
-    pub fn new(given: &Given<'_>) -> Self {
-        let Given { scene, stepping, grid } = given;
+    pub fn new(given: &DiscretizedScene<'_>) -> Self {
+        let DiscretizedScene { scene, stepping, grid } = given;
         let vector = |vector: &Vector3<f64>| [vector.x, vector.y, vector.z];
         let material = |place: u16| scene.materials[usize::from(place)].clone();
         let critical = scene.critical_time_step();

@@ -5,7 +5,7 @@
 //! solution (s) is optional, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays are
 //! written to files in the folder.
 
-use super::report::{Failed, Seconds};
+use super::report::{FailureReport, Seconds};
 use crate::process::{self, ERRORS, Limits};
 use crate::read::read_error::{one_line, quoted};
 use grainbench_scene::solver::Failure;
@@ -54,7 +54,7 @@ pub(super) enum Answer {
     /// The program cannot express the scene.
     Cannot(String),
     /// The run failed.
-    Failed(Failed),
+    Failed(FailureReport),
 }
 
 /// Times in the answer.

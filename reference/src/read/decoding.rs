@@ -25,7 +25,7 @@ const BINARY_DUMP: &str =
 const MARK: u64 = 18;
 
 /// Content of an input according to its first bytes.
-pub(crate) enum Decoded<'r> {
+pub(crate) enum InputContent<'r> {
     /// Text, decompressed if it was gzip or zstd.
     Text(Box<dyn Read + 'r>),
     /// Unsupported format, as text.
@@ -33,16 +33,16 @@ pub(crate) enum Decoded<'r> {
 }
 
 /// Detects the format of `reader` from its first bytes, and decompresses gzip and zstd.
-pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'r>> {
+pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<InputContent<'r>> {
     let mut head = Vec::new();
     reader.by_ref().take(MARK).read_to_end(&mut head)?;
     if let Some((_, name)) = UNREADABLE.iter().find(|(mark, _)| head.starts_with(mark)) {
-        return Ok(Decoded::Unreadable(name));
+        return Ok(InputContent::Unreadable(name));
     }
     let is = |mark: &[u8]| head.starts_with(mark);
     let (gzip, zstd) = (is(GZIP), is(ZSTD));
     let whole = Cursor::new(head).chain(reader);
-    Ok(Decoded::Text(if gzip {
+    Ok(InputContent::Text(if gzip {
         // A gzip file can be a sequence of gzip files, for example from `cat a.gz b.gz`.
         Box::new(MultiGzDecoder::new(whole))
     } else if zstd {

@@ -8,7 +8,7 @@ use crate::read::blocks::Blocks;
 use crate::read::dump_header::DumpHeader;
 use crate::read::ids::Ids;
 use crate::read::line_reader::blocks;
-use crate::read::numbers::{NotFinite, RowForm};
+use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
@@ -41,7 +41,7 @@ impl<'r> DumpReader<'r> {
     /// # Errors
     /// If the beginning cannot be read or has an unsupported compression.
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
-        let form = RowForm { separator: None, not_finite: NotFinite::default() };
+        let form = RowForm { separator: None, not_finite: NonFiniteNumbers::default() };
         let most_rows = u64::MAX;
         Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Ids::default() })
     }
@@ -54,7 +54,7 @@ impl<'r> DumpReader<'r> {
 
     /// Sets if NaN and infinity are accepted. By default they are errors.
     #[must_use]
-    pub fn not_finite(mut self, not_finite: NotFinite) -> Self {
+    pub fn not_finite(mut self, not_finite: NonFiniteNumbers) -> Self {
         self.form.not_finite = not_finite;
         self
     }

@@ -5,7 +5,7 @@ use super::snapshot::{DumpSnapshot, Numbering};
 use std::path::{Path, PathBuf};
 
 /// Snapshots of an open file.
-pub(crate) type Opened = Result<Box<dyn Moments>, ReadError>;
+pub(crate) type OpenSnapshots = Result<Box<dyn Moments>, ReadError>;
 
 /// File format.
 #[derive(Debug)]
@@ -13,18 +13,18 @@ pub(crate) struct Format {
     /// Name of the format as text.
     pub(crate) words: &'static str,
     /// Criterion for a file of this format.
-    pub(crate) told_by: ToldBy,
+    pub(crate) told_by: FormatCriterion,
     /// Numbering of the snapshots, unless the file contains another one.
     pub(crate) numbering: Numbering,
     /// Returns the kind of content of a file.
-    pub(crate) holds: fn(&Path) -> Result<Holds, ReadError>,
+    pub(crate) holds: fn(&Path) -> Result<FileContent, ReadError>,
     /// Opens a file with a maximum number of rows per snapshot.
-    pub(crate) open: fn(&Path, u64) -> Opened,
+    pub(crate) open: fn(&Path, u64) -> OpenSnapshots,
 }
 
 /// Criterion that identifies the format of a file.
 #[derive(Debug)]
-pub(crate) enum ToldBy {
+pub(crate) enum FormatCriterion {
     /// Test of the first bytes and the name.
     Beginning(fn(&Beginning<'_>) -> bool),
     /// Beginning of the first non-blank line, if no format matches the first bytes.
@@ -45,7 +45,7 @@ pub(crate) struct Beginning<'a> {
 
 /// Content of a file.
 #[derive(Debug)]
-pub(crate) enum Holds {
+pub(crate) enum FileContent {
     /// Snapshots with steps or in a defined order, and the step of the first one if it is known.
     Course(Option<u64>),
     /// One snapshot. Its step is in the name of the file.
@@ -61,20 +61,20 @@ pub(crate) trait Moments {
 }
 
 /// Snapshots that are read by index.
-pub(crate) struct ByPlace<F> {
+pub(crate) struct IndexedSnapshots<F> {
     file: String,
     of: F,
     next: usize,
 }
 
-impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> ByPlace<F> {
+impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> IndexedSnapshots<F> {
     /// Returns the snapshots of a file. `read_at` returns the snapshot at an index, or `None` after the last one.
     pub(crate) fn boxed(path: &Path, read_at: F) -> Box<dyn Moments> {
         Box::new(Self { file: path.to_string_lossy().into_owned(), of: read_at, next: 0 })
     }
 }
 
-impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for ByPlace<F> {
+impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for IndexedSnapshots<F> {
     fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let Some(next) = (self.of)(self.next)? else { return Ok(false) };
         if self.next > 0 && snapshot.step == next.step {

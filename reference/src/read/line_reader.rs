@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use crate::read::blocks::{Blocks, RawLine};
-use crate::read::decoding::{Decoded, decoded};
+use crate::read::decoding::{InputContent, decoded};
 use crate::read::read_error::ReadError;
 
 /// Reads an input, plain, gzip or zstd, line by line. Input that is not text is an error.
@@ -34,8 +34,8 @@ impl<'l> Line<'l> {
 /// Opens an input as lines of bytes.
 pub(crate) fn blocks<'r>(reader: impl BufRead + 'r, name: &str) -> Result<Blocks<'r>, ReadError> {
     match decoded(reader).map_err(|error| ReadError::reading(name, 1, error))? {
-        Decoded::Text(reader) => Ok(Blocks::new(reader, name)),
-        Decoded::Unreadable(found) => Err(ReadError::at(name, 1, "plain text, gzip or zstd", found)),
+        InputContent::Text(reader) => Ok(Blocks::new(reader, name)),
+        InputContent::Unreadable(found) => Err(ReadError::at(name, 1, "plain text, gzip or zstd", found)),
     }
 }
 

@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use crate::read::line_reader::{Line, LineReader};
-use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::table::Table;
 
@@ -76,19 +76,19 @@ pub fn read_log(path: &Path) -> Result<Log, ReadError> {
 pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut lines = LineReader::new(reader, name)?;
     let mut log = Log::default();
-    let mut expected = Expected::Text;
+    let mut expected = ExpectedLine::Text;
     while let Some(line) = lines.next_line()? {
         let words = || line.text.split_whitespace();
         if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
             log.version = Some(line.text.trim().to_owned());
         }
-        if let Expected::Rows(columns, values) = &mut expected {
+        if let ExpectedLine::Rows(columns, values) = &mut expected {
             match words().next() {
                 Some("Loop") => {
                     let end = Some(loop_time(line)?);
                     let thermo = Table::new(std::mem::take(columns), std::mem::take(values));
                     log.runs.push(LoggedRun { thermo, time_step: log.time_step, end });
-                    expected = Expected::Text;
+                    expected = ExpectedLine::Text;
                 }
                 // Blank lines are skipped, and the next case skips warnings.
                 None => {}
@@ -97,9 +97,9 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
             }
             continue;
         }
-        if expected == Expected::Names || words().next() == Some("Step") {
+        if expected == ExpectedLine::Names || words().next() == Some("Step") {
             if let Some(columns) = columns_of(line) {
-                expected = Expected::Rows(columns, Vec::new());
+                expected = ExpectedLine::Rows(columns, Vec::new());
                 continue;
             }
             if line.text.starts_with("---") {
@@ -110,20 +110,22 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
         let mut words = words();
         expected = match (words.next(), words.next(), words.next()) {
             // LAMMPS prints the first form. Older releases and LIGGGHTS print the second.
-            (Some("Per"), Some("MPI"), Some("rank")) | (Some("Memory"), Some("usage"), Some("per")) => Expected::Names,
+            (Some("Per"), Some("MPI"), Some("rank")) | (Some("Memory"), Some("usage"), Some("per")) => {
+                ExpectedLine::Names
+            }
             (Some("units"), Some(units), None) => {
                 log.units = Some(units.to_owned());
-                Expected::Text
+                ExpectedLine::Text
             }
             (Some("timestep"), Some(step), None) => {
                 log.time_step =
                     step.parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0).or(log.time_step);
-                Expected::Text
+                ExpectedLine::Text
             }
-            _ => Expected::Text,
+            _ => ExpectedLine::Text,
         };
     }
-    if let Expected::Rows(columns, values) = expected {
+    if let ExpectedLine::Rows(columns, values) = expected {
         log.runs.push(LoggedRun { thermo: Table::new(columns, values), time_step: log.time_step, end: None });
     }
     if log.runs.is_empty() {
@@ -134,11 +136,11 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
 }
 
 /// Format of a row.
-const ROW: RowForm = RowForm { separator: None, not_finite: NotFinite::Kept };
+const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Kept };
 
 /// Content that is expected in the next line of a log.
 #[derive(PartialEq)]
-enum Expected {
+enum ExpectedLine {
     /// Any text.
     Text,
     /// Names of the columns.

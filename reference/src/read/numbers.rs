@@ -25,7 +25,7 @@ impl NumberColumn {
 
 /// Treatment of NaN and infinity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum NotFinite {
+pub enum NonFiniteNumbers {
     /// NaN and infinity are errors in the file.
     #[default]
     Refused,
@@ -38,7 +38,7 @@ pub enum NotFinite {
 pub(crate) struct RowForm {
     /// Separator of two numbers. Without a value, numbers are separated by blanks.
     pub(crate) separator: Option<u8>,
-    pub(crate) not_finite: NotFinite,
+    pub(crate) not_finite: NonFiniteNumbers,
 }
 
 impl RowForm {
@@ -84,7 +84,7 @@ impl RowForm {
                 let text = &bytes[at..at + length];
                 let delimited =
                     bytes.get(at + length).is_none_or(|byte| self.is_blank(*byte) || Some(*byte) == self.separator);
-                if !delimited || (!value.is_finite() && self.not_finite == NotFinite::Refused) {
+                if !delimited || (!value.is_finite() && self.not_finite == NonFiniteNumbers::Refused) {
                     return Err(self.fault(line, at, column));
                 }
                 column.digits.see(text);
@@ -115,8 +115,8 @@ impl RowForm {
     fn fault(self, line: RawLine<'_>, at: usize, column: &NumberColumn) -> ReadError {
         let kind = match (column.is_text, self.not_finite) {
             (true, _) => "a word",
-            (false, NotFinite::Refused) => "a finite number",
-            (false, NotFinite::Kept) => "a number",
+            (false, NonFiniteNumbers::Refused) => "a finite number",
+            (false, NonFiniteNumbers::Kept) => "a number",
         };
         self.error_at(line, at, &format!("{kind} in the column {}", quoted(&column.name)), "")
     }

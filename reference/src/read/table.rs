@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::read::digits::Digits;
 use crate::read::line_reader::blocks;
-use crate::read::numbers::{NotFinite, NumberColumn, RowForm};
+use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
@@ -89,7 +89,7 @@ pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
 /// field, or a number that is not finite.
 pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
     let mut lines = blocks(reader, name)?;
-    let mut form = RowForm { separator: None, not_finite: NotFinite::Refused };
+    let mut form = RowForm { separator: None, not_finite: NonFiniteNumbers::Refused };
     let mut table = Table::default();
     while let Some(line) = lines.next_line()? {
         let first = line.bytes.iter().find(|byte| !byte.is_ascii_whitespace());

@@ -2,7 +2,7 @@
 //! of two codes is half their difference.
 
 use super::impact::Impact;
-use super::tables::{Kind, Published, Silo};
+use super::tables::{Kind, PublishedTable, Silo};
 
 /// Period of steady flow out of the silo (s).
 pub const STEADY: [f64; 2] = [0.5, 3.5];
@@ -59,14 +59,14 @@ pub struct Quantity {
 
 /// Returns the common results of the tables of silo, drum and beds.
 #[must_use]
-pub fn pairs(tables: &[Published]) -> Vec<Quantity> {
-    let codes = |words: &str| -> Vec<&Published> {
+pub fn pairs(tables: &[PublishedTable]) -> Vec<Quantity> {
+    let codes = |words: &str| -> Vec<&PublishedTable> {
         let named = |code: &&str| tables.iter().find(|table| is_of(&table.name, words, code));
         CODES.iter().filter_map(named).collect()
     };
     let (large, small, drum) = (codes("large"), codes("small"), codes("case2"));
     let mut all = Vec::new();
-    let mut add = |key, what: String, time, published: &[&Published], read: &dyn Fn(&Kind) -> Option<f64>| {
+    let mut add = |key, what: String, time, published: &[&PublishedTable], read: &dyn Fn(&Kind) -> Option<f64>| {
         let values: Option<Vec<f64>> = published.iter().map(|table| read(&table.kind)).collect();
         if let Some(pair) = values.as_deref().and_then(Pair::from_values) {
             all.push(Quantity { key, what, time, pair });
@@ -123,8 +123,11 @@ mod tests {
     use super::super::impact::Course;
     use super::*;
 
-    fn table(name: &str, left: [f64; 3]) -> Published {
-        Published { name: name.to_owned(), kind: Kind::Silo(Silo { times: vec![0.0, 2.0, 4.0], left: left.to_vec() }) }
+    fn table(name: &str, left: [f64; 3]) -> PublishedTable {
+        PublishedTable {
+            name: name.to_owned(),
+            kind: Kind::Silo(Silo { times: vec![0.0, 2.0, 4.0], left: left.to_vec() }),
+        }
     }
 
     #[test]
@@ -158,7 +161,7 @@ mod tests {
             let heights: Vec<f64> = times.iter().map(|time| flight(time + ahead) - lower * (time + ahead)).collect();
             let course = |bed| Course { code: name.to_owned(), bed, heights: heights.clone() };
             let courses = (1..=courses as usize).map(course).collect();
-            Published { name: name.to_owned(), kind: Kind::Impact(Impact { times, courses, repeated: 0 }) }
+            PublishedTable { name: name.to_owned(), kind: Kind::Impact(Impact { times, courses, repeated: 0 }) }
         };
         let tables = [
             fallen("case3_100k_liggghts", 5e-5, 0.0, 1),

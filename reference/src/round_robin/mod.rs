@@ -16,10 +16,10 @@ mod tables;
 pub use again::{EARLY, Pair, Quantity, STEADY, STEADY_SMALL, pairs};
 pub use bed::{Bed, bed_in, bed_names, read_bed};
 pub use impact::{Course, Impact};
-pub use said::{Said, of_all, of_drum, of_drums, of_impact, table_of};
+pub use said::{DataFinding, of_all, of_drum, of_drums, of_impact, table_of};
 pub use spread::Spread;
 pub use start::{Start, read_start, start_in};
-pub use tables::{Drum, Kind, Published, Silo, read};
+pub use tables::{Drum, Kind, PublishedTable, Silo, read};
 
 /// Derived heights of the ball over time for 25 thousand grains. The columns are t (s), mean of the codes, and
 /// standard deviations between codes and between beds (mm).

@@ -2,12 +2,12 @@
 
 use super::impact::{Course, GRAVITY, Impact, RELEASED};
 use super::spread::mean;
-use super::tables::{Drum, Kind, Published};
+use super::tables::{Drum, Kind, PublishedTable};
 use std::fmt;
 
 /// Observation in the data with its expectation, a row of a check.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
+pub struct DataFinding {
     /// Name of the table, or empty until it is known.
     pub table: String,
     /// Object of the observation.
@@ -20,13 +20,13 @@ pub struct Said {
     pub expected: String,
 }
 
-impl Said {
+impl DataFinding {
     fn new(about: impl Into<String>, quantity: impl Into<String>, found: String, expected: impl Into<String>) -> Self {
         Self { table: String::new(), about: about.into(), quantity: quantity.into(), found, expected: expected.into() }
     }
 }
 
-impl fmt::Display for Said {
+impl fmt::Display for DataFinding {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         for part in [&self.table, &self.about].into_iter().filter(|part| !part.is_empty()) {
             write!(formatter, "{part}: ")?;
@@ -50,10 +50,10 @@ const SAME_BED: f64 = 1.2e-5;
 /// Returns the observations in all tables. Each table is checked separately, and each drum is compared with the first
 /// one.
 #[must_use]
-pub fn of_all(tables: &[Published]) -> Vec<Said> {
+pub fn of_all(tables: &[PublishedTable]) -> Vec<DataFinding> {
     let mut all = Vec::new();
     let mut first: Option<(&str, &Drum)> = None;
-    for Published { name, kind } in tables {
+    for PublishedTable { name, kind } in tables {
         let findings = match kind {
             Kind::Impact(impact) => of_impact(impact),
             Kind::Drum(drum) => {
@@ -66,7 +66,7 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
         all.extend(findings.into_iter().map(|finding| {
             // A time series that is alone in its file has the same name as the file.
             let about = if finding.about == *name { String::new() } else { finding.about };
-            Said { table: name.clone(), about, ..finding }
+            DataFinding { table: name.clone(), about, ..finding }
         }));
     }
     all
@@ -74,13 +74,13 @@ pub fn of_all(tables: &[Published]) -> Vec<Said> {
 
 /// Returns the observations as a heading and a table in Markdown.
 #[must_use]
-pub fn table_of(rows: &[Said]) -> String {
+pub fn table_of(rows: &[DataFinding]) -> String {
     let mut text =
         "## What the published data says of itself\n\nComputed by `grainbench reference import dosta-2024 DIR` from \
                     the tables in DIR. Where these are copies: to be confirmed against the source.\n\n\
                     | table | of | quantity | found | expected |\n|---|---|---|---|---|\n"
             .to_owned();
-    for Said { table, about, quantity, found, expected } in rows {
+    for DataFinding { table, about, quantity, found, expected } in rows {
         text += &format!("| {table} | {about} | {quantity} | {found} | {expected} |\n");
     }
     text
@@ -88,10 +88,10 @@ pub fn table_of(rows: &[Said]) -> String {
 
 /// Returns the observations in time series of the ball.
 #[must_use]
-pub fn of_impact(impact: &Impact) -> Vec<Said> {
+pub fn of_impact(impact: &Impact) -> Vec<DataFinding> {
     let mut all = Vec::new();
     if impact.repeated > 0 {
-        all.push(Said::new("clock", "rows with the time of the row before", impact.repeated.to_string(), "0"));
+        all.push(DataFinding::new("clock", "rows with the time of the row before", impact.repeated.to_string(), "0"));
     }
     for course in &impact.courses {
         all.extend(released(impact, course));
@@ -113,16 +113,17 @@ fn name(course: &Course) -> String {
 /// when the bed hardly decelerates the ball.
 ///
 /// The first sample is not used, because a clock error in this sample alone is not a different release.
-fn released(impact: &Impact, course: &Course) -> Option<Said> {
+fn released(impact: &Impact, course: &Course) -> Option<DataFinding> {
     const FLIGHT: [f64; 2] = [0.001, 0.002];
     let speed = impact.velocity(course, FLIGHT)? + GRAVITY * 0.5 * (FLIGHT[0] + FLIGHT[1]);
-    let finding =
-        || Said::new(name(course), "velocity at the start", format!("{speed:.2} m/s"), format!("{RELEASED} m/s"));
+    let finding = || {
+        DataFinding::new(name(course), "velocity at the start", format!("{speed:.2} m/s"), format!("{RELEASED} m/s"))
+    };
     ((speed - RELEASED).abs() > OTHER_RELEASE).then(finding)
 }
 
 /// Returns the clock errors. They follow from the height in the first sample, and are compared with the next sample.
-fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<DataFinding> {
     let relative_height = |code: &str, time: f64| -> Option<f64> {
         let heights: Option<Vec<f64>> =
             flown.iter().filter(|course| course.code == code).map(|course| impact.held_up(course, time)).collect();
@@ -134,7 +135,7 @@ fn clocks(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
         let (Some(ahead), Some(later)) = (relative_height(code, first), relative_height(code, later)) else { continue };
         if ahead.abs() > 1e-5 || later.abs() > 1e-5 {
             let found = format!("{ahead:.2e} s, and {later:.1e} s at the next");
-            all.push(Said::new(code, "clock ahead at its first sample", found, "0 s"));
+            all.push(DataFinding::new(code, "clock ahead at its first sample", found, "0 s"));
         }
     }
     all
@@ -162,7 +163,7 @@ fn prints<'a>(impact: &Impact, flown: &[&'a Course]) -> Vec<(&'a str, Vec<(usize
 
 /// Returns the beds that have different numbers in different codes. The initial height above free flight is a
 /// fingerprint of a bed, because all codes agree on it.
-fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<DataFinding> {
     let prints = prints(impact, flown);
     // Median over the codes for each number.
     let usual = |bed: usize| {
@@ -202,13 +203,13 @@ fn numbers(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
             others.concat()
         );
         let quantity = "how far its beds hold the ball up at 22 ms, beside beds of the same number";
-        all.push(Said::new(*code, quantity, found, format!("within {:.0} µm", SAME_BED * 1e6)));
+        all.push(DataFinding::new(*code, quantity, found, format!("within {:.0} µm", SAME_BED * 1e6)));
     }
     all
 }
 
 /// Returns beds and codes that are outliers at 30 ms.
-fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
+fn outside(impact: &Impact, flown: &[&Course]) -> Vec<DataFinding> {
     let depth = |course: &Course| impact.height(course, DEEP).map(|height| height * 1e3);
     let depths_of_code = |code: &str, but: Option<usize>| -> Vec<f64> {
         let courses = flown.iter().filter(|course| course.code == code && Some(course.bed) != but);
@@ -230,7 +231,7 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
                 off.abs() / deviation(&rest)
             );
             let expected = format!("within {:.0} deviations", 2.0 * STANDS_OUT);
-            all.push(Said::new(name(course), "height at 30 ms", found, expected));
+            all.push(DataFinding::new(name(course), "height at 30 ms", found, expected));
             left_out.push((course.code.clone(), course.bed));
         }
     }
@@ -253,7 +254,7 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
                 off.abs() / deviation(&rest),
                 if off < 0.0 { "below" } else { "above" }
             );
-            all.push(Said::new(
+            all.push(DataFinding::new(
                 *code,
                 "height at 30 ms, mean of its beds",
                 found,
@@ -266,7 +267,7 @@ fn outside(impact: &Impact, flown: &[&Course]) -> Vec<Said> {
 
 /// Returns the frames of a drum that were counted twice.
 #[must_use]
-pub fn of_drum(drum: &Drum) -> Vec<Said> {
+pub fn of_drum(drum: &Drum) -> Vec<DataFinding> {
     let total = |row: usize| drum.zones.iter().map(|zone| zone[row]).sum::<f64>();
     let even = |row: usize| drum.zones.iter().all(|zone| zone[row] % 2.0 == 0.0);
     let twice = |row: &usize| even(*row) && total(*row) > 1.6 * total(row - 1);
@@ -274,7 +275,7 @@ pub fn of_drum(drum: &Drum) -> Vec<Said> {
     let finding = |row: usize| {
         let times = total(row) / total(row - 1);
         let found = format!("{times:.2} times those of a sample before, and all four numbers even: counted twice");
-        Said::new(format!("t = {} s", drum.times[row]), "grains in both zones", found, "about as many")
+        DataFinding::new(format!("t = {} s", drum.times[row]), "grains in both zones", found, "about as many")
     };
     rows.map(finding).collect()
 }
@@ -285,13 +286,17 @@ const SAME_DRUM: f64 = 0.1;
 
 /// Returns the differences of M1 in zone 2 between a run of the drum and another one.
 #[must_use]
-pub fn of_drums(drum: &Drum, (name, other): (&str, &Drum)) -> Vec<Said> {
+pub fn of_drums(drum: &Drum, (name, other): (&str, &Drum)) -> Vec<DataFinding> {
     let at = |time: f64| {
         let (fraction, against) = (drum.in_zone_2(time)?, other.in_zone_2(time)?);
         let off = fraction / against - 1.0;
         let found = format!("{fraction}, {:+.1} % of {name}'s {against}", 100.0 * off);
-        let finding =
-            Said::new(format!("t = {time} s"), "M1 in zone 2", found, format!("within {:.0} %", 100.0 * SAME_DRUM));
+        let finding = DataFinding::new(
+            format!("t = {time} s"),
+            "M1 in zone 2",
+            found,
+            format!("within {:.0} %", 100.0 * SAME_DRUM),
+        );
         (off.abs() > SAME_DRUM).then_some(finding)
     };
     [0.5, 1.0, 2.0].into_iter().filter_map(at).collect()

@@ -36,7 +36,7 @@ pub enum Kind {
 
 /// Table of the published data on the user's machine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Published {
+pub struct PublishedTable {
     /// Name of the file without its extension.
     pub name: String,
     /// Content of the table.
@@ -51,7 +51,7 @@ const ZONES: [&str; 4] = ["z1_m1", "z1_m2", "z2_m1", "z2_m2"];
 ///
 /// # Errors
 /// If the file cannot be read or does not match its columns.
-pub fn read(path: &Path) -> Result<Option<Published>, ReadError> {
+pub fn read(path: &Path) -> Result<Option<PublishedTable>, ReadError> {
     let file = path.to_string_lossy();
     let table = read_table(path)?;
     let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
@@ -66,7 +66,7 @@ pub fn read(path: &Path) -> Result<Option<Published>, ReadError> {
         _ => return Ok(None),
     };
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Some(Published { name, kind }))
+    Ok(Some(PublishedTable { name, kind }))
 }
 
 /// Names the column of a single run after its file.

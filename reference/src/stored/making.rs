@@ -14,7 +14,7 @@ use super::drift::drift;
 use super::scene_hash::scene_hash;
 use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
 use crate::deck::{Program, Stepping, write_deck};
-use crate::live::Live;
+use crate::live::LiveProgram;
 
 /// Maximum number of stored samples of a run, in addition to the last one.
 const MOST_SAMPLES: usize = 100;
@@ -23,7 +23,7 @@ const LARGE: usize = 1 << 14;
 
 /// Files of a stored run, by name and content.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Made {
+pub struct StoredRunFiles {
     /// Name and content of each file. `provenance.toml` is the last one.
     pub files: Vec<(String, Vec<u8>)>,
 }
@@ -42,8 +42,8 @@ pub fn make(
     date: &str,
     scene: &Scene,
     resolution: &Resolution,
-) -> Result<Made, RunError> {
-    let live = Live::find(program);
+) -> Result<StoredRunFiles, RunError> {
+    let live = LiveProgram::find(program);
     let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
     let stepping = Stepping::new(scene, resolution).map_err(fail)?;
     let run = live.run(scene, resolution, &mut ())?;
@@ -83,7 +83,7 @@ pub fn make(
     };
     let text = toml::to_string(&provenance).map_err(|error| fail(error.to_string()))?;
     files.push((PROVENANCE.to_owned(), text.into_bytes()));
-    Ok(Made { files })
+    Ok(StoredRunFiles { files })
 }
 
 /// Returns about a hundred samples of a run as CSV with full precision.

@@ -23,7 +23,7 @@ use crate::read::table::{Table, read_table};
 pub use drift::{Drift, drift};
 pub use error::StoredError;
 pub use file_hash::hash_file;
-pub use making::{Made, compressed, make};
+pub use making::{StoredRunFiles, compressed, make};
 pub use provenance::Provenance;
 pub use scene_hash::{is_scene_of, scene_hash, scene_hash_by_bits};
 

@@ -85,7 +85,7 @@ fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn
 /// time of the text.
 ///
 /// Every variant and every negative control that begins with the same list needs its text.
-struct Known(Mutex<Vec<(blake3::Hash, Lines)>>);
+struct ListCache(Mutex<Vec<(blake3::Hash, Lines)>>);
 
 /// Text of a list. The first thread that needs it writes it, and other threads wait for this list only.
 type Lines = Arc<OnceLock<Arc<str>>>;
@@ -95,10 +95,10 @@ const LARGE: usize = 1000;
 /// Maximum number of cached lists.
 const FEW: usize = 6;
 
-static GRAINS: Known = Known::new();
-static SPRINGS: Known = Known::new();
+static GRAINS: ListCache = ListCache::new();
+static SPRINGS: ListCache = ListCache::new();
 
-impl Known {
+impl ListCache {
     const fn new() -> Self {
         Self(Mutex::new(Vec::new()))
     }

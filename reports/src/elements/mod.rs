@@ -5,7 +5,7 @@ mod sheet;
 mod summary;
 mod tables;
 
-pub use summary::{Over, Summary};
+pub use summary::{ElementMean, Summary};
 
 use crate::number;
 use crate::pictures::write_page;

@@ -1,6 +1,6 @@
 //! Tables built row by row, written as comma-separated values or as Parquet. A table is never in memory as a whole.
 
-use crate::parts::{Grouped, Values};
+use crate::parts::{GroupedTable, Values};
 use std::io::{self, Write};
 
 /// Content of a table cell.
@@ -42,7 +42,7 @@ impl Sheet<'_> {
     pub(super) fn parquet(mut self, out: impl Write + Send) -> io::Result<()> {
         let mut group: Vec<Vec<Cell>> = self.rows.by_ref().take(GROUP).collect();
         let mut columns = self.columns(&group);
-        let mut file = Grouped::new(self.name, &columns, out)?;
+        let mut file = GroupedTable::new(self.name, &columns, out)?;
         while !group.is_empty() {
             file.add(&columns)?;
             group = self.rows.by_ref().take(GROUP).collect();

@@ -42,12 +42,12 @@ pub struct Summary {
     /// Confidence level of the intervals.
     pub confidence: f64,
     /// Means over all elements that are not left out.
-    pub means: Vec<Over>,
+    pub means: Vec<ElementMean>,
 }
 
 /// Mean of a quantity over elements.
 #[derive(Clone, Debug, Serialize)]
-pub struct Over {
+pub struct ElementMean {
     /// Column name of the quantity.
     pub quantity: &'static str,
     /// Quantity in words.
@@ -67,7 +67,7 @@ impl Summary {
     pub fn new(course: &Course, source: String, blocks: usize) -> Self {
         let over = |column: &Column| {
             let (mean, elements) = course.mean_over(column, blocks)?;
-            Some(Over { quantity: column.name, words: column.words, unit: column.unit, mean, elements })
+            Some(ElementMean { quantity: column.name, words: column.words, unit: column.unit, mean, elements })
         };
         let masked = || course.frames.iter().flat_map(|frame| &frame.masked);
         let time = |at: Option<&grainbench_fields::course::Frame>| at.map_or(f64::NAN, |frame| frame.time);

@@ -65,7 +65,7 @@ pub const BROKEN_FILE: &str = "broken.json";
 
 /// Error and final state of a crashed run.
 #[derive(Debug, Serialize)]
-struct Broken<'b> {
+struct CrashState<'b> {
     /// Error message of the solver.
     error: &'b str,
     /// Step number of the last snapshot, which holds the state at the crash.
@@ -89,7 +89,7 @@ pub fn write_remains(
     snapshots.settle()?;
     let at = |source| WriteError::new(out.target().join(BROKEN_FILE), source);
     let (step, time) = snapshots.end().map_or((0, 0.0), |end| (end.step, end.time));
-    let text = serde_json::to_string_pretty(&Broken { error, step, time }).map_err(|error| at(error.into()))?;
+    let text = serde_json::to_string_pretty(&CrashState { error, step, time }).map_err(|error| at(error.into()))?;
     out.write(BROKEN_FILE, text + "\n")?;
     write_series(series, formats, out)?;
     write_snapshots(snapshots, formats, out)

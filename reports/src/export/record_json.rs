@@ -24,22 +24,22 @@ pub const RECORD_FILE: &str = "record.json";
 /// When `out` cannot be written, or a snapshot cannot be read back.
 pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) -> io::Result<()> {
     let Record { provenance, series, cost, .. } = record;
-    serde_json::to_writer(&mut out, &Streamed { provenance, series, snapshots: Stored(snapshots), cost })?;
+    serde_json::to_writer(&mut out, &StreamedRecord { provenance, series, snapshots: StoredRecord(snapshots), cost })?;
     out.write_all(b"\n")
 }
 
 /// A record in the format of [`Record`], with snapshots that are not in memory.
 #[derive(Serialize)]
-struct Streamed<'r> {
+struct StreamedRecord<'r> {
     provenance: &'r Provenance,
     series: &'r Series,
-    snapshots: Stored<'r>,
+    snapshots: StoredRecord<'r>,
     cost: &'r Cost,
 }
 
-struct Stored<'r>(&'r SnapshotStore);
+struct StoredRecord<'r>(&'r SnapshotStore);
 
-impl Serialize for Stored<'_> {
+impl Serialize for StoredRecord<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut all = serializer.serialize_seq(None)?;
         if self.0.rows() <= READABLE {

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::cards;
 use crate::headline::used_tolerance;
-use crate::judged::{Judged, Row};
+use crate::judged::{ExternalResults, Row};
 use crate::number;
 use crate::report::{Report, Section};
 
@@ -146,7 +146,7 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
     }
 }
 
-fn theirs(results: &Judged, case: &str) -> Markup {
+fn theirs(results: &ExternalResults, case: &str) -> Markup {
     let rows: Vec<&Row> = results.rows.iter().filter(|row| row.case == case).collect();
     let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
     let used = results.count(Some(case)).worst;

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::scrolling;
 use crate::headline;
-use crate::judged::{self, Count, Judged, Row};
+use crate::judged::{self, Count, ExternalResults, Row};
 use crate::number;
 use crate::report::Report;
 
@@ -32,7 +32,7 @@ pub(crate) fn render(report: &Report) -> Markup {
     }
 }
 
-fn programs(judged: &[Judged]) -> Markup {
+fn programs(judged: &[ExternalResults]) -> Markup {
     html! {
         table.cases {
             thead {

@@ -11,7 +11,7 @@ use crate::plot::graph::{self, Form};
 use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
 use crate::report::Report;
-use crate::study::effects::{Entry, Worth, change, median};
+use crate::study::effects::{EffectResult, Entry, change, median};
 use crate::study::stability::{Hardness, distinct, sign};
 use crate::study::{cost, effects, stability};
 
@@ -208,7 +208,7 @@ fn changes(effects: &Effects) -> Markup {
     let scale = Scale::fit(CHANGES.into_iter(), true, 0.03, 7);
     let across = |value: f64| FRAME[0] + (FRAME[1] - FRAME[0]) * scale.position(value);
     let bottom = 34.0 + ROW * names.len() as f64;
-    let marks = |entries: &[&Entry], worth: Worth, y: f64| -> String {
+    let marks = |entries: &[&Entry], worth: EffectResult, y: f64| -> String {
         let places = entries.iter().filter(|entry| entry.worth == worth).filter_map(|entry| change(median(entry)?));
         places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
     };
@@ -236,8 +236,8 @@ fn changes(effects: &Effects) -> Markup {
                     @let (y, entries) = (34.0 + ROW * at as f64, entries_of(name));
                     text x="0" y=(y + 9.0) { (name) }
                     text x="0" y=(y + 24.0) font-size="12" fill="#666" { "needed in " (needed(&entries).0) " of " (needed(&entries).1) }
-                    path d=(marks(&entries, Worth::Needed, y)) stroke="#222" stroke-width="2" stroke-opacity=".55" {}
-                    path d=(marks(&entries, Worth::NotWorthSimulating, y + 8.0)) stroke="#d55e00" stroke-width="2" {}
+                    path d=(marks(&entries, EffectResult::Needed, y)) stroke="#222" stroke-width="2" stroke-opacity=".55" {}
+                    path d=(marks(&entries, EffectResult::NotWorthSimulating, y + 8.0)) stroke="#d55e00" stroke-width="2" {}
                     text x="480" y=(y + 13.0) text-anchor="end" { (expense(&entries)) }
                 }
                 text x=(0.5 * (FRAME[0] + FRAME[1])) y=(bottom + 43.0) text-anchor="middle" font-size="15" { "|change| / scale of the answer" }
@@ -257,8 +257,8 @@ fn changes(effects: &Effects) -> Markup {
 
 /// Returns the number of scenes in which an effect is needed, and of those whose claims can be judged without it.
 fn needed(entries: &[&Entry]) -> (usize, usize) {
-    let count = |worth: Worth| entries.iter().filter(|entry| entry.worth == worth).count();
-    (count(Worth::Needed), count(Worth::Needed) + count(Worth::NotWorthSimulating))
+    let count = |worth: EffectResult| entries.iter().filter(|entry| entry.worth == worth).count();
+    (count(EffectResult::Needed), count(EffectResult::Needed) + count(EffectResult::NotWorthSimulating))
 }
 
 /// Returns the median cost of an effect.

@@ -74,12 +74,12 @@ pub(crate) enum Values {
 
 /// Columns filled row by row.
 #[derive(Debug, Default)]
-pub(super) struct Gathered {
+pub(super) struct ColumnBuffer {
     pub(super) columns: Vec<(&'static str, Values)>,
     at: usize,
 }
 
-impl Gathered {
+impl ColumnBuffer {
     /// Returns the columns of these rows. Without rows, the columns are empty.
     pub(super) fn from_rows<R: Row>(rows: &mut [R]) -> Self {
         let mut gathered = Self::default();
@@ -109,7 +109,7 @@ impl Gathered {
     }
 }
 
-impl Columns for Gathered {
+impl Columns for ColumnBuffer {
     fn whole(&mut self, name: &'static str, value: &mut i64) {
         if let Values::Whole(values) = self.column(name, Values::Whole(Vec::new())) {
             values.push(*value);
@@ -142,13 +142,13 @@ impl Columns for Gathered {
 }
 
 /// Writes columns to rows. If a value is missing, the row keeps its own.
-pub(super) struct Scattered<'v> {
+pub(super) struct RowWriter<'v> {
     columns: &'v [Values],
     row: usize,
     at: usize,
 }
 
-impl<'v> Scattered<'v> {
+impl<'v> RowWriter<'v> {
     /// Returns `count` rows with the values of these columns.
     pub(super) fn rows<R: Row>(columns: &'v [Values], count: usize) -> Vec<R> {
         let row = |row: usize| {
@@ -165,7 +165,7 @@ impl<'v> Scattered<'v> {
     }
 }
 
-impl Columns for Scattered<'_> {
+impl Columns for RowWriter<'_> {
     fn whole(&mut self, _name: &'static str, value: &mut i64) {
         if let Some(Values::Whole(values)) = self.next() {
             *value = values.get(self.row).copied().unwrap_or(*value);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
 use super::columns::Row;
-use super::rows::{Frame, Stepped};
+use super::rows::{Frame, SnapshotRow};
 use super::table::{TableReader, TableWriter, file_name};
 use crate::scratch::temporary_in;
 
@@ -65,16 +65,16 @@ pub(super) fn files(folder: &Path) -> Vec<(String, PathBuf)> {
 }
 
 /// A table whose file is created with its first row.
-struct Lazy<R> {
-    writer: Option<TableWriter<Stepped<R>>>,
+struct LazyTable<R> {
+    writer: Option<TableWriter<SnapshotRow<R>>>,
 }
 
-impl<R: Row> Lazy<R> {
+impl<R: Row> LazyTable<R> {
     fn add(
         &mut self,
         directory: &Path,
         without: &[&'static str],
-        rows: impl Iterator<Item = Stepped<R>>,
+        rows: impl Iterator<Item = SnapshotRow<R>>,
     ) -> io::Result<()> {
         let mut rows = rows.peekable();
         if rows.peek().is_none() {
@@ -99,12 +99,12 @@ impl<R: Row> Lazy<R> {
 /// A part that is being written, in a hidden folder.
 pub(super) struct OpenPart {
     directory: TempDir,
-    frames: Lazy<Frame>,
-    grains: Lazy<GrainState>,
-    contacts: Lazy<ContactState>,
-    walls: Lazy<WallState>,
-    bodies: Lazy<BodyState>,
-    points: Lazy<PointState>,
+    frames: LazyTable<Frame>,
+    grains: LazyTable<GrainState>,
+    contacts: LazyTable<ContactState>,
+    walls: LazyTable<WallState>,
+    bodies: LazyTable<BodyState>,
+    points: LazyTable<PointState>,
     rows: u64,
     /// Columns of grains that are not written.
     without: Vec<&'static str>,
@@ -117,12 +117,12 @@ impl OpenPart {
         fs::create_dir(directory.path().join("part"))?;
         Ok(Self {
             directory,
-            frames: Lazy { writer: None },
-            grains: Lazy { writer: None },
-            contacts: Lazy { writer: None },
-            walls: Lazy { writer: None },
-            bodies: Lazy { writer: None },
-            points: Lazy { writer: None },
+            frames: LazyTable { writer: None },
+            grains: LazyTable { writer: None },
+            contacts: LazyTable { writer: None },
+            walls: LazyTable { writer: None },
+            bodies: LazyTable { writer: None },
+            points: LazyTable { writer: None },
             rows: 0,
             without: without.to_vec(),
         })
@@ -134,10 +134,10 @@ impl OpenPart {
             first: u64,
             snapshots: &'s [Snapshot],
             rows_of: impl Fn(&'s Snapshot) -> I + 's,
-        ) -> impl Iterator<Item = Stepped<R>> + 's {
+        ) -> impl Iterator<Item = SnapshotRow<R>> + 's {
             (first..).zip(snapshots).flat_map(move |(number, snapshot)| {
                 let (step, time) = (snapshot.step, snapshot.time);
-                rows_of(snapshot).map(move |row| Stepped { snapshot: number, step, time, row })
+                rows_of(snapshot).map(move |row| SnapshotRow { snapshot: number, step, time, row })
             })
         }
         let directory = self.directory.path().join("part");
@@ -192,12 +192,12 @@ pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
 
 /// Reads a closed part, one snapshot after another.
 pub(super) struct PartReader {
-    frames: TableReader<Stepped<Frame>>,
-    grains: TableReader<Stepped<GrainState>>,
-    contacts: TableReader<Stepped<ContactState>>,
-    walls: TableReader<Stepped<WallState>>,
-    bodies: TableReader<Stepped<BodyState>>,
-    points: TableReader<Stepped<PointState>>,
+    frames: TableReader<SnapshotRow<Frame>>,
+    grains: TableReader<SnapshotRow<GrainState>>,
+    contacts: TableReader<SnapshotRow<ContactState>>,
+    walls: TableReader<SnapshotRow<WallState>>,
+    bodies: TableReader<SnapshotRow<BodyState>>,
+    points: TableReader<SnapshotRow<PointState>>,
 }
 
 impl PartReader {
@@ -214,14 +214,15 @@ impl PartReader {
 
     /// Returns the next snapshot; none after the last.
     pub(super) fn next(&mut self) -> io::Result<Option<Snapshot>> {
-        fn all<R: Row>(table: &mut TableReader<Stepped<R>>, number: u64) -> io::Result<Vec<R>> {
+        fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
             let mut rows = Vec::new();
             while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {
                 rows.push(stepped.row);
             }
             Ok(rows)
         }
-        let Some(Stepped { snapshot: number, step, time, row: Frame(frame) }) = self.frames.next_if(|_| true)? else {
+        let Some(SnapshotRow { snapshot: number, step, time, row: Frame(frame) }) = self.frames.next_if(|_| true)?
+        else {
             return Ok(None);
         };
         let contacts = all(&mut self.contacts, number)?;

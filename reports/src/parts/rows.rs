@@ -246,7 +246,7 @@ impl Row for PointState {
 
 /// A row with the number, the step and the time of its snapshot. Two snapshots can have the same step: the last good
 /// state and the state at a crash.
-pub(super) struct Stepped<R> {
+pub(super) struct SnapshotRow<R> {
     /// Index of the snapshot in the run, from 0.
     pub(super) snapshot: u64,
     pub(super) step: u64,
@@ -254,7 +254,7 @@ pub(super) struct Stepped<R> {
     pub(super) row: R,
 }
 
-impl<R: Row> Row for Stepped<R> {
+impl<R: Row> Row for SnapshotRow<R> {
     const TABLE: &'static str = R::TABLE;
 
     fn blank() -> Self {

@@ -84,7 +84,7 @@ pub struct SnapshotStore {
 
 /// Snapshot data of a checkpoint: the snapshots in memory, and the list of closed parts.
 #[derive(Serialize, Deserialize)]
-struct Kept<'s> {
+struct CheckpointSnapshots<'s> {
     waiting: Cow<'s, [Snapshot]>,
     closed: Cow<'s, [Seal]>,
     snapshots: u64,
@@ -143,7 +143,8 @@ impl SnapshotStore {
     /// When a part is missing or changed, when it cannot be copied, or when the checkpoint has no snapshots but they
     /// are needed.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
-        let kept: Kept<'_> = postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
+        let kept: CheckpointSnapshots<'_> =
+            postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
         if kept.left_out && !self.in_short {
             return Err(StoreError::LeftOut);
         }
@@ -240,7 +241,7 @@ impl SnapshotStore {
         self.settle()?;
         let (waiting, closed, end) = (Cow::from(&self.waiting), Cow::from(&self.closed), Cow::Borrowed(&self.end));
         let &mut Self { snapshots, rows, left_out, .. } = self;
-        let kept = Kept { waiting, closed, snapshots, end, rows, left_out };
+        let kept = CheckpointSnapshots { waiting, closed, snapshots, end, rows, left_out };
         postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 

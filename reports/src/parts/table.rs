@@ -16,7 +16,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
-use super::columns::{Gathered, Row, Scattered, Values};
+use super::columns::{ColumnBuffer, Row, RowWriter, Values};
 
 /// Number of rows converted to columns together. These rows are in memory twice while they are written.
 const GROUP: usize = 1 << 13;
@@ -29,7 +29,7 @@ const COUNTED: &str = "id";
 
 /// A table that is being written.
 pub(super) struct TableWriter<R> {
-    file: SerializedFileWriter<Hashed>,
+    file: SerializedFileWriter<HashedFile>,
     /// Columns that are left out.
     without: Vec<&'static str>,
     row: PhantomData<R>,
@@ -38,7 +38,7 @@ pub(super) struct TableWriter<R> {
 impl<R: Row> TableWriter<R> {
     /// Creates a file without the columns in `without`.
     pub(super) fn new(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
-        let file = Hashed { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
+        let file = HashedFile { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
         let mut properties =
             WriterProperties::builder().set_compression(Compression::SNAPPY).set_dictionary_enabled(false);
         for name in REPEATED {
@@ -46,7 +46,7 @@ impl<R: Row> TableWriter<R> {
         }
         // Bytes of the same significance are stored together. Leading bytes are similar, and bytes of digits that were
         // rounded away are zero.
-        let mut columns = Gathered::from_rows::<R>(&mut []).columns;
+        let mut columns = ColumnBuffer::from_rows::<R>(&mut []).columns;
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
             let encoding = match values {
@@ -68,7 +68,7 @@ impl<R: Row> TableWriter<R> {
             if group.is_empty() {
                 return Ok(());
             }
-            let gathered = Gathered::from_rows(&mut group);
+            let gathered = ColumnBuffer::from_rows(&mut group);
             drop(group);
             let mut writer = self.file.next_row_group().map_err(io_error)?;
             for (_, values) in gathered.columns.iter().filter(|(name, _)| !self.without.contains(name)) {
@@ -127,7 +127,7 @@ impl<R: Row> TableReader<R> {
         let group = file.get_row_group(self.group).map_err(io_error)?;
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
-        let shapes = Gathered::from_rows::<R>(&mut []).columns;
+        let shapes = ColumnBuffer::from_rows::<R>(&mut []).columns;
         let names = group.metadata().schema_descr();
         let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
             let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {
@@ -148,7 +148,7 @@ impl<R: Row> TableReader<R> {
             })
         };
         let columns = shapes.iter().map(column).collect::<Result<Vec<Values>, _>>().map_err(io_error)?;
-        Ok(Scattered::rows(&columns, count))
+        Ok(RowWriter::rows(&columns, count))
     }
 }
 
@@ -167,11 +167,11 @@ pub(super) fn file_name(table: &str) -> String {
 }
 
 /// A table in a file, written in groups of rows.
-pub(crate) struct Grouped<W: Write + Send> {
+pub(crate) struct GroupedTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
 }
 
-impl<W: Write + Send> Grouped<W> {
+impl<W: Write + Send> GroupedTable<W> {
     /// Creates a table with the columns of `like`.
     pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
@@ -194,7 +194,7 @@ impl<W: Write + Send> Grouped<W> {
 
 /// Writes a whole table to a file: named columns of equal length.
 pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
-    let mut grouped = Grouped::new(table, columns, file)?;
+    let mut grouped = GroupedTable::new(table, columns, file)?;
     grouped.add(columns)?;
     grouped.close()
 }
@@ -276,12 +276,12 @@ fn io_error(error: ParquetError) -> io::Error {
 }
 
 /// A file with the hash of the bytes written to it.
-struct Hashed {
+struct HashedFile {
     file: File,
     hash: blake3::Hasher,
 }
 
-impl Write for Hashed {
+impl Write for HashedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.hash.update(&bytes[..written]);

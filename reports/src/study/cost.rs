@@ -1,7 +1,7 @@
 //! Cost of accuracy: Pareto fronts, cheapest settings, and measured against expected values.
 
 use super::Study;
-use super::point::{Counts, Diagram, Point, Standing};
+use super::point::{Counts, Diagram, Point, PointStatus};
 use crate::number;
 use crate::plot::palette::SOLVERS;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
@@ -121,7 +121,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
             curves.push(Curve::new("", Stroke::Beside, others));
         }
         let failed: Vec<_> = of_line(diagram, line)
-            .filter(|point| point.standing == Standing::Failed)
+            .filter(|point| point.standing == PointStatus::Failed)
             .filter_map(|point| point.wall_seconds.map(|wall| (wall, top)))
             .collect();
         if !failed.is_empty() {
@@ -142,7 +142,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
     if !stairs.is_empty() {
         curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
     }
-    let failures = diagram.points.iter().any(|point| point.standing == Standing::Failed);
+    let failures = diagram.points.iter().any(|point| point.standing == PointStatus::Failed);
     let crosses =
         if failures { " Crosses at the top are runs that failed, at the time they took until then." } else { "" };
     Figure::graph(
@@ -158,12 +158,12 @@ pub fn figure(diagram: &Diagram) -> Figure {
     )
 }
 
-const fn word(standing: Standing) -> &'static str {
+const fn word(standing: PointStatus) -> &'static str {
     match standing {
-        Standing::Measured => "measured",
-        Standing::Failed => "failed",
-        Standing::Unsupported => "cannot",
-        Standing::NotAvailable => "not installed",
+        PointStatus::Measured => "measured",
+        PointStatus::Failed => "failed",
+        PointStatus::Unsupported => "cannot",
+        PointStatus::NotAvailable => "not installed",
     }
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Result for an effect in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Worth {
+pub enum EffectResult {
     /// The effect is on, and without it a claim fails.
     Needed,
     /// The effect is on, and without it no claimed quantity changes by more than its tolerance.
@@ -22,7 +22,7 @@ pub enum Worth {
     NotInert,
 }
 
-impl Worth {
+impl EffectResult {
     /// Returns the name used in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
@@ -67,7 +67,7 @@ pub struct Entry {
     /// Key of the scene file that switches it on.
     pub key: String,
     /// Result.
-    pub worth: Worth,
+    pub worth: EffectResult,
     /// Changes of all claimed quantities without the effect.
     pub shifts: Vec<Shift>,
     /// Number of particle-steps and contact evaluations with the effect, divided by the number without it.
@@ -81,7 +81,7 @@ pub struct Entry {
 
 /// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Markup {
-    let count = |worth: Worth| study.ledger.iter().filter(|entry| entry.worth == worth).count();
+    let count = |worth: EffectResult| study.ledger.iter().filter(|entry| entry.worth == worth).count();
     html! {
         header id="summary" {
             p.kicker { "grainbench" }
@@ -94,8 +94,9 @@ pub(crate) fn render(study: &Study) -> Markup {
                  must change no bit."
             }
             p {
-                (count(Worth::Needed)) " needed, " (count(Worth::NotWorthSimulating)) " not worth simulating where they are on, "
-                (count(Worth::Inert)) " inert, " (count(Worth::NotInert)) " not inert."
+                (count(EffectResult::Needed)) " needed, "
+                (count(EffectResult::NotWorthSimulating)) " not worth simulating where they are on, "
+                (count(EffectResult::Inert)) " inert, " (count(EffectResult::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }
             (heat(&study.ledger))
@@ -105,11 +106,11 @@ pub(crate) fn render(study: &Study) -> Markup {
     }
 }
 
-const fn class(worth: Worth) -> &'static str {
+const fn class(worth: EffectResult) -> &'static str {
     match worth {
-        Worth::Needed | Worth::Inert => "pass",
-        Worth::NotWorthSimulating | Worth::Untold => "amber",
-        Worth::NotInert => "fail",
+        EffectResult::Needed | EffectResult::Inert => "pass",
+        EffectResult::NotWorthSimulating | EffectResult::Untold => "amber",
+        EffectResult::NotInert => "fail",
     }
 }
 
@@ -178,14 +179,14 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
 
 fn warmth(entry: &Entry) -> Markup {
     if !entry.on {
-        return html! { @if entry.worth == Worth::NotInert { b.f0 { "≠" } } @else { "=" } };
+        return html! { @if entry.worth == EffectResult::NotInert { b.f0 { "≠" } } @else { "=" } };
     }
     let change = median(entry).and_then(change);
     let class = match (entry.worth, change) {
-        (Worth::NotWorthSimulating, _) => "c0",
-        (Worth::Needed, Some(change)) if change <= 0.01 => "k0",
-        (Worth::Needed, Some(change)) if change <= 0.5 => "k1",
-        (Worth::Needed, _) => "k2",
+        (EffectResult::NotWorthSimulating, _) => "c0",
+        (EffectResult::Needed, Some(change)) if change <= 0.01 => "k0",
+        (EffectResult::Needed, Some(change)) if change <= 0.5 => "k1",
+        (EffectResult::Needed, _) => "k2",
         _ => "cannot",
     };
     html! {

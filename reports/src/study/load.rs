@@ -19,14 +19,14 @@ pub struct Load {
     /// Resolution.
     pub resolution: String,
     /// Timings.
-    pub laps: Vec<Lap>,
+    pub laps: Vec<TimingDifference>,
     /// Reason why the solver was not measured.
     pub absent: Option<String>,
 }
 
 /// Timing from the difference of a long and a short run, in processor time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Lap {
+pub struct TimingDifference {
     /// Everything except steps: reading, set-up, initial neighbour search, relaxation and output (s).
     pub start_up: f64,
     /// One step (s).
@@ -36,7 +36,7 @@ pub struct Lap {
 }
 
 /// Returns the median over the timings.
-fn middle(load: &Load, value: fn(&Lap) -> f64) -> f64 {
+fn middle(load: &Load, value: fn(&TimingDifference) -> f64) -> f64 {
     median(&load.laps.iter().map(value).collect::<Vec<_>>())
 }
 
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_grain_costs_a_step_over_the_grains_and_who_is_absent_says_why() {
-        let lap = Lap { start_up: 2e-3, step: 4e-6, second: 0.5 };
+        let lap = TimingDifference { start_up: 2e-3, step: 4e-6, second: 0.5 };
         let load = |solver: &str, laps, absent| Load {
             grains: 100,
             solver: solver.to_owned(),

@@ -12,7 +12,7 @@ mod store;
 use self::effects::Entry;
 use self::load::Load;
 use self::point::{Change, Diagram};
-use self::stability::{Hard, Limit};
+use self::stability::{HardCaseResult, Limit};
 use self::step::Model;
 use crate::report::Provenance;
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ pub struct Study {
     pub limits: Vec<Limit>,
     /// Hard cases.
     #[serde(default)]
-    pub hard: Vec<Hard>,
+    pub hard: Vec<HardCaseResult>,
     /// Entries of the study of effects.
     #[serde(default)]
     pub ledger: Vec<Entry>,

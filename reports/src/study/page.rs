@@ -1,6 +1,6 @@
 //! Page of a study.
 
-use super::point::{Diagram, Point, Standing};
+use super::point::{Diagram, Point, PointStatus};
 use super::{Study, cost, effects, load, stability, step};
 use crate::measured::Costs;
 use crate::number;
@@ -166,8 +166,8 @@ fn not_reached(diagram: &Diagram, line: &str) -> String {
     let best = cost::of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
     match (best, cost::of_line(diagram, line).next().map(|point| point.standing)) {
         (Some(best), _) => format!("at best {}", number::fraction(best)),
-        (None, Some(Standing::Failed)) => "fails".to_owned(),
-        (None, Some(Standing::NotAvailable)) => "not installed".to_owned(),
+        (None, Some(PointStatus::Failed)) => "fails".to_owned(),
+        (None, Some(PointStatus::NotAvailable)) => "not installed".to_owned(),
         (None, Some(_)) => "cannot express it".to_owned(),
         (None, None) => "—".to_owned(),
     }
@@ -196,7 +196,7 @@ fn reasons(diagram: &Diagram) -> Markup {
     let mut reasons: Vec<(&str, &str)> = diagram
         .points
         .iter()
-        .filter(|point| point.standing != Standing::Failed)
+        .filter(|point| point.standing != PointStatus::Failed)
         .filter_map(|point| point.detail.as_deref().map(|detail| (point.solver.as_str(), detail)))
         .collect();
     reasons.sort_unstable();
@@ -233,9 +233,9 @@ fn points(diagram: &Diagram) -> Markup {
 fn row(point: &Point) -> Markup {
     let seconds = |value: Option<f64>| value.map_or("—".to_owned(), number::seconds);
     let class = match point.standing {
-        Standing::Measured => "",
-        Standing::Failed => "fail",
-        Standing::Unsupported | Standing::NotAvailable => "amber",
+        PointStatus::Measured => "",
+        PointStatus::Failed => "fail",
+        PointStatus::Unsupported | PointStatus::NotAvailable => "amber",
     };
     html! {
         tr class=(class) {

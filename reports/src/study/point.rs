@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Standing {
+pub enum PointStatus {
     /// The point has an error and a time.
     Measured,
     /// The run crashed, or its error is not finite. It is plotted at the time of the failure.
@@ -99,7 +99,7 @@ pub struct Point {
     /// Unit of `value` and `expected`.
     pub unit: String,
     /// Status.
-    pub standing: Standing,
+    pub standing: PointStatus,
     /// Measured value.
     pub value: Option<f64>,
     /// Exact value.
@@ -141,7 +141,7 @@ impl Point {
     #[must_use]
     pub fn place(&self) -> Option<(f64, f64)> {
         match (self.standing, self.error, self.wall_seconds) {
-            (Standing::Measured, Some(error), Some(wall)) => Some((error, wall)),
+            (PointStatus::Measured, Some(error), Some(wall)) => Some((error, wall)),
             _ => None,
         }
     }

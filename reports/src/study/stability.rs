@@ -74,7 +74,7 @@ impl Hardness {
 
 /// Result of one solver in a hard case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Hard {
+pub struct HardCaseResult {
     /// Name of the case, such as `mass-ratio-1e6`.
     pub case: String,
     /// Required property.
@@ -271,7 +271,7 @@ pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
     }
 }
 
-fn matrix(rows: &[Hard]) -> Markup {
+fn matrix(rows: &[HardCaseResult]) -> Markup {
     let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
     let table = html! {
         table.cases {
@@ -300,8 +300,8 @@ fn matrix(rows: &[Hard]) -> Markup {
     scrolling("Hard cases", &table)
 }
 
-fn details_of(rows: &[Hard]) -> Markup {
-    let telling = |row: &&Hard| !row.detail.is_empty() && !matches!(row.standing, Hardness::NotAvailable);
+fn details_of(rows: &[HardCaseResult]) -> Markup {
+    let telling = |row: &&HardCaseResult| !row.detail.is_empty() && !matches!(row.standing, Hardness::NotAvailable);
     html! {
         details {
             summary { "What was seen" }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Cost of a task with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Price {
+pub struct TaskCost {
     /// Solver.
     pub solver: String,
     /// Task: a grain in space, a listed pair, a contact, a material point, or a node.
@@ -32,7 +32,7 @@ pub struct Probe {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Costs of the tasks.
-    pub prices: Vec<Price>,
+    pub prices: Vec<TaskCost>,
     /// Peak performance of the machine.
     pub probe: Probe,
 }
@@ -81,7 +81,7 @@ pub(crate) fn render(model: &Model) -> Markup {
 }
 
 /// Returns the smallest and the largest timing.
-fn spread(price: &Price) -> String {
+fn spread(price: &TaskCost) -> String {
     let shown = |value| number::significant(value, 3);
     range(&price.nanoseconds)
         .map_or_else(String::new, |[least, _, largest]| format!("{} to {}", shown(least), shown(largest)))
@@ -94,7 +94,7 @@ mod tests {
     /// The machine streams 30 B/ns and computes 50 numbers per nanosecond, so in 8 ns it does 240 B and 400 numbers.
     #[test]
     fn a_price_stands_beside_what_the_machine_does() {
-        let price = Price {
+        let price = TaskCost {
             solver: "dem".to_owned(),
             piece: "contact".to_owned(),
             found: "discs".to_owned(),

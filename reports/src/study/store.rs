@@ -3,7 +3,7 @@
 use super::effects::Entry;
 use super::load::Load;
 use super::point::Point;
-use super::stability::{Hard, Limit};
+use super::stability::{HardCaseResult, Limit};
 use super::step::Model;
 use super::{Study, cost, effects, load, page, stability};
 use crate::report::Provenance;
@@ -40,7 +40,7 @@ struct Results<'a> {
 #[derive(Serialize)]
 struct Stability<'a> {
     limits: &'a [Limit],
-    hard: &'a [Hard],
+    hard: &'a [HardCaseResult],
 }
 
 /// Returns `results.json` of a study.

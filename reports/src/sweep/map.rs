@@ -1,7 +1,7 @@
 //! Maps over two factors that show where each solver is within the tolerance, one panel per solver and level.
 
 use super::figures::levels;
-use super::{Line, Point, Standing, Sweep};
+use super::{Line, Point, Sweep, SweepStatus};
 use crate::number;
 use crate::plot::{FONTS, WIDTH, wrap};
 use maud::{Markup, html};
@@ -140,13 +140,13 @@ fn panel(
     let mut all = [0_usize; 3];
     for point in sweep.points.iter().filter(is_in_panel) {
         // A cell without a judged point has the colour of amber points.
-        let standing = (point.standing() as usize).min(Standing::Amber as usize);
+        let standing = (point.standing() as usize).min(SweepStatus::Amber as usize);
         all[standing] += 1;
         if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
             cells[row * across + column][standing] += 1;
         }
     }
-    let judged = all[Standing::Within as usize] + all[Standing::Outside as usize];
+    let judged = all[SweepStatus::Within as usize] + all[SweepStatus::Outside as usize];
     let share = if judged > 0 { number::fraction(all[0] as f64 / judged as f64) } else { "—".to_owned() };
     let size = [wide / across as f64, HIGH / up as f64];
     let has_room = size[0] >= SIGN && size[1] >= SIGN;

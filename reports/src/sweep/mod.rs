@@ -10,7 +10,7 @@ use crate::staged::StagedDir;
 use crate::store::SaveError;
 use crate::study::point::Timing;
 use crate::{page as shared, plot};
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Outcome, Severity};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -83,16 +83,16 @@ pub struct Point {
     /// Its resolution, in words.
     pub resolution: String,
     /// Output of the run.
-    pub left: Left,
+    pub left: PointOutput,
 }
 
 /// Output of a point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Left {
+pub struct PointOutput {
     /// Counts and times of the run; none if there is no record.
-    pub ran: Option<Ran>,
+    pub ran: Option<RunCounts>,
     /// Results in the order of the quantities.
-    pub looked: Vec<Looked>,
+    pub looked: Vec<QuantityResult>,
     /// Timings of all repetitions, if times are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub timings: Vec<Timing>,
@@ -103,7 +103,7 @@ pub struct Left {
 
 /// Counts and times of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ran {
+pub struct RunCounts {
     /// Number of steps.
     pub steps: u64,
     /// Number of steps times number of grains or material points.
@@ -120,11 +120,11 @@ pub struct Ran {
 
 /// Result for a quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Looked {
+pub struct QuantityResult {
     /// Measured value.
     pub value: Option<f64>,
     /// Expectation.
-    pub expected: Option<Expected>,
+    pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,
     /// Signed (value − expected)/scale.
@@ -152,7 +152,7 @@ impl Sweep {
 
 /// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum SweepStatus {
     /// At least one quantity is judged, and all judged quantities pass.
     Within,
     /// A quantity fails, or the run crashed.
@@ -166,13 +166,13 @@ pub enum Standing {
 impl Point {
     /// Returns the status of the point.
     #[must_use]
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> SweepStatus {
         let severities = self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity);
         match severities.max() {
-            Some(Severity::Red) => Standing::Outside,
-            Some(Severity::Amber) => Standing::Amber,
-            Some(Severity::Green) => Standing::Within,
-            None => Standing::Unjudged,
+            Some(Severity::Red) => SweepStatus::Outside,
+            Some(Severity::Amber) => SweepStatus::Amber,
+            Some(Severity::Green) => SweepStatus::Within,
+            None => SweepStatus::Unjudged,
         }
     }
 
@@ -230,19 +230,19 @@ mod tests {
     /// A point without an expectation shows nothing about the solver, so it is not within a tolerance.
     #[test]
     fn a_point_that_is_not_judged_is_not_within() {
-        let looked = |verdict| Looked { verdict, ..Looked::default() };
+        let looked = |verdict| QuantityResult { verdict, ..QuantityResult::default() };
         let point = |verdicts: &[Option<Outcome>]| Point {
             factors: Vec::new(),
             solver: String::new(),
             resolution: String::new(),
-            left: Left { looked: verdicts.iter().copied().map(looked).collect(), ..Left::default() },
+            left: PointOutput { looked: verdicts.iter().copied().map(looked).collect(), ..PointOutput::default() },
         };
         for (verdicts, standing) in [
-            (&[None][..], Standing::Unjudged),
-            (&[], Standing::Unjudged),
-            (&[None, Some(Outcome::Pass)], Standing::Within),
-            (&[None, Some(Outcome::NoReference)], Standing::Amber),
-            (&[Some(Outcome::Pass), Some(Outcome::Fail)], Standing::Outside),
+            (&[None][..], SweepStatus::Unjudged),
+            (&[], SweepStatus::Unjudged),
+            (&[None, Some(Outcome::Pass)], SweepStatus::Within),
+            (&[None, Some(Outcome::NoReference)], SweepStatus::Amber),
+            (&[Some(Outcome::Pass), Some(Outcome::Fail)], SweepStatus::Outside),
         ] {
             assert_eq!(point(verdicts).standing(), standing, "{verdicts:?}");
         }

@@ -1,7 +1,7 @@
 //! Page of a sweep.
 
 use super::figures::levels;
-use super::{Standing, Sweep};
+use super::{Sweep, SweepStatus};
 use crate::number;
 use crate::page::{provenance, scrolling, shell};
 use maud::{Markup, PreEscaped, html};
@@ -65,10 +65,10 @@ fn table(sweep: &Sweep) -> Markup {
         [
             solver.clone(),
             level.clone(),
-            number::count(count(Standing::Within)),
-            number::count(count(Standing::Outside)),
-            number::count(count(Standing::Amber)),
-            number::count(count(Standing::Unjudged)),
+            number::count(count(SweepStatus::Within)),
+            number::count(count(SweepStatus::Outside)),
+            number::count(count(SweepStatus::Amber)),
+            number::count(count(SweepStatus::Unjudged)),
             error(at(0.5)),
             error(at(0.9)),
             error(errors.last().copied()),
@@ -99,7 +99,7 @@ fn table(sweep: &Sweep) -> Markup {
 /// Renders the points with the largest errors, crashed runs first.
 fn worst(sweep: &Sweep) -> Markup {
     let mut points: Vec<&super::Point> =
-        sweep.points.iter().filter(|point| point.standing() == Standing::Outside).collect();
+        sweep.points.iter().filter(|point| point.standing() == SweepStatus::Outside).collect();
     let size = |point: &super::Point| point.error().unwrap_or(f64::INFINITY);
     points.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let count = points.len();

@@ -1,14 +1,14 @@
 //! Table of a sweep: one row per point, solver, level and quantity.
 
-use super::{Looked, Point, Sweep};
+use super::{Point, QuantityResult, Sweep};
 use crate::parts::Values;
-use grainbench_harness::expect::Expected;
+use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
 
 /// A row: the point, the index of a quantity, and its result.
-type Row<'a> = (&'a Point, usize, &'a Looked);
+type Row<'a> = (&'a Point, usize, &'a QuantityResult);
 
 fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
     let point_rows = |point| -> Vec<Row<'_>> {
@@ -23,7 +23,7 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     let rows = rows(sweep);
     let words = |value: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(value).collect());
     let optional = |value: &dyn Fn(&Row<'_>) -> Option<f64>| Values::Told(rows.iter().map(value).collect());
-    let count = |value: &dyn Fn(&super::Ran) -> Option<u64>| {
+    let count = |value: &dyn Fn(&super::RunCounts) -> Option<u64>| {
         optional(&|(point, _, _)| point.left.ran.as_ref().and_then(value).map(|count| count as f64))
     };
     let mut columns = vec![("case".to_owned(), words(&|_| sweep.scene.clone()))];
@@ -39,19 +39,20 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
         };
         columns.push((factor.name.clone(), values));
     }
-    let bound = |looked: &Looked| match looked.expected {
-        Some(bound @ Expected::Bound(_)) => bound.to_string(),
-        Some(Expected::Value(_)) | None => String::new(),
+    let bound = |looked: &QuantityResult| match looked.expected {
+        Some(bound @ ExpectedValue::Bound(_)) => bound.to_string(),
+        Some(ExpectedValue::Value(_)) | None => String::new(),
     };
-    let detail =
-        |point: &Point, looked: &Looked| looked.detail.clone().or(point.left.detail.clone()).unwrap_or_default();
+    let detail = |point: &Point, looked: &QuantityResult| {
+        looked.detail.clone().or(point.left.detail.clone()).unwrap_or_default()
+    };
     let rest: [(&str, Values); 18] = [
         ("solver", words(&|(point, _, _)| point.solver.clone())),
         ("resolution", words(&|(point, _, _)| point.resolution.clone())),
         ("quantity", words(&|(_, at, _)| sweep.quantities[*at].words.clone())),
         ("unit", words(&|(_, at, _)| sweep.quantities[*at].unit.clone())),
         ("value", optional(&|(_, _, looked)| looked.value)),
-        ("expected", optional(&|(_, _, looked)| looked.expected.and_then(Expected::value))),
+        ("expected", optional(&|(_, _, looked)| looked.expected.and_then(ExpectedValue::value))),
         ("bound", words(&|(_, _, looked)| bound(looked))),
         ("scale", optional(&|(_, _, looked)| looked.scale)),
         ("error", optional(&|(_, _, looked)| looked.error)),

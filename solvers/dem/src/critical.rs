@@ -1,13 +1,13 @@
 //! Check of the critical time step during a run, for contacts that stiffen until the time step is too long.
 
 use crate::geometry::Geometry;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use crate::walls::MovingWall;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
-use grainbench_scene::solver::{Broken, Cause, Subject};
+use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
 
 /// Contact to be checked.
-struct Look<'a> {
+struct CheckedContact<'a> {
     law: Option<&'a ContactLaw>,
     /// Slot of a grain.
     slot: usize,
@@ -19,7 +19,7 @@ struct Look<'a> {
     inverse_mass: f64,
 }
 
-impl<S: Geometry> Simulated<S> {
+impl<S: Geometry> DemSimulation<S> {
     /// Enables periodic checks of contacts, unless unstable steps are allowed. They apply if the stiffness of contacts
     /// changes, or if the time step already exceeds the critical one of the scene.
     pub(crate) fn follow_critical_step(&mut self, allow_unstable: bool) {
@@ -29,7 +29,7 @@ impl<S: Geometry> Simulated<S> {
 
     /// Rejects a contact whose critical step 2√(m/k) is below the time step. m is the smaller mass, and k the larger
     /// one of the normal and tangential stiffness.
-    pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<Broken>> {
+    pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<SimulationFailure>> {
         let grains = &self.grains;
         for share in &self.neighbours.shares {
             for pairs in [&share.across, &share.near] {
@@ -39,7 +39,7 @@ impl<S: Geometry> Simulated<S> {
                     let apart = (grains.position(other) - grains.position(one) - shift).norm();
                     let [first, second] = [one, other].map(|slot| grains.radius(slot));
                     if apart < first + second {
-                        self.refuse_stiff(&Look {
+                        self.refuse_stiff(&CheckedContact {
                             law: self.scene.law(grains.material[one], grains.material[other]),
                             slot: one,
                             overlap: first + second - apart,
@@ -53,11 +53,11 @@ impl<S: Geometry> Simulated<S> {
         self.walls.iter().try_for_each(|wall| self.refuse_stiff_at(wall))
     }
 
-    fn refuse_stiff_at(&self, wall: &MovingWall) -> Result<(), Box<Broken>> {
+    fn refuse_stiff_at(&self, wall: &MovingWall) -> Result<(), Box<SimulationFailure>> {
         for (slot, distance) in wall.distances(&self.grains) {
             let radius = self.grains.radius(slot);
             if distance < radius {
-                self.refuse_stiff(&Look {
+                self.refuse_stiff(&CheckedContact {
                     law: self.scene.law(self.grains.material[slot], wall.material()),
                     slot,
                     overlap: radius - distance,
@@ -69,7 +69,7 @@ impl<S: Geometry> Simulated<S> {
         Ok(())
     }
 
-    fn refuse_stiff(&self, look: &Look<'_>) -> Result<(), Box<Broken>> {
+    fn refuse_stiff(&self, look: &CheckedContact<'_>) -> Result<(), Box<SimulationFailure>> {
         let Some(law) = look.law else { return Ok(()) };
         let (normal, tangential) = law.springs.stiffness(look.overlap, look.radius);
         let stiffness = normal.max(if law.has_friction() { tangential } else { 0.0 });
@@ -77,10 +77,10 @@ impl<S: Geometry> Simulated<S> {
         if self.motion.time_step <= critical {
             return Ok(());
         }
-        Err(Box::new(Broken {
+        Err(Box::new(SimulationFailure {
             time: self.time(),
             step: self.step,
-            subject: Subject::Grain(self.grains.id[look.slot] + 1),
+            subject: FailedParticle::Grain(self.grains.id[look.slot] + 1),
             position: self.grains.position(look.slot),
             cause: Cause::StiffContact { stiffness },
             time_step: self.motion.time_step,

@@ -1,7 +1,7 @@
 //! Grains with prescribed motion, for the whole run or a part of it.
 
 use crate::geometry::Geometry;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use grainbench_scene::scene::Driven;
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ fn moved_before_and_at(driven: &Driven, step: u64, time_step: f64) -> [bool; 2] 
     [step - 1, step].map(|step| driven.is_moved_at(step as f64 * time_step))
 }
 
-impl<S: Geometry> Simulated<S> {
+impl<S: Geometry> DemSimulation<S> {
     /// Sets the forces and torques on grains with prescribed motion to zero, because forces do not move them.
     pub(crate) fn shield_driven(&mut self) {
         let (time, grains) = (self.time(), &mut self.grains);

@@ -1,13 +1,13 @@
 //! Interface of a simulation for the solver, independent of the compiled contact laws.
 
 use crate::geometry::Geometry;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use grainbench_scene::brief::Brief;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::end_state::EndState;
-use grainbench_scene::record::{Counts, Look};
+use grainbench_scene::record::{Counts, StepState};
 use grainbench_scene::recorder::Recorder;
-use grainbench_scene::solver::Broken;
+use grainbench_scene::solver::SimulationFailure;
 
 /// Interface of a simulation, independent of the compiled contact laws.
 pub trait Simulation: Send {
@@ -15,7 +15,7 @@ pub trait Simulation: Send {
     ///
     /// # Errors
     /// When the state of a grain is no longer finite, or a grain moves by more than its radius in a step.
-    fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>>;
+    fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>>;
     /// Clears the history of every contact, as a restart without stored history would.
     fn forget_history(&mut self);
     /// Returns a checkpoint of the state after the last step, with the record so far.
@@ -38,9 +38,9 @@ pub trait Simulation: Send {
     fn end_state(&self, solver: &str) -> EndState;
     /// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at
     /// the same step returns none.
-    fn look(&mut self) -> Look;
+    fn look(&mut self) -> StepState;
     /// Returns the state for a snapshot, with averages over the time since the last snapshot.
-    fn look_for_snapshot(&mut self) -> Look;
+    fn look_for_snapshot(&mut self) -> StepState;
     /// Returns the number of rows of grains and contacts that a snapshot would have now.
     fn rows(&self) -> u64;
     /// Returns true if a snapshot would have at most `most_rows` rows now.
@@ -49,8 +49,8 @@ pub trait Simulation: Send {
     fn brief(&self) -> Brief;
 }
 
-impl<S: Geometry> Simulation for Simulated<S> {
-    fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+impl<S: Geometry> Simulation for DemSimulation<S> {
+    fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         self.take_cycles(steps)
     }
 
@@ -82,7 +82,7 @@ impl<S: Geometry> Simulation for Simulated<S> {
         Self::end_state(self, solver)
     }
 
-    fn look(&mut self) -> Look {
+    fn look(&mut self) -> StepState {
         crate::observe::look(self)
     }
 
@@ -98,7 +98,7 @@ impl<S: Geometry> Simulation for Simulated<S> {
         crate::observe::brief(self)
     }
 
-    fn look_for_snapshot(&mut self) -> Look {
+    fn look_for_snapshot(&mut self) -> StepState {
         let mut look = crate::observe::look(self);
         if let Some(mean) = &mut self.mean_virial {
             mean.tell(&mut look.snapshot.grains);

@@ -3,10 +3,10 @@
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
 use crate::listed::Pairs;
-use crate::meshes::Held;
+use crate::meshes::PreviousContact;
 use crate::observe::grain_states;
-use crate::share::Share;
-use crate::simulation::Simulated;
+use crate::share::ThreadPartition;
+use crate::simulation::DemSimulation;
 use grainbench_scene::end_state::{EndState, Springs, StateGrain};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
     format!("{tangential} numbers of a tangential and {rolling} of a rolling spring in {dimension} dimensions")
 }
 
-impl<S: Geometry> Simulated<S> {
+impl<S: Geometry> DemSimulation<S> {
     /// Returns the state after the last step, with the name of the solver. Absent grains are not included.
     pub(crate) fn end_state(&self, solver: &str) -> EndState {
         let scene = &self.scene;
@@ -87,7 +87,7 @@ impl<S: Geometry> Simulated<S> {
             .collect();
         let layout = self.forces.layout();
         if layout.numbers > 0 {
-            let mut whole = Share::new(0..count);
+            let mut whole = ThreadPartition::new(0..count);
             whole.near = Pairs::remembering(count, layout, &pairs);
             self.neighbours.shares = vec![whole];
         }
@@ -100,7 +100,7 @@ impl<S: Geometry> Simulated<S> {
             match part {
                 None => wall.near.push((slot, memory(numbers))),
                 // The infinite position prevents the contact from continuing on another part.
-                Some(group) => wall.at_mesh.held.push(Held {
+                Some(group) => wall.at_mesh.held.push(PreviousContact {
                     slot,
                     group,
                     point: Vector3::repeat(f64::INFINITY),

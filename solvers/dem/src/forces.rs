@@ -4,20 +4,20 @@
 //! on the grains, in the order of the list. Only the loops over walls and over pairs ([`crate::pairs`]) are compiled
 //! for the laws of a scene, the latter also for each instruction set. Recorded pairs are processed one by one.
 
-use crate::contact::at_wall::AtWall;
+use crate::contact::at_wall::WallContact;
 use crate::contact::chain::{Evaluation, Layout};
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory, Options};
 use crate::geometry::Geometry;
-use crate::grains::{Grains, Read, Sums};
+use crate::grains::{GrainTables, Grains, Sums};
 use crate::laws::Laws;
 use crate::listed::Pairs;
-use crate::pairs::OfPairs;
-use crate::seen::Seen;
-use crate::touching::Touching;
-use crate::walls::{Facing, MovingWall};
+use crate::pairs::PairLoop;
+use crate::seen::RecordedContacts;
+use crate::touching::ContactList;
+use crate::walls::{MovingWall, WallView};
 use grainbench_lanes::{Processor, Quad};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
@@ -47,10 +47,10 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         &self,
         processor: Processor,
         terms: Terms<'_>,
-        grains: (Read<'_>, Sums<'_>),
+        grains: (GrainTables<'_>, Sums<'_>),
         pairs: (&mut Pairs, usize),
-        touching: &Touching,
-        seen: Option<&mut Seen>,
+        touching: &ContactList,
+        seen: Option<&mut RecordedContacts>,
     );
     /// Adds the forces and torques at a wall, computes the force on the wall, and returns the number of contacts.
     fn at_wall(
@@ -59,7 +59,7 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         grains: &mut Grains<S>,
         wall: &mut MovingWall,
         number: u16,
-        seen: Option<&mut Seen>,
+        seen: Option<&mut RecordedContacts>,
     ) -> u64;
     /// Returns the layout of the contact history.
     fn layout(&self) -> Layout;
@@ -78,12 +78,12 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     grains: &mut Grains<S>,
     wall: &mut MovingWall,
     (slot, number): (usize, u16),
-    facing: &Facing,
+    facing: &WallView,
     memory: &mut Memory<f64>,
-    seen: &mut Option<&mut Seen>,
+    seen: &mut Option<&mut RecordedContacts>,
 ) {
     let (position, radius) = (grains.position(slot), grains.radius(slot));
-    let at_wall = AtWall::<S> {
+    let at_wall = WallContact::<S> {
         law: terms.laws.between(grains.material[slot], wall.material()),
         normal: S::vector_of(facing.normal),
         distance: facing.distance,
@@ -126,7 +126,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> 
         grains: &mut Grains<S>,
         wall: &mut MovingWall,
         number: u16,
-        mut seen: Option<&mut Seen>,
+        mut seen: Option<&mut RecordedContacts>,
     ) -> u64 {
         let Some(mesh) = wall.mesh().cloned() else { return 0 };
         let mut at_mesh = std::mem::take(&mut wall.at_mesh);
@@ -144,15 +144,15 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         &self,
         processor: Processor,
         terms: Terms<'_>,
-        grains: (Read<'_>, Sums<'_>),
+        grains: (GrainTables<'_>, Sums<'_>),
         pairs: (&mut Pairs, usize),
-        touching: &Touching,
-        seen: Option<&mut Seen>,
+        touching: &ContactList,
+        seen: Option<&mut RecordedContacts>,
     ) {
         if T::ACTIVE && S::DIMENSION == 3 {
-            OfPairs::<S, N, T, R, 2>::new(terms, grains, pairs, touching, seen).run_on(processor);
+            PairLoop::<S, N, T, R, 2>::new(terms, grains, pairs, touching, seen).run_on(processor);
         } else {
-            OfPairs::<S, N, T, R, 1>::new(terms, grains, pairs, touching, seen).run_on(processor);
+            PairLoop::<S, N, T, R, 1>::new(terms, grains, pairs, touching, seen).run_on(processor);
         }
     }
 
@@ -162,7 +162,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         grains: &mut Grains<S>,
         wall: &mut MovingWall,
         number: u16,
-        mut seen: Option<&mut Seen>,
+        mut seen: Option<&mut RecordedContacts>,
     ) -> u64 {
         wall.force = Default::default();
         if wall.mesh().is_some() {

@@ -245,7 +245,7 @@ impl<S: Geometry> Grains<S> {
 
 /// Grain data that the loops over pairs read. All tables have the same length, so an index is valid in all of them.
 #[derive(Clone, Copy)]
-pub(crate) struct Read<'a> {
+pub(crate) struct GrainTables<'a> {
     pub(crate) place: &'a [Quad],
     pub(crate) movement: &'a [Quad],
     pub(crate) inverse_inertia: &'a [f64],
@@ -276,8 +276,8 @@ impl<'a> Sums<'a> {
 
     /// Returns the sums of all grains; `None` if these slots do not cover all grains.
     #[inline(always)]
-    pub(crate) fn all(&mut self, grains: usize) -> Option<All<'_>> {
-        (self.first == 0 && self.count >= grains).then_some(All { grains, load: self.load })
+    pub(crate) fn all(&mut self, grains: usize) -> Option<AllGrainSums<'_>> {
+        (self.first == 0 && self.count >= grains).then_some(AllGrainSums { grains, load: self.load })
     }
 
     /// Splits off the sums of the first `count` grains.
@@ -303,12 +303,12 @@ impl Loads for Sums<'_> {
 }
 
 /// Sums of all grains: every slot is included.
-pub(crate) struct All<'a> {
+pub(crate) struct AllGrainSums<'a> {
     grains: usize,
     load: &'a mut [Quad],
 }
 
-impl Loads for All<'_> {
+impl Loads for AllGrainSums<'_> {
     #[inline(always)]
     fn load<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]> {
         Some(&mut self.load.as_chunks_mut::<Q>().0[..self.grains][slot])
@@ -317,10 +317,10 @@ impl Loads for All<'_> {
 
 impl<S: Geometry> Grains<S> {
     /// Returns the data that are read and the sums.
-    pub(crate) fn parts(&mut self) -> (Read<'_>, Sums<'_>) {
+    pub(crate) fn parts(&mut self) -> (GrainTables<'_>, Sums<'_>) {
         let Self { place, movement, load, inverse_inertia, material, id, .. } = self;
         let count = place.len();
-        (Read { place, movement, inverse_inertia, material, id }, Sums { first: 0, count, load })
+        (GrainTables { place, movement, inverse_inertia, material, id }, Sums { first: 0, count, load })
     }
 }
 

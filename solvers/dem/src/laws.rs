@@ -1,7 +1,7 @@
 //! Contact laws of a scene in the form that kernels read: one row of numbers per pair of materials.
 
 use crate::contact::Options;
-use grainbench_lanes::{Lanes, Quad, WIDEST, Wide};
+use grainbench_lanes::{Lanes, Quad, SimdPack, WIDEST};
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::Scene;
@@ -110,7 +110,7 @@ impl Laws {
 
     /// Returns the laws with these indices, in lanes.
     #[inline(always)]
-    pub(crate) fn gather<L: Lanes>(&self, lanes: L, numbers: &[usize; WIDEST]) -> Constants<Wide<L>> {
+    pub(crate) fn gather<L: Lanes>(&self, lanes: L, numbers: &[usize; WIDEST]) -> Constants<SimdPack<L>> {
         let [normal, tangential, friction, cohesion] = gathered(lanes, &self.quads[0], numbers);
         let [stiffness_damping, normal_damping, tangential_damping, damping_ratio] =
             gathered(lanes, &self.quads[1], numbers);
@@ -131,7 +131,7 @@ impl Laws {
 
 /// Returns the quads of a table at the indices `at`, in lanes.
 #[inline(always)]
-pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [Wide<L>; 4] {
+pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [SimdPack<L>; 4] {
     gathered_of(lanes, table.as_chunks::<1>().0, 0, at)
 }
 
@@ -142,9 +142,9 @@ pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     table: &[[Quad; N]],
     material: usize,
     at: &[usize; WIDEST],
-) -> [Wide<L>; 4] {
+) -> [SimdPack<L>; 4] {
     let [a, b, c, d] = lanes.gather(table, material, at);
-    [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
+    [SimdPack::new(lanes, a), SimdPack::new(lanes, b), SimdPack::new(lanes, c), SimdPack::new(lanes, d)]
 }
 
 /// Returns, in lanes, the differences of a quad between the entries at `to` and at `from`. The fourth number is the sum
@@ -155,9 +155,9 @@ pub(crate) fn between<L: Lanes, const N: usize>(
     table: &[[Quad; N]],
     material: usize,
     [from, to]: [&[usize; WIDEST]; 2],
-) -> [Wide<L>; 4] {
+) -> [SimdPack<L>; 4] {
     let [a, b, c, d] = lanes.between(table, material, from, to);
-    [Wide::new(lanes, a), Wide::new(lanes, b), Wide::new(lanes, c), Wide::new(lanes, d)]
+    [SimdPack::new(lanes, a), SimdPack::new(lanes, b), SimdPack::new(lanes, c), SimdPack::new(lanes, d)]
 }
 
 /// Returns as many indices as a register holds. They are checked once against the length of the tables, so that no

@@ -13,7 +13,7 @@ pub(crate) const BLOCK: usize = 2048;
 
 /// Contact history of a block of pairs, by value. Each list holds an entry of zero, and then one value per contact of
 /// the last evaluation, in order. Lists of unused values are empty.
-pub(crate) type Remembered = [Vec<f64>; MEMORY];
+pub(crate) type BlockHistory = [Vec<f64>; MEMORY];
 
 /// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are padded after the last
 /// pair so that registers can be filled.
@@ -35,7 +35,7 @@ pub(crate) struct Pairs {
     /// Empty without contact history.
     pub(crate) touches: Vec<u8>,
     /// Contact history, by blocks of pairs. Empty without contact history.
-    pub(crate) memory: Vec<Remembered>,
+    pub(crate) memory: Vec<BlockHistory>,
 }
 
 impl Pairs {
@@ -182,7 +182,7 @@ impl Pairs {
         let rows = start.len() == grains + 1 || start == &[0];
         let in_order = start.first() == Some(&0) && start.is_sorted();
         let remembers = |count: usize| if layout.numbers > 0 && *start != [0] { count } else { 0 };
-        let is_consistent = |(bits, history): (&[u8], &Remembered)| {
+        let is_consistent = |(bits, history): (&[u8], &BlockHistory)| {
             let touched = bits.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
             history
                 .iter()
@@ -241,7 +241,7 @@ impl Pairs {
     /// Prepares the history of a block for a number of contacts. If the contacts are unchanged, it is updated in place.
     /// Otherwise it is rebuilt, and `before` receives the previous history. Padding follows the last contact so that
     /// registers can be filled.
-    pub(crate) fn make_room(&mut self, block: usize, count: usize, before: Option<&mut Remembered>) {
+    pub(crate) fn make_room(&mut self, block: usize, count: usize, before: Option<&mut BlockHistory>) {
         let Some(memory) = self.memory.get_mut(block) else { return };
         if let Some(before) = before {
             std::mem::swap(memory, before);
@@ -270,7 +270,7 @@ impl Pairs {
 }
 
 /// Returns the history of a block without contacts.
-fn nothing(layout: Layout) -> Remembered {
+fn nothing(layout: Layout) -> BlockHistory {
     std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)])
 }
 

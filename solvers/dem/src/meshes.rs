@@ -6,7 +6,7 @@
 use crate::contact::Memory;
 use crate::geometry::Geometry;
 use crate::grains::Grains;
-use grainbench_scene::mesh::{Mesh, Touched};
+use grainbench_scene::mesh::{Mesh, SphereContact};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ const GOES_ON: f64 = 0.1;
 
 /// Contact in the last evaluation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Held {
+pub(crate) struct PreviousContact {
     /// Slot of the grain.
     pub(crate) slot: u32,
     /// Patch, ridge or corner.
@@ -29,21 +29,21 @@ pub(crate) struct Held {
 
 /// Grains near a mesh.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct AtMesh {
+pub(crate) struct MeshContacts {
     /// Slot of every nearby grain, and the end of its range in `triangles`, sorted by slot.
     near: Vec<(u32, u32)>,
     /// Triangles near each grain.
     triangles: Vec<u32>,
     /// Contacts, sorted by slot.
-    pub(crate) held: Vec<Held>,
+    pub(crate) held: Vec<PreviousContact>,
     /// Buffers for the contacts of a grain, and for those of the next evaluation.
     #[serde(skip)]
-    found: Vec<Touched>,
+    found: Vec<SphereContact>,
     #[serde(skip)]
-    next: Vec<Held>,
+    next: Vec<PreviousContact>,
 }
 
-impl AtMesh {
+impl MeshContacts {
     /// Returns true if the data fit a number of grains and a surface.
     pub(crate) fn is_of(&self, grains: usize, mesh: &Mesh) -> bool {
         let (faces, mut from) = (mesh.surface.triangles().len(), 0);
@@ -72,7 +72,7 @@ impl AtMesh {
     }
 
     /// Starts a new list. Returns the previous contacts.
-    pub(crate) fn begin_list(&mut self) -> Vec<Held> {
+    pub(crate) fn begin_list(&mut self) -> Vec<PreviousContact> {
         self.near.clear();
         self.triangles.clear();
         std::mem::take(&mut self.held)
@@ -97,7 +97,7 @@ impl AtMesh {
         &mut self,
         mesh: &Mesh,
         grains: &mut Grains<S>,
-        mut contact: impl FnMut(&mut Grains<S>, usize, &Touched, &mut Memory<f64>),
+        mut contact: impl FnMut(&mut Grains<S>, usize, &SphereContact, &mut Memory<f64>),
     ) -> u64 {
         let Self { near, triangles, held, found, next, .. } = self;
         next.clear();
@@ -114,7 +114,7 @@ impl AtMesh {
             for touched in found.iter() {
                 let mut memory = remembered(own, found, touched, radius);
                 contact(grains, slot as usize, touched, &mut memory);
-                next.push(Held { slot, group: touched.group, point: touched.point, memory });
+                next.push(PreviousContact { slot, group: touched.group, point: touched.point, memory });
             }
         }
         std::mem::swap(held, next);
@@ -124,16 +124,16 @@ impl AtMesh {
 
 /// Returns the history of a contact: that of the same part of the surface, or of the nearest part that the grain has
 /// just left. In the second case, no other new contact may be nearer to that part.
-fn remembered(own: &[Held], found: &[Touched], touched: &Touched, radius: f64) -> Memory<f64> {
+fn remembered(own: &[PreviousContact], found: &[SphereContact], touched: &SphereContact, radius: f64) -> Memory<f64> {
     if let Some(same) = own.iter().find(|held| held.group == touched.group) {
         return same.memory;
     }
-    let is_new = |contact: &Touched| own.iter().all(|held| held.group != contact.group);
+    let is_new = |contact: &SphereContact| own.iter().all(|held| held.group != contact.group);
     let left = own.iter().filter(|held| found.iter().all(|other| other.group != held.group));
-    let away = |held: &Held, contact: &Touched| (held.point - contact.point).norm();
+    let away = |held: &PreviousContact, contact: &SphereContact| (held.point - contact.point).norm();
     let nearest = left.min_by(|a, b| away(a, touched).total_cmp(&away(b, touched)));
     nearest.filter(|held| away(held, touched) <= GOES_ON * radius).map_or_else(Default::default, |held| {
-        let nearer = |other: &&Touched| is_new(other) && away(held, other) < away(held, touched);
+        let nearer = |other: &&SphereContact| is_new(other) && away(held, other) < away(held, touched);
         if found.iter().any(|other| nearer(&other)) { Default::default() } else { held.memory }
     })
 }
@@ -148,9 +148,9 @@ mod tests {
     #[test]
     fn a_contact_goes_on_where_it_can_have_gone() {
         let at = |x: f64| Vector3::new(x, 0.0, 0.0);
-        let touched = |group, x| Touched { group, point: at(x), direction: -Vector3::z(), distance: 0.9 };
+        let touched = |group, x| SphereContact { group, point: at(x), direction: -Vector3::z(), distance: 0.9 };
         let (gone_on, new) = ([0.3; MEMORY], [0.0; MEMORY]);
-        let own = [Held { slot: 0, group: 1, point: at(0.0), memory: gone_on }];
+        let own = [PreviousContact { slot: 0, group: 1, point: at(0.0), memory: gone_on }];
         assert_eq!(remembered(&own, &[touched(1, 0.5)], &touched(1, 0.5), 1.0), gone_on);
         assert_eq!(remembered(&own, &[touched(2, 0.09)], &touched(2, 0.09), 1.0), gone_on);
         assert_eq!(remembered(&own, &[touched(2, 0.11)], &touched(2, 0.11), 1.0), new);

@@ -61,7 +61,7 @@ pub(crate) struct Motion {
 }
 
 /// Data of grains that motion reads and writes.
-pub(crate) struct Moving<'a> {
+pub(crate) struct MotionData<'a> {
     place: &'a mut [Quad],
     movement: &'a mut [Quad],
     load: &'a mut [Quad],
@@ -70,7 +70,7 @@ pub(crate) struct Moving<'a> {
     inverse_inertia: &'a [f64],
 }
 
-impl<'a> Moving<'a> {
+impl<'a> MotionData<'a> {
     /// Returns the data of the grains in these slots.
     pub(crate) fn new<S: Geometry>(grains: &'a mut Grains<S>, slots: Range<usize>) -> Self {
         let quads = grains.quads();
@@ -102,7 +102,7 @@ impl<'a> Moving<'a> {
 impl Motion {
     /// Moves grains over one step by the forces on them, and sets the forces to zero. Returns the square of the largest
     /// speed (m²/s²), infinite if any speed is NaN.
-    pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: Moving<'_>) -> f64 {
+    pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: MotionData<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
             (true, true) => processor.run(Drift::<S, NoDrag, false>::new(self, grains)),
             (true, false) => processor.run(Drift::<S, NoDrag, true>::new(self, grains)),
@@ -138,12 +138,12 @@ impl Motion {
 /// Loop over grains, compiled for each kind of damping, with and without gravity, and for each instruction set.
 struct Drift<'a, S, D, const GRAVITY: bool> {
     motion: &'a Motion,
-    grains: Moving<'a>,
+    grains: MotionData<'a>,
     kind: PhantomData<(S, D)>,
 }
 
 impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
-    fn new(motion: &'a Motion, grains: Moving<'a>) -> Self {
+    fn new(motion: &'a Motion, grains: MotionData<'a>) -> Self {
         Self { motion, grains, kind: PhantomData }
     }
 }
@@ -200,7 +200,7 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> f64 {
         let step = Step::new::<D>(self.motion);
-        let Moving { place, movement, load, quads, inverse_inertia } = self.grains;
+        let MotionData { place, movement, load, quads, inverse_inertia } = self.grains;
         // The bits of non-negative numbers, read as integers, are in the same order as the numbers, with NaN last.
         let mut fastest = 0;
         if quads == 2 {

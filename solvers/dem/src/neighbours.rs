@@ -10,7 +10,7 @@ use crate::contact::chain::Layout;
 use crate::geometry::{Geometry, Linear};
 use crate::grains::Grains;
 use crate::listed::Pairs;
-use crate::share::{Share, rows_of};
+use crate::share::{ThreadPartition, rows_of};
 use grainbench_lanes::{Quad, Team};
 use grainbench_scene::scene::Domain;
 use nalgebra::Vector3;
@@ -21,7 +21,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Neighbours {
     /// Partitions of the rows, in order; a single one for runs with one thread and in checkpoints.
-    pub(crate) shares: Vec<Share>,
+    pub(crate) shares: Vec<ThreadPartition>,
     /// Positions of the grains when the list was built (m).
     pub(crate) reference: Vec<Quad>,
     /// Skin: pairs with smaller gaps are listed (m).
@@ -40,7 +40,7 @@ impl Neighbours {
 
     /// Returns the number of listed pairs.
     pub(crate) fn pairs(&self) -> usize {
-        self.shares.iter().map(Share::pairs).sum()
+        self.shares.iter().map(ThreadPartition::pairs).sum()
     }
 
     /// Creates an empty list.
@@ -52,7 +52,7 @@ impl Neighbours {
     pub(crate) fn in_shares(&self, count: usize) -> Self {
         let Self { reference, skin, built_at, builds, .. } = self;
         let rows = rows_of(reference.len(), count);
-        let shares = rows.into_iter().map(|rows| Share::reaching(&self.shares, rows)).collect();
+        let shares = rows.into_iter().map(|rows| ThreadPartition::reaching(&self.shares, rows)).collect();
         Self { shares, reference: reference.clone(), skin: *skin, built_at: *built_at, builds: *builds }
     }
 
@@ -90,7 +90,8 @@ impl Neighbours {
             old.clear();
         }
         team.each(old.iter_mut(), |_, share| share.find_places());
-        let mut shares: Vec<Share> = rows_of(grains.len(), count).into_iter().map(Share::new).collect();
+        let mut shares: Vec<ThreadPartition> =
+            rows_of(grains.len(), count).into_iter().map(ThreadPartition::new).collect();
         team.each(shares.iter_mut(), |_, share| {
             share.near = near_pairs::<S>(&grains.place, &cells, self.skin, share.rows.clone(), layout);
             share.across =
@@ -98,8 +99,9 @@ impl Neighbours {
             share.take_over(&old, &order, &layout);
         });
         if shares.len() > 1 {
-            let mut complete: Vec<Share> = shares.iter().map(|share| Share::new(share.rows.clone())).collect();
-            team.each(complete.iter_mut(), |_, share| *share = Share::reaching(&shares, share.rows.clone()));
+            let mut complete: Vec<ThreadPartition> =
+                shares.iter().map(|share| ThreadPartition::new(share.rows.clone())).collect();
+            team.each(complete.iter_mut(), |_, share| *share = ThreadPartition::reaching(&shares, share.rows.clone()));
             shares = complete;
         }
         self.shares = shares;
@@ -119,7 +121,7 @@ impl Neighbours {
 
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
-        self.shares.iter_mut().for_each(Share::forget);
+        self.shares.iter_mut().for_each(ThreadPartition::forget);
     }
 }
 

@@ -4,15 +4,15 @@
 use crate::geometry::Geometry;
 use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use grainbench_scene::brief::Brief;
-use grainbench_scene::record::{self, GrainState, Look, Snapshot, WallState};
+use grainbench_scene::record::{self, GrainState, Snapshot, StepState, WallState};
 use grainbench_scene::scene::{Driven, Scene};
 use nalgebra::Vector3;
 
 /// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at the
 /// same step returns none.
-pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
+pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState {
     let touching = simulation.touching();
     let contacts = simulation.take_contacts();
     let (simulation, scene) = (&*simulation, &simulation.scene);
@@ -38,16 +38,21 @@ pub(crate) fn look<S: Geometry>(simulation: &mut Simulated<S>) -> Look {
         bodies: Vec::new(),
         points: Vec::new(),
     };
-    Look { touching, driven: simulation.forces_on_driven(), budget, ..Look::of_rigid(snapshot, elastic_energy) }
+    StepState {
+        touching,
+        driven: simulation.forces_on_driven(),
+        budget,
+        ..StepState::of_rigid(snapshot, elastic_energy)
+    }
 }
 
 /// Summarises the state at this step.
-pub(crate) fn brief<S: Geometry>(simulation: &Simulated<S>) -> Brief {
+pub(crate) fn brief<S: Geometry>(simulation: &DemSimulation<S>) -> Brief {
     Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), simulation.touching())
 }
 
 /// Returns the grains that are present, sorted by id.
-pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> impl Iterator<Item = GrainState> {
+pub(crate) fn grain_states<S: Geometry>(simulation: &DemSimulation<S>) -> impl Iterator<Item = GrainState> {
     let (scene, time) = (&simulation.scene, simulation.time());
     let is_there = |id: &usize| simulation.grains.slot[*id] != ABSENT;
     let motion = |driven: &Driven| {
@@ -67,7 +72,7 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &Simulated<S>) -> impl Itera
 
 /// Returns a grain, with its velocity (m/s) and spin (rad/s) advanced from half a step before to the time of the
 /// positions.
-fn grain_state<S: Geometry>(simulation: &Simulated<S>, id: usize) -> GrainState {
+fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainState {
     let (scene, grains) = (&simulation.scene, &simulation.grains);
     let slot = grains.slot[id] as usize;
     let start = &scene.grains[id];

@@ -8,26 +8,26 @@ use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory};
 use crate::forces::Terms;
 use crate::geometry::{Geometry, Linear};
-use crate::grains::{Loads, Read, Sums};
+use crate::grains::{GrainTables, Loads, Sums};
 use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
-use crate::seen::Seen;
-use crate::touching::Touching;
-use grainbench_lanes::{Kernel, Lanes, Number, Plain, Processor, Quad, WIDEST, Wide};
+use crate::seen::RecordedContacts;
+use crate::touching::ContactList;
+use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, ScalarBackend, SimdPack, WIDEST};
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
 /// Loop over pairs in contact. The velocity and spin of each grain take `Q` quads.
-pub(crate) struct OfPairs<'a, S: Geometry, N, T, R, const Q: usize> {
+pub(crate) struct PairLoop<'a, S: Geometry, N, T, R, const Q: usize> {
     terms: Terms<'a>,
-    touching: &'a Touching,
-    grains: Read<'a>,
+    touching: &'a ContactList,
+    grains: GrainTables<'a>,
     sums: Sums<'a>,
     shift: &'a [Quad],
     /// Contact history of the block, which is overwritten. If the block is unchanged, it still holds the previous
     /// history.
     memory: [&'a mut [f64]; MEMORY],
-    seen: Option<&'a mut Seen>,
+    seen: Option<&'a mut RecordedContacts>,
     chain: PhantomData<(S, N, T, R)>,
 }
 
@@ -38,7 +38,7 @@ const ROUND: usize = 8;
 
 /// Distances between the grains of pairs.
 #[derive(Clone, Copy)]
-struct Apart<S: Geometry, X: Number> {
+struct PairDistances<S: Geometry, X: Number> {
     /// Vector from the first centre to the second (m).
     between: S::Vectors<X>,
     /// Its length (m), and the inverse of the length (1/m).
@@ -50,11 +50,11 @@ struct Apart<S: Geometry, X: Number> {
     radii: [X; 2],
 }
 
-impl<S: Geometry, L: Lanes> Apart<S, Wide<L>> {
+impl<S: Geometry, L: Lanes> PairDistances<S, SimdPack<L>> {
     /// Returns placeholder values.
     #[inline(always)]
     fn none(lanes: L) -> Self {
-        let zero = Wide::splat(lanes, 0.0);
+        let zero = SimdPack::splat(lanes, 0.0);
         let between = S::vector([zero; 4]);
         Self { between, distance: zero, inverse_distance: zero, reach: zero, radii: [zero; 2] }
     }
@@ -77,17 +77,17 @@ impl Slots {
     }
 }
 
-impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> OfPairs<'a, S, N, T, R, Q> {
+impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> PairLoop<'a, S, N, T, R, Q> {
     /// Number of history values.
     const NUMBERS: usize = T::NUMBERS + R::NUMBERS;
 
     /// Creates the loop over the pairs of a block.
     pub(crate) fn new(
         terms: Terms<'a>,
-        (grains, sums): (Read<'a>, Sums<'a>),
+        (grains, sums): (GrainTables<'a>, Sums<'a>),
         (pairs, block): (&'a mut Pairs, usize),
-        touching: &'a Touching,
-        seen: Option<&'a mut Seen>,
+        touching: &'a ContactList,
+        seen: Option<&'a mut RecordedContacts>,
     ) -> Self {
         let Pairs { shift, memory, .. } = pairs;
         let memory = match memory.get_mut(block) {
@@ -100,7 +100,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     /// Runs the loop. Recorded contacts are processed one by one.
     pub(crate) fn run_on(self, processor: Processor) {
         if self.seen.is_some() {
-            self.run(Plain::<1>);
+            self.run(ScalarBackend::<1>);
         } else {
             processor.run(self);
         }
@@ -108,8 +108,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
 
     /// Computes the distances between the grains of some pairs.
     #[inline(always)]
-    fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> Apart<S, Wide<L>> {
-        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
+    fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> PairDistances<S, SimdPack<L>> {
+        let (Slots { first, second }, zero) = (slots, SimdPack::splat(lanes, 0.0));
         let (place, shift) = (self.grains.place, self.shift);
         let (mut between, reach, radii);
         if T::ACTIVE && Q == 1 {
@@ -132,7 +132,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             between = between - S::vector(gathered(lanes, shift, &pair));
         }
         let distance = between.dot(between).sqrt();
-        Apart { between, distance, inverse_distance: distance.like(1.0) / distance, reach, radii }
+        PairDistances { between, distance, inverse_distance: distance.like(1.0) / distance, reach, radii }
     }
 
     /// Prepares some pairs for the chain of stages.
@@ -141,13 +141,13 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         &self,
         lanes: L,
         slots: &Slots,
-        apart: Apart<S, Wide<L>>,
-        law: &'l Constants<Wide<L>>,
-    ) -> Pair<'l, S, Wide<L>> {
-        let (Slots { first, second }, zero) = (slots, Wide::splat(lanes, 0.0));
-        let Read { place, movement, inverse_inertia: inertia, .. } = self.grains;
+        apart: PairDistances<S, SimdPack<L>>,
+        law: &'l Constants<SimdPack<L>>,
+    ) -> Pair<'l, S, SimdPack<L>> {
+        let (Slots { first, second }, zero) = (slots, SimdPack::splat(lanes, 0.0));
+        let GrainTables { place, movement, inverse_inertia: inertia, .. } = self.grains;
         let movement = &movement.as_chunks::<Q>().0[..place.len()];
-        let Apart { between, distance, inverse_distance, reach, mut radii } = apart;
+        let PairDistances { between, distance, inverse_distance, reach, mut radii } = apart;
         let (velocity, inverse_mass, mut inverse_masses, mut spins);
         if T::ACTIVE && Q == 1 {
             let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
@@ -175,7 +175,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
                 for lane in 0..L::WIDTH {
                     each[lane] = inertia[slots[lane]];
                 }
-                *inverse = Wide::load(lanes, &each);
+                *inverse = SimdPack::load(lanes, &each);
             }
         }
         Pair {
@@ -195,14 +195,14 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
 
     /// Reads the history of some contacts.
     #[inline(always)]
-    fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<Wide<L>> {
-        let mut memory = [Wide::splat(lanes, 0.0); MEMORY];
-        let Touching { steady, remembered, before, .. } = self.touching;
+    fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<SimdPack<L>> {
+        let mut memory = [SimdPack::splat(lanes, 0.0); MEMORY];
+        let ContactList { steady, remembered, before, .. } = self.touching;
         if *steady {
             for (number, now) in memory.iter_mut().zip(&self.memory).take(Self::NUMBERS) {
                 let mut values = [0.0; WIDEST];
                 values[..L::WIDTH].copy_from_slice(&now[from..from + L::WIDTH]);
-                *number = Wide::load(lanes, &values);
+                *number = SimdPack::load(lanes, &values);
             }
             return memory;
         }
@@ -219,14 +219,14 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
                     *value = before[place as usize];
                 }
             }
-            *number = Wide::load(lanes, &values);
+            *number = SimdPack::load(lanes, &values);
         }
         memory
     }
 
     /// Stores the history of some contacts.
     #[inline(always)]
-    fn remember<L: Lanes>(&mut self, memory: &Memory<Wide<L>>, from: usize) {
+    fn remember<L: Lanes>(&mut self, memory: &Memory<SimdPack<L>>, from: usize) {
         for (number, now) in memory.iter().zip(&mut self.memory).take(Self::NUMBERS) {
             now[from..from + L::WIDTH].copy_from_slice(&number.store()[..L::WIDTH]);
         }
@@ -234,8 +234,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
 
     /// Adds the forces and torques of `count` contacts, one after the other.
     #[inline(always)]
-    fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, Wide<L>>, slots: &Slots, count: usize) {
-        let zero = Wide::splat(lanes, 0.0);
+    fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, SimdPack<L>>, slots: &Slots, count: usize) {
+        let zero = SimdPack::splat(lanes, 0.0);
         let one = S::load(answer.force, answer.torques[0], zero);
         let added = [one, S::load(-answer.force, answer.torques[1], zero)];
         // If the sums cover all grains and the register is full, no slot and no lane needs a check.
@@ -250,7 +250,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     fn add_to<L: Lanes>(
         lanes: L,
         loads: &mut impl Loads,
-        [one, other]: [[[Wide<L>; 4]; 2]; 2],
+        [one, other]: [[[SimdPack<L>; 4]; 2]; 2],
         Slots { first, second }: &Slots,
         count: usize,
     ) {
@@ -289,7 +289,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     }
 }
 
-impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Kernel for OfPairs<'_, S, N, T, R, Q> {
+impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Kernel for PairLoop<'_, S, N, T, R, Q> {
     type Output = ();
 
     #[inline(always)]
@@ -301,7 +301,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
         let (laws, touching) = (self.terms.laws, self.touching);
         let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
         let mut law = laws.gather(lanes, &[0; WIDEST]);
-        let mut aparts = [Apart::none(lanes); ROUND];
+        let mut aparts = [PairDistances::none(lanes); ROUND];
         for round in (0..touching.count).step_by(ROUND * L::WIDTH) {
             let end = touching.count.next_multiple_of(L::WIDTH).min(round + ROUND * L::WIDTH);
             let [first, second] = [&touching.first[round..end], &touching.second[round..end]];
@@ -328,7 +328,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
                     && let Some(seen) = &mut self.seen
                     && self.sums.holds(slots.first[0])
                 {
-                    let (one, other, Read { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
+                    let (one, other, GrainTables { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
                     let partner = Partner::Grain(id[other] + 1);
                     seen.add(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]);
                 }
@@ -340,13 +340,13 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
 
 /// Returns one quad per lane.
 #[inline(always)]
-fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [Wide<L>; 4]) -> [Quad; WIDEST] {
+fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [SimdPack<L>; 4]) -> [Quad; WIDEST] {
     lanes.quads([a.register(), b.register(), c.register(), d.register()])
 }
 
 /// Returns two quads per lane.
 #[inline(always)]
-fn spread_pairs<L: Lanes>(lanes: L, [[a, b, c, d], [e, f, g, h]]: [[Wide<L>; 4]; 2]) -> [L::Pair; WIDEST] {
+fn spread_pairs<L: Lanes>(lanes: L, [[a, b, c, d], [e, f, g, h]]: [[SimdPack<L>; 4]; 2]) -> [L::Pair; WIDEST] {
     let one = [a.register(), b.register(), c.register(), d.register()];
     lanes.pairs([one, [e.register(), f.register(), g.register(), h.register()]])
 }

@@ -3,7 +3,7 @@
 
 use crate::convention::Convention;
 use crate::geometry::Geometry;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use crate::solver::{plane, solid};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
@@ -53,7 +53,7 @@ fn scene(dimension: usize) -> Scene {
 }
 
 /// Returns the state after 300 steps and the recorded contacts, as text.
-fn state<S: Geometry>(mut simulation: Simulated<S>, path: Processor) -> String {
+fn state<S: Geometry>(mut simulation: DemSimulation<S>, path: Processor) -> String {
     simulation.processor = path;
     simulation.fewest_in_a_share = 5;
     simulation.take_cycles(300).unwrap_or_else(|error| panic!("{error:?}"));
@@ -95,7 +95,7 @@ fn laws() -> Vec<(String, ContactLaw, ContactLaw)> {
     laws
 }
 
-fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> Simulated<S>) {
+fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> DemSimulation<S>) {
     let mut scene = scene(<S as Space>::DIMENSION);
     let teams = [2, 3, 7].map(Team::new);
     for (name, law, other) in laws() {
@@ -125,9 +125,9 @@ fn simulated<S: Geometry>(
     convention: &Convention,
     forces: Box<dyn crate::forces::Forces<S>>,
     team: Team,
-) -> Simulated<S> {
+) -> DemSimulation<S> {
     let options = crate::contact::Options::from_convention(convention);
-    Simulated::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
+    DemSimulation::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 #[test]

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 /// Contacts in the last recorded force evaluation.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct RecordedContacts {
     /// Individual contacts as in a snapshot, if they are recorded. Output takes them away.
     pub(crate) contacts: Vec<ContactState>,
     /// True if individual contacts are recorded.
@@ -31,7 +31,7 @@ pub(crate) struct Energies {
     pub(crate) released: f64,
 }
 
-impl Seen {
+impl RecordedContacts {
     /// Starts a new recording, of individual contacts if `one_by_one` is set.
     pub(crate) fn begin(&mut self, one_by_one: bool) {
         (self.one_by_one, self.slipping) = (one_by_one, 0);

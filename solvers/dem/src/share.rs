@@ -8,10 +8,10 @@
 use crate::contact::chain::Layout;
 use crate::forces::{Forces, Terms};
 use crate::geometry::Geometry;
-use crate::grains::{Read, Sums};
+use crate::grains::{GrainTables, Sums};
 use crate::listed::{BLOCK, Pairs};
-use crate::seen::Seen;
-use crate::touching::{Touching, blocks};
+use crate::seen::RecordedContacts;
+use crate::touching::{ContactList, blocks};
 use grainbench_lanes::Processor;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -21,7 +21,7 @@ pub(crate) const FEWEST: usize = 500;
 
 /// Thread partition of the rows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Share {
+pub(crate) struct ThreadPartition {
     /// Own rows, which are the slots of its grains.
     pub(crate) rows: Range<usize>,
     /// Nearby pairs inside the domain.
@@ -37,9 +37,9 @@ pub(crate) struct Share {
 #[derive(Clone, Debug, Default)]
 struct Work {
     /// Pairs in contact of a block.
-    touching: [Touching; 2],
+    touching: [ContactList; 2],
     /// Recorded contacts: of pairs across a face, and of other pairs.
-    seen: [Seen; 2],
+    seen: [RecordedContacts; 2],
     /// Index in the history of every pair: across a face, and of other pairs.
     places: [Vec<u32>; 2],
 }
@@ -64,7 +64,7 @@ pub(crate) fn rows_of(rows: usize, shares: usize) -> Vec<Range<usize>> {
     (0..shares).map(|share| share * rows / shares..(share + 1) * rows / shares).collect()
 }
 
-impl Share {
+impl ThreadPartition {
     /// Creates an empty partition of these rows.
     pub(crate) fn new(rows: Range<usize>) -> Self {
         Self { rows, near: Pairs::empty(), across: Pairs::empty(), work: Work::default() }
@@ -135,12 +135,12 @@ impl Share {
     }
 
     /// Returns the recorded contacts: of pairs across a face, and of other pairs.
-    pub(crate) fn seen(&self) -> &[Seen; 2] {
+    pub(crate) fn seen(&self) -> &[RecordedContacts; 2] {
         &self.work.seen
     }
 
     /// Returns mutable access to the recorded contacts, from which they can be taken.
-    pub(crate) fn seen_mut(&mut self) -> &mut [Seen; 2] {
+    pub(crate) fn seen_mut(&mut self) -> &mut [RecordedContacts; 2] {
         &mut self.work.seen
     }
 
@@ -158,7 +158,7 @@ impl Share {
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
-        grains: Read<'_>,
+        grains: GrainTables<'_>,
         mut sums: Sums<'_>,
     ) -> u64 {
         let mut contacts = 0;
@@ -176,8 +176,8 @@ impl Share {
 pub(crate) struct List<'a> {
     rows: Range<usize>,
     pairs: &'a mut Pairs,
-    touching: &'a mut Touching,
-    seen: &'a mut Seen,
+    touching: &'a mut ContactList,
+    seen: &'a mut RecordedContacts,
     /// Number of contacts in its own rows so far.
     own: u64,
 }
@@ -193,7 +193,7 @@ impl List<'_> {
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
-        grains: Read<'_>,
+        grains: GrainTables<'_>,
         sums: Sums<'_>,
         block: Range<usize>,
     ) {

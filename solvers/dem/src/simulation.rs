@@ -13,19 +13,19 @@ use crate::joints::Joints;
 use crate::laws::Laws;
 use crate::listed::Pairs;
 use crate::mean_virial::MeanVirial;
-use crate::motion::{Motion, Moving};
+use crate::motion::{Motion, MotionData};
 use crate::neighbours::Neighbours;
-use crate::seen::{Energies, Seen};
-use crate::share::{Evaluation, FEWEST, Share};
+use crate::seen::{Energies, RecordedContacts};
+use crate::share::{Evaluation, FEWEST, ThreadPartition};
 use crate::skin;
 use crate::stability::stable_fraction;
-use crate::walls::{MovingWall, NearWall};
+use crate::walls::{MovingWall, WallNeighbours};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::overlap::nearest_image;
 use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::{Driven, Probe, Scene};
-use grainbench_scene::solver::{Broken, Cause, LARGEST_ENTRY_OVERLAP, Subject};
+use grainbench_scene::solver::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
 use nalgebra::Vector3;
 
 /// Radius, in mean radii, above which a grain has no cell of the grid. Cells of its size would hold hundreds of other
@@ -37,7 +37,7 @@ const FAR_LARGER: f64 = 4.0;
 const STEPS_BETWEEN_LOOKS: u64 = 32;
 
 /// Simulation in a space of two or three dimensions.
-pub(crate) struct Simulated<S: Geometry> {
+pub(crate) struct DemSimulation<S: Geometry> {
     pub(crate) scene: Scene,
     laws: Laws,
     options: Options,
@@ -56,7 +56,7 @@ pub(crate) struct Simulated<S: Geometry> {
     /// Smallest number of grains in a thread partition.
     pub(crate) fewest_in_a_share: usize,
     /// Contacts with walls in the last recorded force evaluation.
-    seen_at_walls: Seen,
+    seen_at_walls: RecordedContacts,
     /// Step whose contacts are recorded; `None` after they have been taken.
     seen_at: Option<u64>,
     /// Largest number of rows of grains and contacts in a wanted snapshot.
@@ -95,7 +95,7 @@ pub(crate) struct Simulated<S: Geometry> {
     pub(crate) entered: usize,
 }
 
-impl<S: Geometry> Simulated<S> {
+impl<S: Geometry> DemSimulation<S> {
     /// Sets up a scene: computes the initial forces, and shifts velocities half a step back so that all cycles are
     /// alike.
     pub(crate) fn new(
@@ -104,7 +104,7 @@ impl<S: Geometry> Simulated<S> {
         options: Options,
         time_step: f64,
         (team, most_rows): (Team, u64),
-    ) -> Result<Self, Box<Broken>> {
+    ) -> Result<Self, Box<SimulationFailure>> {
         let largest_radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
         let mean_radius = scene.grains.iter().map(|grain| grain.radius).sum::<f64>() / scene.grains.len() as f64;
         let gravity = S::embed(S::restrict(scene.gravity));
@@ -119,7 +119,7 @@ impl<S: Geometry> Simulated<S> {
             processor: Processor::new(),
             team,
             fewest_in_a_share: FEWEST,
-            seen_at_walls: Seen::default(),
+            seen_at_walls: RecordedContacts::default(),
             seen_at: None,
             most_rows,
             looks_at_contacts: {
@@ -214,7 +214,7 @@ impl<S: Geometry> Simulated<S> {
     /// been taken.
     pub(crate) fn touching(&self) -> Option<[usize; 2]> {
         self.seen_at.filter(|&at| at == self.step)?;
-        let lists = self.neighbours.shares.iter().flat_map(Share::seen).chain([&self.seen_at_walls]);
+        let lists = self.neighbours.shares.iter().flat_map(ThreadPartition::seen).chain([&self.seen_at_walls]);
         Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
     }
 
@@ -255,12 +255,12 @@ impl<S: Geometry> Simulated<S> {
     }
 
     /// Takes `steps` cycles.
-    pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+    pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         let team = self.team.clone();
         team.lead(|| self.cycles(steps))
     }
 
-    fn cycles(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+    fn cycles(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         // If nothing happens between the force evaluation and the motion, each block of grains is moved right after its
         // forces.
         let at_once = !self.accounting && self.scene.driven.is_empty();
@@ -281,7 +281,7 @@ impl<S: Geometry> Simulated<S> {
     /// Takes one cycle: motion by the previous forces, unless the grains have moved already, motion of walls, and the
     /// next forces. With `move_on`, the grains move after the force evaluation. With `record`, the contacts are
     /// recorded.
-    fn cycle(&mut self, record: bool, has_moved: bool, move_on: bool) -> Result<(), Box<Broken>> {
+    fn cycle(&mut self, record: bool, has_moved: bool, move_on: bool) -> Result<(), Box<SimulationFailure>> {
         let half_skin = 0.5 * self.neighbours.skin;
         if !has_moved {
             self.shield_driven();
@@ -325,7 +325,7 @@ impl<S: Geometry> Simulated<S> {
     fn move_grains(&mut self) {
         let Self { motion, grains, neighbours, team, processor, .. } = self;
         let all = 0..grains.len();
-        let mut left = Moving::new(grains, all);
+        let mut left = MotionData::new(grains, all);
         let parts = neighbours.shares.iter().map(|share| left.take_off(share.rows.len()));
         let fastest = team.fold(parts, |_, part| motion.advance::<S>(*processor, part), 0.0, f64::max);
         self.travel(fastest);
@@ -381,7 +381,7 @@ impl<S: Geometry> Simulated<S> {
         }
         let (read, mut left) = grains.parts();
         let parts = neighbours.shares.iter_mut().map(|share| (left.take_off(share.rows.len()), share));
-        let evaluate = |_, (sums, share): (_, &mut Share)| share.evaluate(&evaluation, read, sums);
+        let evaluate = |_, (sums, share): (_, &mut ThreadPartition)| share.evaluate(&evaluation, read, sums);
         cost.contact_evaluations += team.fold(parts, evaluate, 0, |sum, found| sum + found);
         *contacts = cost.contact_evaluations - before;
         if move_on {
@@ -471,10 +471,10 @@ impl<S: Geometry> Simulated<S> {
     }
 
     /// Rebuilds the neighbour list, after a check of every grain.
-    fn rebuild(&mut self) -> Result<(), Box<Broken>> {
+    fn rebuild(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
-        let by_wall: Vec<NearWall> = self
+        let by_wall: Vec<WallNeighbours> = self
             .walls
             .iter()
             .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
@@ -532,7 +532,7 @@ impl<S: Geometry> Simulated<S> {
 
     /// Returns an error if an inserted grain overlaps another grain or a wall too much. `slots` holds the previous
     /// slots, which are absent for inserted grains.
-    fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<Broken>> {
+    fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<SimulationFailure>> {
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
         for slot in (0..slots.len()).filter(|&slot| slots[slot] == ABSENT) {
             let (position, radius) = (self.grains.position(slot), self.grains.radius(slot));
@@ -557,7 +557,7 @@ impl<S: Geometry> Simulated<S> {
     }
 
     /// Returns an error if a position or velocity is not finite, or if a grain moves by more than its radius in a step.
-    fn refuse_broken_state(&self) -> Result<(), Box<Broken>> {
+    fn refuse_broken_state(&self) -> Result<(), Box<SimulationFailure>> {
         for slot in 0..self.grains.len() {
             let (position, radius) = (self.grains.position(slot), self.grains.radius(slot));
             let moved = self.grains.velocity(slot).norm() * self.motion.time_step;
@@ -574,7 +574,7 @@ impl<S: Geometry> Simulated<S> {
     }
 
     /// Returns the error for a grain that broke the run, with advice on the time step.
-    fn broken(&self, slot: usize, position: Vector3<f64>, cause: Cause) -> Box<Broken> {
+    fn broken(&self, slot: usize, position: Vector3<f64>, cause: Cause) -> Box<SimulationFailure> {
         let stable = stable_fraction(&self.scene);
         let fraction = self.motion.time_step / self.critical;
         let advice = if matches!(cause, Cause::CameIntoGrain { .. } | Cause::CameIntoWall { .. }) {
@@ -589,10 +589,10 @@ impl<S: Geometry> Simulated<S> {
              initial overlaps"
                 .to_owned()
         };
-        Box::new(Broken {
+        Box::new(SimulationFailure {
             time: self.step as f64 * self.motion.time_step,
             step: self.step,
-            subject: Subject::Grain(self.grains.id[slot] + 1),
+            subject: FailedParticle::Grain(self.grains.id[slot] + 1),
             position,
             cause,
             time_step: self.motion.time_step,
@@ -605,7 +605,7 @@ impl<S: Geometry> Simulated<S> {
 /// Computes the forces of all pairs. With `motion`, it moves each block of grains as soon as its forces are complete.
 /// Returns the number of contacts and the square of the largest speed (m²/s²).
 fn evaluate_and_move<S: Geometry>(
-    whole: &mut Share,
+    whole: &mut ThreadPartition,
     evaluation: &Evaluation<'_, S>,
     grains: &mut Grains<S>,
     motion: Option<&Motion>,
@@ -620,13 +620,13 @@ fn evaluate_and_move<S: Geometry>(
         let (read, sums) = grains.parts();
         near.evaluate(evaluation, read, sums, block.clone());
         if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {
-            fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::new(grains, moved..row)));
+            fastest = fastest.max(motion.advance::<S>(evaluation.processor, MotionData::new(grains, moved..row)));
             moved = row;
         }
     }
     if let Some(motion) = motion {
         let left = moved..grains.len();
-        fastest = fastest.max(motion.advance::<S>(evaluation.processor, Moving::new(grains, left)));
+        fastest = fastest.max(motion.advance::<S>(evaluation.processor, MotionData::new(grains, left)));
     }
     (across.own() + near.own(), fastest)
 }

@@ -10,21 +10,21 @@ use crate::end_state::words;
 use crate::forces::{Chain, Forces};
 use crate::geometry::Geometry;
 use crate::share::FEWEST;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use crate::stability::damped_step;
 use grainbench_lanes::Team;
 use grainbench_scene::brief::Brief;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::contact_law::SpringsKind;
-use grainbench_scene::drive::{Course, Driven, Stepper};
+use grainbench_scene::drive::{Course, LoopOutput, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::end_state::EndState;
-use grainbench_scene::record::{Counts, Look, Provenance, Record};
+use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
 use grainbench_scene::space::{Plane, Solid};
-use grainbench_scene::terms::{Less, Terms};
+use grainbench_scene::terms::{Limitation, Terms};
 
 /// Discrete element method in one convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,9 +42,9 @@ const END_OF_STEP: &str = "velocities are decomposed along the normal at the end
                            velocity of its place there: first order in ΩΔt";
 
 /// Limitations of the 1979 paper as published.
-const OF_1979: &[Less] = &[
-    Less { property: "objectivity", quantity: "place off in the end", at_most: 2e-3, because: END_OF_STEP },
-    Less { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
+const OF_1979: &[Limitation] = &[
+    Limitation { property: "objectivity", quantity: "place off in the end", at_most: 2e-3, because: END_OF_STEP },
+    Limitation { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
 ];
 
 /// Reason for limitations: rolling resistance at walls in LAMMPS and LIGGGHTS.
@@ -52,18 +52,18 @@ const OWN_SPIN: &str = "the rolling stage at a wall takes the spin of the grain 
                         LAMMPS and in LIGGGHTS: a wall that turns drives the grain";
 
 /// Limitations of LAMMPS and LIGGGHTS.
-const OF_PROGRAMS: &[Less] = &[
-    Less {
+const OF_PROGRAMS: &[Limitation] = &[
+    Limitation {
         property: "objectivity",
         quantity: "place off in the end, under twist",
         at_most: 5e-3,
         because: "the tangential spring is projected on the tangent plane and does not follow a contact that turns about its \
                   normal",
     },
-    Less { property: "objectivity", quantity: "place off in the end", at_most: 0.05, because: OWN_SPIN },
-    Less { property: "objectivity", quantity: "spin × radius off in the end", at_most: 0.25, because: OWN_SPIN },
-    Less { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
-    Less {
+    Limitation { property: "objectivity", quantity: "place off in the end", at_most: 0.05, because: OWN_SPIN },
+    Limitation { property: "objectivity", quantity: "spin × radius off in the end", at_most: 0.25, because: OWN_SPIN },
+    Limitation { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
+    Limitation {
         property: "passivity",
         quantity: "work gained",
         at_most: 0.35,
@@ -148,7 +148,8 @@ impl Dem {
             );
             return Err(RunError::Unsupported { solver: self.name(), reason });
         }
-        let mut simulated = Simulated::new(scene, forces, Options::from_convention(&self.convention), time_step, team)?;
+        let mut simulated =
+            DemSimulation::new(scene, forces, Options::from_convention(&self.convention), time_step, team)?;
         simulated.follow_critical_step(self.allow_unstable);
         Ok(Box::new(simulated))
     }
@@ -232,9 +233,9 @@ impl Dem {
         let mut simulation = dem.start_on(scene, time_step, watch.threads(), watch.most_rows())?;
         let run = self.run_of(scene, time_step, steps, simulation.layout());
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
-        let mut running = Running { simulation, run, defect: self.defect };
+        let mut running = RunningSimulation { simulation, run, defect: self.defect };
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
+        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, watch)?;
         Ok(Record {
             provenance: Provenance::new(scene, self.name(), resolution, time_step, self.convention.words()),
             series,
@@ -284,13 +285,13 @@ fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn 
 }
 
 /// Running simulation.
-struct Running<'a> {
+struct RunningSimulation<'a> {
     simulation: Box<dyn Simulation>,
     run: Run<'a>,
     defect: Option<Defect>,
 }
 
-impl Stepper for Running<'_> {
+impl Stepper for RunningSimulation<'_> {
     fn step(&self) -> u64 {
         self.simulation.step()
     }
@@ -308,7 +309,7 @@ impl Stepper for Running<'_> {
         Ok(())
     }
 
-    fn look(&mut self, snapshot: bool) -> Look {
+    fn look(&mut self, snapshot: bool) -> StepState {
         if snapshot { self.simulation.look_for_snapshot() } else { self.simulation.look() }
     }
 

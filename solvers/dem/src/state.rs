@@ -8,7 +8,7 @@ use crate::geometry::Geometry;
 use crate::grains::Grains;
 use crate::mean_virial::MeanVirial;
 use crate::neighbours::Neighbours;
-use crate::simulation::Simulated;
+use crate::simulation::DemSimulation;
 use crate::walls::WallMemory;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::finite::is_finite;
@@ -32,7 +32,7 @@ struct State<S: Geometry> {
     recorder: Recorder,
 }
 
-impl<S: Geometry> Simulated<S> {
+impl<S: Geometry> DemSimulation<S> {
     /// Returns a checkpoint of the state after the last step, with the record so far.
     pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let state = State::<S> {

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Geometry, Linear};
 use crate::laws::{between, gathered, places};
-use crate::listed::{BLOCK, Pairs, Remembered};
+use crate::listed::{BLOCK, BlockHistory, Pairs};
 use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -14,7 +14,7 @@ pub(crate) fn blocks(pairs: usize) -> impl Iterator<Item = Range<usize>> {
 
 /// Pairs in contact, in the order of the list.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Touching {
+pub(crate) struct ContactList {
     /// Number of pairs.
     pub(crate) count: usize,
     /// Slot of the first grain of each pair, its row in the list. Padded after the last pair so that a register can be
@@ -29,10 +29,10 @@ pub(crate) struct Touching {
     /// For each contact, its index in the previous history of the block; 0 for a new contact.
     pub(crate) remembered: Vec<u32>,
     /// Previous history of the block, if the history is rebuilt.
-    pub(crate) before: Remembered,
+    pub(crate) before: BlockHistory,
 }
 
-impl Touching {
+impl ContactList {
     /// Finds the pairs in contact of a block of listed pairs. Blocks must be processed in order.
     pub(crate) fn find<S: Geometry>(
         &mut self,
@@ -59,7 +59,7 @@ struct Find<'a, S: Geometry> {
     place: &'a [Quad],
     pairs: &'a mut Pairs,
     block: Range<usize>,
-    touching: &'a mut Touching,
+    touching: &'a mut ContactList,
     space: PhantomData<S>,
 }
 
@@ -70,7 +70,7 @@ impl<S: Geometry> Kernel for Find<'_, S> {
     fn run<L: Lanes>(self, lanes: L) {
         let Self { place, pairs, block, touching, space: _ } = self;
         let Pairs { row, partner, shift, touches, .. } = pairs;
-        let Touching { count, first, second, pair, steady, remembered, before: _ } = touching;
+        let ContactList { count, first, second, pair, steady, remembered, before: _ } = touching;
         let (mut had, mut changed) = (0, 0);
         *count = 0;
         for from in block.clone().step_by(WIDEST) {

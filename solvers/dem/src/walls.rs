@@ -3,8 +3,8 @@
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
 use crate::grains::{ABSENT, Grains};
-use crate::meshes::AtMesh;
-use grainbench_scene::mesh::{Mesh, Touched};
+use crate::meshes::MeshContacts;
+use grainbench_scene::mesh::{Mesh, SphereContact};
 use grainbench_scene::motion::Displacement;
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::scene::{Piston, Wall, WallShape};
@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Slots or ids of grains near a wall, with their contact history.
-pub(crate) type NearWall = Vec<(u32, Memory<f64>)>;
+pub(crate) type WallNeighbours = Vec<(u32, Memory<f64>)>;
 
 /// Wall during the run.
 #[derive(Clone, Debug)]
@@ -31,11 +31,11 @@ pub(crate) struct MovingWall {
     /// Factors c₁ and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) at r from the centre.
     swing: [f64; 2],
     /// Grains near the wall, by slot.
-    pub(crate) near: NearWall,
+    pub(crate) near: WallNeighbours,
     /// True for each entry of `near` whose contact belongs to a joined wall; empty without joints.
     pub(crate) covered: Vec<bool>,
     /// Nearby grains of a mesh, which replace `near`.
-    pub(crate) at_mesh: AtMesh,
+    pub(crate) at_mesh: MeshContacts,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
     /// Displacement of a pressed wall along its normal (m), and its speed half a step before (m/s).
@@ -49,8 +49,8 @@ pub(crate) struct MovingWall {
 pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
-    near: NearWall,
-    at_mesh: AtMesh,
+    near: WallNeighbours,
+    at_mesh: MeshContacts,
     force: Vector3<f64>,
     pressed: [f64; 2],
     gone: bool,
@@ -68,7 +68,7 @@ impl WallMemory {
 }
 
 /// Wall as seen from a grain.
-pub(crate) struct Facing {
+pub(crate) struct WallView {
     /// Unit vector from the grain to the wall.
     pub(crate) normal: Vector3<f64>,
     /// Distance from the grain's centre to the wall (m), negative inside the solid of a plane.
@@ -93,7 +93,7 @@ impl MovingWall {
             swing: [1.0, 0.0],
             near: Vec::new(),
             covered: Vec::new(),
-            at_mesh: AtMesh::default(),
+            at_mesh: MeshContacts::default(),
             force: Vector3::zeros(),
             pressed: [0.0; 2],
             gone: false,
@@ -271,7 +271,7 @@ impl MovingWall {
 
     /// Returns the wall as seen from a grain at `at`.
     #[inline(always)]
-    pub(crate) fn facing(&self, at: Vector3<f64>) -> Facing {
+    pub(crate) fn facing(&self, at: Vector3<f64>) -> WallView {
         let (nearest, normal, distance) = match &self.shape {
             WallShape::Plane { point, normal } => {
                 let distance = (at - point).dot(normal);
@@ -282,13 +282,13 @@ impl MovingWall {
             WallShape::Round { axis, radii } => facing_point(at, nearest_on_round(at, axis, radii)),
             WallShape::Mesh(mesh) => facing_point(at, mesh.nearest(at)),
         };
-        Facing { normal, distance, velocity: self.velocity_at(nearest) }
+        WallView { normal, distance, velocity: self.velocity_at(nearest) }
     }
 
     /// Returns the mesh part of a contact as seen from a grain at `at`.
-    pub(crate) fn facing_part(&self, mesh: &Mesh, at: Vector3<f64>, touched: &Touched) -> Facing {
+    pub(crate) fn facing_part(&self, mesh: &Mesh, at: Vector3<f64>, touched: &SphereContact) -> WallView {
         let normal = mesh.turn * touched.direction;
-        Facing { normal, distance: touched.distance, velocity: self.velocity_at(at + normal * touched.distance) }
+        WallView { normal, distance: touched.distance, velocity: self.velocity_at(at + normal * touched.distance) }
     }
 
     /// Returns the velocity at a point of the wall (m/s).

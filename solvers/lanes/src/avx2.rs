@@ -112,11 +112,11 @@ fn less(lanes: V3, from: Quad, to: Quad) -> __m256d {
 }
 
 /// Transposition of four registers.
-trait Turned {
+trait RegisterTranspose {
     fn turned(self, rows: [__m256d; 4]) -> [__m256d; 4];
 }
 
-impl Turned for V3 {
+impl RegisterTranspose for V3 {
     #[inline(always)]
     fn turned(self, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
         let avx = self.avx;

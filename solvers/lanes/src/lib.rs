@@ -23,8 +23,8 @@ pub mod probe;
 mod processor;
 mod team;
 
-pub use number::{Number, Wide};
-pub use plain::Plain;
+pub use number::{Number, SimdPack};
+pub use plain::ScalarBackend;
 pub use processor::{FourKernel, Kernel, PROCESSOR, Processor};
 pub use team::{Team, take_off};
 

@@ -80,19 +80,19 @@ impl Number for f64 {
 
 /// Several numbers in a register, with their backend.
 #[derive(Clone, Copy)]
-pub struct Wide<L: Lanes> {
+pub struct SimdPack<L: Lanes> {
     lanes: L,
     register: L::Register,
 }
 
 /// Mask for several numbers, with their backend.
 #[derive(Clone, Copy)]
-pub struct WideMask<L: Lanes> {
+pub struct SimdMask<L: Lanes> {
     lanes: L,
     mask: L::Mask,
 }
 
-impl<L: Lanes> WideMask<L> {
+impl<L: Lanes> SimdMask<L> {
     /// Returns the mask as bits, with the first lane as the lowest bit.
     #[inline(always)]
     pub fn bits(self) -> u32 {
@@ -100,7 +100,7 @@ impl<L: Lanes> WideMask<L> {
     }
 }
 
-impl<L: Lanes> Wide<L> {
+impl<L: Lanes> SimdPack<L> {
     /// Wraps the numbers of a register.
     #[inline(always)]
     pub fn new(lanes: L, register: L::Register) -> Self {
@@ -139,7 +139,7 @@ impl<L: Lanes> Wide<L> {
     }
 }
 
-impl<L: FourLanes> Wide<L> {
+impl<L: FourLanes> SimdPack<L> {
     /// Returns one number per lane.
     #[inline(always)]
     pub fn four(lanes: L, values: [f64; LANES]) -> Self {
@@ -161,8 +161,8 @@ impl<L: FourLanes> Wide<L> {
     }
 }
 
-impl<L: Lanes> Number for Wide<L> {
-    type Mask = WideMask<L>;
+impl<L: Lanes> Number for SimdPack<L> {
+    type Mask = SimdMask<L>;
 
     #[inline(always)]
     fn like(self, value: f64) -> Self {
@@ -177,15 +177,15 @@ impl<L: Lanes> Number for Wide<L> {
         Self { register: self.lanes.sqrt(self.register), ..self }
     }
     #[inline(always)]
-    fn below(self, bound: Self) -> WideMask<L> {
-        WideMask { lanes: self.lanes, mask: self.lanes.below(self.register, bound.register) }
+    fn below(self, bound: Self) -> SimdMask<L> {
+        SimdMask { lanes: self.lanes, mask: self.lanes.below(self.register, bound.register) }
     }
     #[inline(always)]
-    fn choose(mask: WideMask<L>, yes: Self, no: Self) -> Self {
+    fn choose(mask: SimdMask<L>, yes: Self, no: Self) -> Self {
         Self { register: mask.lanes.choose(mask.mask, yes.register, no.register), ..yes }
     }
     #[inline(always)]
-    fn anywhere(self, mask: WideMask<L>) -> bool {
+    fn anywhere(self, mask: SimdMask<L>) -> bool {
         mask.bits() != 0
     }
 }
@@ -193,14 +193,14 @@ impl<L: Lanes> Number for Wide<L> {
 /// Implements an operator for several numbers, and for several numbers and a constant.
 macro_rules! operator {
     ($Operator:ident, $operator:ident) => {
-        impl<L: Lanes> $Operator for Wide<L> {
+        impl<L: Lanes> $Operator for SimdPack<L> {
             type Output = Self;
             #[inline(always)]
             fn $operator(self, other: Self) -> Self {
                 Self { register: self.lanes.$operator(self.register, other.register), ..self }
             }
         }
-        impl<L: Lanes> $Operator<f64> for Wide<L> {
+        impl<L: Lanes> $Operator<f64> for SimdPack<L> {
             type Output = Self;
             #[inline(always)]
             fn $operator(self, other: f64) -> Self {
@@ -215,7 +215,7 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-impl<L: Lanes> Neg for Wide<L> {
+impl<L: Lanes> Neg for SimdPack<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

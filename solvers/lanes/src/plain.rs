@@ -4,7 +4,7 @@ use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 
 /// Array of one or four numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Plain<const WIDTH: usize>;
+pub struct ScalarBackend<const WIDTH: usize>;
 
 /// Repeats an expression for each lane, of which there are at most four. It is written out, because the compiler would
 /// otherwise have to unroll a loop for every operation in every kernel.
@@ -36,7 +36,7 @@ const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(yes.to_bits() & mask | no.to_bits() & !mask)
 }
 
-impl<const WIDTH: usize> Lanes for Plain<WIDTH> {
+impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
     type Register = [f64; WIDTH];
     type Mask = [u64; WIDTH];
     type Pair = [Quad; 2];
@@ -156,7 +156,7 @@ fn turned<const WIDTH: usize>(rows: [[f64; 4]; WIDTH]) -> [[f64; WIDTH]; 4] {
     columns
 }
 
-impl FourLanes for Plain<LANES> {
+impl FourLanes for ScalarBackend<LANES> {
     #[inline(always)]
     fn register(self, values: [f64; LANES]) -> [f64; LANES] {
         values

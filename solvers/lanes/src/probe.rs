@@ -1,7 +1,7 @@
 //! Peak performance of this processor on one thread, as a reference for loops: memory bandwidth, and arithmetic in
 //! registers.
 
-use crate::{Kernel, Lanes, Number, Processor, Quad, Wide};
+use crate::{Kernel, Lanes, Number, Processor, Quad, SimdPack};
 
 /// Bytes that [`stream`] reads and writes per quad.
 pub const BYTES_OF_A_QUAD: usize = 3 * size_of::<Quad>();
@@ -31,18 +31,18 @@ impl Kernel for Compute {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> (u64, f64) {
-        let (less, more) = (Wide::splat(lanes, 0.999), Wide::splat(lanes, 1e-3));
+        let (less, more) = (SimdPack::splat(lanes, 0.999), SimdPack::splat(lanes, 1e-3));
         // The initial numbers are unknown to the compiler, so it cannot compute the result in advance.
-        let mut chains = [Wide::splat(lanes, 0.0); CHAINS];
+        let mut chains = [SimdPack::splat(lanes, 0.0); CHAINS];
         for (number, chain) in chains.iter_mut().enumerate() {
-            *chain = Wide::splat(lanes, std::hint::black_box(number as f64));
+            *chain = SimdPack::splat(lanes, std::hint::black_box(number as f64));
         }
         for _ in 0..self.times {
             for chain in &mut chains {
                 *chain = *chain * less + more;
             }
         }
-        let mut sum = Wide::splat(lanes, 0.0);
+        let mut sum = SimdPack::splat(lanes, 0.0);
         for chain in chains {
             sum = sum + chain;
         }

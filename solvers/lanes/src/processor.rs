@@ -1,6 +1,6 @@
 //! Instruction sets of this processor, and loops compiled for them.
 
-use crate::{FourLanes, LANES, Lanes, Plain};
+use crate::{FourLanes, LANES, Lanes, ScalarBackend};
 use std::sync::OnceLock;
 
 /// Environment variable that forces an instruction set: `portable`, `avx2` or `avx512`.
@@ -94,9 +94,9 @@ impl Processor {
         match self {
             Self::Portable => portable(kernel),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
+            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledLoop { lanes: features, kernel }),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(features) => pulp::Simd::vectorize(features, Compiled { lanes: features, kernel }),
+            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledLoop { lanes: features, kernel }),
         }
     }
 
@@ -106,10 +106,10 @@ impl Processor {
         match self {
             Self::Portable => portable_by_four(kernel),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: features, kernel }),
+            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: features, kernel }),
             // Four lanes too, but with the larger number of registers of this processor.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledByFour { lanes: *features, kernel }),
+            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: *features, kernel }),
         }
     }
 }
@@ -118,24 +118,24 @@ impl Processor {
 /// one function take the compiler minutes.
 #[inline(never)]
 fn portable<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run(Plain::<LANES>)
+    kernel.run(ScalarBackend::<LANES>)
 }
 
 /// Runs a loop over four items at a time in portable code.
 #[inline(never)]
 fn portable_by_four<K: FourKernel>(kernel: K) {
-    kernel.run(Plain::<LANES>);
+    kernel.run(ScalarBackend::<LANES>);
 }
 
 /// Loop compiled for a processor.
 #[cfg(target_arch = "x86_64")]
-struct Compiled<L, K> {
+struct CompiledLoop<L, K> {
     lanes: L,
     kernel: K,
 }
 
 #[cfg(target_arch = "x86_64")]
-impl<L: Lanes, K: Kernel> pulp::WithSimd for Compiled<L, K> {
+impl<L: Lanes, K: Kernel> pulp::WithSimd for CompiledLoop<L, K> {
     type Output = K::Output;
 
     #[inline(always)]
@@ -146,13 +146,13 @@ impl<L: Lanes, K: Kernel> pulp::WithSimd for Compiled<L, K> {
 
 /// Loop over four items at a time, compiled for a processor.
 #[cfg(target_arch = "x86_64")]
-struct CompiledByFour<L, K> {
+struct CompiledFourLoop<L, K> {
     lanes: L,
     kernel: K,
 }
 
 #[cfg(target_arch = "x86_64")]
-impl<L: FourLanes, K: FourKernel> pulp::WithSimd for CompiledByFour<L, K> {
+impl<L: FourLanes, K: FourKernel> pulp::WithSimd for CompiledFourLoop<L, K> {
     type Output = ();
 
     #[inline(always)]

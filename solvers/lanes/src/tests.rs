@@ -9,15 +9,15 @@ fn bits(value: f64) -> u64 {
 }
 
 /// Every operation with four lanes, as bits.
-struct ByFour<'a>(&'a mut Vec<u64>);
+struct FourLaneBits<'a>(&'a mut Vec<u64>);
 
-impl FourKernel for ByFour<'_> {
+impl FourKernel for FourLaneBits<'_> {
     fn run<L: FourLanes>(self, lanes: L) {
         for (at, &a) in NUMBERS.iter().enumerate() {
             for &b in &NUMBERS {
-                let one = Wide::four(lanes, [a, b, 0.1 * a, 3.0 * b]);
-                let two = Wide::four(lanes, [b, a + 0.1, b, NUMBERS[(at + 3) % 8]]);
-                let sums = Wide::sums([one, two, one * two, one - two]);
+                let one = SimdPack::four(lanes, [a, b, 0.1 * a, 3.0 * b]);
+                let two = SimdPack::four(lanes, [b, a + 0.1, b, NUMBERS[(at + 3) % 8]]);
+                let sums = SimdPack::sums([one, two, one * two, one - two]);
                 self.0.extend([one, two, -one, one * 0.3].iter().flat_map(|four| four.values()).chain(sums).map(bits));
             }
         }
@@ -25,9 +25,9 @@ impl FourKernel for ByFour<'_> {
 }
 
 /// Every operation on every pair of numbers, as bits.
-struct Every<'a>(&'a mut Vec<u64>);
+struct AllPairBits<'a>(&'a mut Vec<u64>);
 
-impl Kernel for Every<'_> {
+impl Kernel for AllPairBits<'_> {
     type Output = ();
 
     fn run<L: Lanes>(self, lanes: L) {
@@ -36,7 +36,7 @@ impl Kernel for Every<'_> {
         for pairs in pairs.chunks(L::WIDTH) {
             let [mut a, mut b] = [[0.0; WIDEST]; 2];
             pairs.iter().enumerate().for_each(|(lane, &pair)| (a[lane], b[lane]) = pair);
-            let [one, two] = [Wide::load(lanes, &a), Wide::load(lanes, &b)];
+            let [one, two] = [SimdPack::load(lanes, &a), SimdPack::load(lanes, &b)];
             let less = one.below(two);
             let operations = [
                 one + two,
@@ -49,7 +49,7 @@ impl Kernel for Every<'_> {
                 one + 0.7,
                 one - 1.1,
                 one.at_least(two),
-                Wide::choose(less, one.like(1.0), one.like(0.0)),
+                SimdPack::choose(less, one.like(1.0), one.like(0.0)),
             ];
             assert_eq!(one.anywhere(less), less.bits() != 0);
             for (row, wide) in rows.iter_mut().zip(operations) {
@@ -62,9 +62,9 @@ impl Kernel for Every<'_> {
 }
 
 /// Quads loaded into registers and stored again.
-struct There<'a>(&'a [Quad], &'a [usize]);
+struct QuadCopies<'a>(&'a [Quad], &'a [usize]);
 
-impl Kernel for There<'_> {
+impl Kernel for QuadCopies<'_> {
     type Output = Vec<(Quad, Quad)>;
 
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
@@ -84,13 +84,13 @@ impl Kernel for There<'_> {
 #[test]
 fn every_operation_leaves_the_same_bits_on_all_paths() {
     let mut expected = [Vec::new(), Vec::new()];
-    Processor::Portable.run_by_four(ByFour(&mut expected[0]));
-    Processor::Portable.run(Every(&mut expected[1]));
+    Processor::Portable.run_by_four(FourLaneBits(&mut expected[0]));
+    Processor::Portable.run(AllPairBits(&mut expected[1]));
     assert_eq!(expected.each_ref().map(Vec::len), [64 * 20, 64 * 12]);
     for path in Processor::all() {
         let mut found = [Vec::new(), Vec::new()];
-        path.run_by_four(ByFour(&mut found[0]));
-        path.run(Every(&mut found[1]));
+        path.run_by_four(FourLaneBits(&mut found[0]));
+        path.run(AllPairBits(&mut found[1]));
         assert!(found == expected, "{}", path.name());
     }
 }
@@ -101,14 +101,14 @@ fn quads_are_turned_and_turned_back() {
     let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
     let expected: Vec<_> = at.iter().map(|&at| (table[at], table[at])).collect();
     for path in Processor::all() {
-        assert_eq!(path.run(There(&table, &at)), expected, "{}", path.name());
+        assert_eq!(path.run(QuadCopies(&table, &at)), expected, "{}", path.name());
     }
 }
 
 /// Differences of quads.
-struct Between<'a>(&'a [Quad], &'a [usize]);
+struct QuadDifferences<'a>(&'a [Quad], &'a [usize]);
 
-impl Kernel for Between<'_> {
+impl Kernel for QuadDifferences<'_> {
     type Output = Vec<[f64; 4]>;
 
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
@@ -134,14 +134,14 @@ fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
     };
     let expected: Vec<_> = at.iter().map(expected_quad).collect();
     for path in Processor::all() {
-        assert_eq!(path.run(Between(&table, &at)), expected, "{}", path.name());
+        assert_eq!(path.run(QuadDifferences(&table, &at)), expected, "{}", path.name());
     }
 }
 
 /// Integers, packed by all bit patterns.
-struct Packed;
+struct PackedIntegers;
 
-impl Kernel for Packed {
+impl Kernel for PackedIntegers {
     type Output = Vec<Vec<u32>>;
 
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
@@ -156,7 +156,7 @@ fn whole_numbers_are_packed_by_bits() {
     let wanted = |bits: u32| (0..8).filter(move |lane| bits >> lane & 1 == 1).map(|lane| integers[lane]).collect();
     let expected: Vec<Vec<u32>> = (0..256).map(wanted).collect();
     for path in Processor::all() {
-        assert_eq!(path.run(Packed), expected, "{}", path.name());
+        assert_eq!(path.run(PackedIntegers), expected, "{}", path.name());
     }
 }
 
@@ -164,12 +164,12 @@ fn whole_numbers_are_packed_by_bits() {
 #[test]
 fn four_portable_lanes_are_four_numbers() {
     let [mut one, mut four] = [Vec::new(), Vec::new()];
-    Every(&mut one).run(Plain::<1>);
-    Every(&mut four).run(Plain::<4>);
+    AllPairBits(&mut one).run(ScalarBackend::<1>);
+    AllPairBits(&mut four).run(ScalarBackend::<4>);
     assert!(one == four);
     let table = [1.0, 5.0, 9.0, 13.0].map(|from| Quad([from, from + 1.0, from + 2.0, from + 3.0]));
     let at = [2, 0, 3, 1];
-    assert_eq!(There(&table, &at).run(Plain::<4>), There(&table, &at).run(Plain::<1>));
+    assert_eq!(QuadCopies(&table, &at).run(ScalarBackend::<4>), QuadCopies(&table, &at).run(ScalarBackend::<1>));
 }
 
 /// Two quads per lane, added to given quads.

@@ -26,7 +26,7 @@
 
 use crate::boundary::Boundary;
 use crate::damping::Damping;
-use crate::driven::Driven;
+use crate::driven::DrivenGroups;
 use crate::grid::{Lattice, Node};
 use crate::ledger::{Flow, Tally};
 use crate::nodes::Grid;
@@ -110,7 +110,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
 }
 
 /// Returns the work (J) of driven grains in a step (s) so far.
-fn work_of<S: Space>(driven: &Driven<S>, time_step: f64) -> f64 {
+fn work_of<S: Space>(driven: &DrivenGroups<S>, time_step: f64) -> f64 {
     let work = driven.groups.iter().map(|group| -S::dot(group.force, group.velocity));
     work.sum::<f64>() * time_step
 }
@@ -120,7 +120,7 @@ const BLOCK: usize = 4096;
 
 /// Sums over nodes in a step.
 #[derive(Clone, Copy, Debug, Default)]
-struct OfNodes {
+struct NodeSums {
     /// Mass (kg).
     mass: f64,
     /// Work of internal forces on the velocities before the step (J).
@@ -135,7 +135,7 @@ struct OfNodes {
     dragged: f64,
 }
 
-impl OfNodes {
+impl NodeSums {
     /// Sums over a block of nodes.
     ///
     /// On return, `forces` holds the impulses (N s) of all forces except gravity (m/s²) and drag. `impulses` holds the
@@ -233,7 +233,7 @@ impl<S: Space> Accounts<S> {
     }
 
     /// Records the work of driven grains before their points are moved along.
-    pub(crate) fn note_driven(&mut self, driven: &Driven<S>, time_step: f64) {
+    pub(crate) fn note_driven(&mut self, driven: &DrivenGroups<S>, time_step: f64) {
         self.held = work_of(driven, time_step);
     }
 
@@ -252,9 +252,9 @@ impl<S: Space> Accounts<S> {
         let damped = Damping::over(damping, time_step);
         let nodes = &grid.nodes[..grid.used];
         let blocks = forces.chunks_mut(BLOCK).zip(impulses.chunks_mut(BLOCK)).zip(nodes.chunks(BLOCK));
-        let add = |_, ((forces, impulses), nodes)| OfNodes::add(nodes, forces, impulses, gravity, damped, time_step);
-        let OfNodes { mass, given, seen, stepped, pulled, dragged } =
-            team.fold(blocks, add, OfNodes::default(), OfNodes::and);
+        let add = |_, ((forces, impulses), nodes)| NodeSums::add(nodes, forces, impulses, gravity, damped, time_step);
+        let NodeSums { mass, given, seen, stepped, pulled, dragged } =
+            team.fold(blocks, add, NodeSums::default(), NodeSums::and);
         sums.stepped += stepped;
         sums.gravity += pulled;
         sums.damping -= dragged;

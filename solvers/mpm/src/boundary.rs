@@ -1,9 +1,9 @@
 //! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
 
 use crate::bodies::Body;
-use crate::driven::Driven;
+use crate::driven::DrivenGroups;
 use crate::grid::Lattice;
-use crate::held::Held;
+use crate::held::FixedBoundaries;
 use crate::nodes::Grid;
 use crate::state::State;
 use crate::walls::RigidPlane;
@@ -14,16 +14,16 @@ use grainbench_scene::space::Space;
 #[derive(Clone, Debug)]
 pub(crate) struct Boundary<S: Space> {
     pub(crate) walls: Vec<RigidPlane<S>>,
-    pub(crate) held: Held,
-    pub(crate) driven: Driven<S>,
+    pub(crate) held: FixedBoundaries,
+    pub(crate) driven: DrivenGroups<S>,
 }
 
 impl<S: Space> Boundary<S> {
     pub(crate) fn new(scene: &Scene, bodies: &[Body], lattice: &Lattice) -> Self {
         Self {
             walls: scene.walls.iter().filter_map(RigidPlane::new).collect(),
-            held: Held::new(bodies, lattice),
-            driven: Driven::new(scene),
+            held: FixedBoundaries::new(bodies, lattice),
+            driven: DrivenGroups::new(scene),
         }
     }
 

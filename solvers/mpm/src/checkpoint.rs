@@ -5,7 +5,7 @@
 
 use crate::accounts::{Accounts, Sums};
 use crate::contact::friction::Friction;
-use crate::guard::Watched;
+use crate::guard::EnergyGuard;
 use crate::ledger::Tally;
 use crate::points::Points;
 use crate::simulation::Simulation;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
-struct Kept<S: Space> {
+struct CheckpointData<S: Space> {
     points: Points<S>,
     /// Positions of tracers (m), and their areas (m²).
     tracers: Vec<(S::Vector, S::Vector)>,
@@ -33,7 +33,7 @@ struct Kept<S: Space> {
     /// Energy budget if requested, and energies of contacts in the last step.
     accounts: Option<(Sums, Tally)>,
     /// Monitored energy of a closed run.
-    watched: Option<Watched>,
+    watched: Option<EnergyGuard>,
     recorder: Recorder,
 }
 
@@ -41,7 +41,7 @@ impl<S: Space> Simulation<S> {
     /// Returns the state after the last step, with the record so far.
     pub(crate) fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let (state, tracers) = (&self.state, &self.contacts.tracers);
-        let kept = Kept::<S> {
+        let kept = CheckpointData::<S> {
             points: state.points.clone(),
             tracers: tracers.position.iter().copied().zip(tracers.area.iter().copied()).collect(),
             friction: self.contacts.springs.friction.clone(),
@@ -63,7 +63,7 @@ impl<S: Space> Simulation<S> {
         identity: &RunIdentity,
         checkpoint: &Checkpoint,
     ) -> Result<Recorder, CheckpointError> {
-        let kept: Kept<S> = checkpoint.state(identity)?;
+        let kept: CheckpointData<S> = checkpoint.state(identity)?;
         self.cover();
         let Self { state, contacts, .. } = self;
         let same = kept.points.is_like(&state.points)

@@ -4,15 +4,15 @@ use crate::accounts::Accounts;
 use crate::basis::with_basis;
 use crate::boundary::Boundary;
 use crate::contact::friction::Friction;
-use crate::contact::nodal::{self, Felt};
+use crate::contact::nodal::{self, ReactionReceivers};
 use crate::contact::pairs::Pairs;
-use crate::contact::penalty::{Push, Rules, Springs, Told};
-use crate::contact::search::{Around, Found, Search};
-use crate::contact::shared::{Projected, Shared, Stepped};
-use crate::contact::{FrictionTable, Touch};
+use crate::contact::penalty::{Push, Rules, SpringOutputs, Springs};
+use crate::contact::search::{Search, SearchResults, TracerSurroundings};
+use crate::contact::shared::{ProjectedVelocities, SharedNodes, SteppedVelocities};
+use crate::contact::{ContactPoint, FrictionTable};
 use crate::grid::Node;
 use crate::nodes::{Grid, Velocities};
-use crate::off::Off;
+use crate::off::AbsentEffect;
 use crate::options::{Contact, StressUpdate};
 use crate::scheme::Scheme;
 use crate::state::State;
@@ -27,7 +27,7 @@ use std::slice;
 const SHARES: usize = 8;
 
 /// Requested outputs of springs in a step.
-pub(crate) struct Asked<'a, S: Space> {
+pub(crate) struct ContactRequest<'a, S: Space> {
     /// Energy budget, if requested.
     pub(crate) accounts: Option<&'a mut Accounts<S>>,
     /// True if contact points are recorded.
@@ -39,17 +39,17 @@ pub(crate) struct Asked<'a, S: Space> {
 pub(crate) struct Contacts<S: Space> {
     pub(crate) tracers: Tracers<S>,
     pub(crate) springs: Springs<S>,
-    pub(crate) touches: Vec<Touch<S>>,
+    pub(crate) touches: Vec<ContactPoint<S>>,
     friction: FrictionTable,
     pairs: Pairs<S>,
-    shared: Shared<S>,
+    shared: SharedNodes<S>,
 }
 
 impl<S: Space> Contacts<S> {
     pub(crate) fn new(scene: &Scene, contact: Contact, tracers: Tracers<S>) -> Self {
         let friction = FrictionTable::from_scene(scene);
         let springs = Springs::new(friction.acts() && contact == Contact::Penalty, tracers.len());
-        Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: Shared::new() }
+        Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: SharedNodes::new() }
     }
 
     /// Returns the memory in use (bytes).
@@ -134,7 +134,7 @@ impl<S: Space> Contacts<S> {
         state: &State<S>,
         grid: &mut Grid<S>,
         boundary: &mut Boundary<S>,
-        Asked { accounts, touches: record }: Asked<'_, S>,
+        ContactRequest { accounts, touches: record }: ContactRequest<'_, S>,
         cost: &mut Counts,
     ) {
         let Scheme { setting, time_step, processor } = *scheme;
@@ -149,12 +149,12 @@ impl<S: Space> Contacts<S> {
         pairs.find(bodies, lattice, 0.0);
         let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
         let shares = if state.team.members() > 1 { SHARES * state.team.members() } else { 1 };
-        springs.found.resize(shares, Found::new());
+        springs.found.resize(shares, SearchResults::new());
         let (all, tracers) = (&pairs.found[..], &*tracers);
         state.team.each(springs.found.iter_mut(), |number, found| {
             let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
             with_basis!(setting.basis, B => {
-                let around = Around { rules, bodies, tracers, nodes, most, basis: PhantomData::<B> };
+                let around = TracerSurroundings { rules, bodies, tracers, nodes, most, basis: PhantomData::<B> };
                 processor.run_by_four(Search { around, pairs, found });
             });
         });
@@ -162,7 +162,7 @@ impl<S: Space> Contacts<S> {
         macro_rules! push {
             ($B:ty, $friction:expr, $ledger:expr) => {{
                 let (found, friction, basis) = (&found[..], $friction, PhantomData::<$B>);
-                let outputs = Told { ledger: $ledger, touches: record.then_some(touches), touched };
+                let outputs = SpringOutputs { ledger: $ledger, touches: record.then_some(touches), touched };
                 processor.run_by_four(Push {
                     rules,
                     bodies,
@@ -178,9 +178,9 @@ impl<S: Space> Contacts<S> {
             }};
         }
         with_basis!(setting.basis, B => match (friction, accounts) {
-            (Friction::Absent, None) => push!(B, Off, Off),
-            (Friction::Absent, Some(accounts)) => push!(B, Off, &mut accounts.tally),
-            (Friction::Present(friction), None) => push!(B, friction, Off),
+            (Friction::Absent, None) => push!(B, AbsentEffect, AbsentEffect),
+            (Friction::Absent, Some(accounts)) => push!(B, AbsentEffect, &mut accounts.tally),
+            (Friction::Present(friction), None) => push!(B, friction, AbsentEffect),
             (Friction::Present(friction), Some(accounts)) => push!(B, friction, &mut accounts.tally),
         });
         cost.pair_tests += pairs.tests;
@@ -203,11 +203,24 @@ impl<S: Space> Contacts<S> {
         let Grid { lattice, nodes, .. } = grid;
         let Self { friction, shared, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
-        let (walls, driven, field) = (&mut *boundary.walls, &mut *boundary.driven.groups, &mut Stepped(nodes));
+        let (walls, driven, field) =
+            (&mut *boundary.walls, &mut *boundary.driven.groups, &mut SteppedVelocities(nodes));
         match accounts {
-            None => nodal::meet(&rules, &state.bodies, shared, &mut Felt { walls, driven, ledger: Off }, field),
+            None => nodal::meet(
+                &rules,
+                &state.bodies,
+                shared,
+                &mut ReactionReceivers { walls, driven, ledger: AbsentEffect },
+                field,
+            ),
             Some(Accounts { tally, .. }) => {
-                nodal::meet(&rules, &state.bodies, shared, &mut Felt { walls, driven, ledger: tally }, field);
+                nodal::meet(
+                    &rules,
+                    &state.bodies,
+                    shared,
+                    &mut ReactionReceivers { walls, driven, ledger: tally },
+                    field,
+                );
             }
         }
     }
@@ -227,8 +240,9 @@ impl<S: Space> Contacts<S> {
         let Grid { lattice, projected, .. } = grid;
         let Self { friction, shared, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
-        let mut felt = Felt { walls: &mut boundary.walls, driven: &mut boundary.driven.groups, ledger: Off };
-        nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut Projected(projected));
+        let mut felt =
+            ReactionReceivers { walls: &mut boundary.walls, driven: &mut boundary.driven.groups, ledger: AbsentEffect };
+        nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut ProjectedVelocities(projected));
     }
 
     /// Moves the tracers of all bodies; each thread handles a range of bodies.

@@ -23,13 +23,13 @@ pub(crate) struct Group<S: Space> {
 
 /// All groups, and the nodes that they hold.
 #[derive(Clone, Debug)]
-pub(crate) struct Driven<S: Space> {
+pub(crate) struct DrivenGroups<S: Space> {
     pub(crate) groups: Vec<Group<S>>,
     /// Held node slots with their group; recomputed in each step.
     held: Vec<(usize, u16)>,
 }
 
-impl<S: Space> Driven<S> {
+impl<S: Space> DrivenGroups<S> {
     pub(crate) fn new(scene: &Scene) -> Self {
         let groups =
             scene.driven.iter().map(|driven| Group { velocity: S::ORIGIN, wanted: driven.clone(), force: S::ORIGIN });

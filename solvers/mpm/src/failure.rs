@@ -1,7 +1,7 @@
 //! Description of a failed run.
 
 use grainbench_scene::record::Owner;
-use grainbench_scene::solver::{Broken, Cause, Subject};
+use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
 use nalgebra::Vector3;
 
 /// A material point with an invalid state.
@@ -16,7 +16,7 @@ pub(crate) struct Failure {
 
 impl Failure {
     /// Adds the time, the step and advice, for a run with a time step and a critical time step (s).
-    pub(crate) fn into_simulation_failure(self, step: u64, time_step: f64, critical: f64) -> Box<Broken> {
+    pub(crate) fn into_simulation_failure(self, step: u64, time_step: f64, critical: f64) -> Box<SimulationFailure> {
         let advice = match self.cause {
             Cause::GainedEnergy { .. } => {
                 "halve the time step: what a step that is too long makes falls with it; what is left comes from the method, \
@@ -33,12 +33,12 @@ impl Failure {
             }
             _ => "the step is within h/c: look at velocities, at the stress update, or refine the grid".to_owned(),
         };
-        Box::new(Broken {
+        Box::new(SimulationFailure {
             time: step as f64 * time_step,
             step,
             subject: match self.owner {
-                Owner::Grain(id) => Subject::PointOfGrain(id),
-                Owner::Body(at) => Subject::PointOfBody(at + 1),
+                Owner::Grain(id) => FailedParticle::PointOfGrain(id),
+                Owner::Body(at) => FailedParticle::PointOfBody(at + 1),
             },
             position: self.position,
             cause: self.cause,

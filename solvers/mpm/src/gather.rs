@@ -15,17 +15,17 @@
 use crate::basis::{Basis, with_basis};
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node, Stencil};
-use crate::nodes::{Grid, Own};
+use crate::nodes::{Grid, NodePartition};
 use crate::options;
-use crate::patch::{Copies, Patch, Summed};
-use crate::points::{Lent, Points};
-use crate::runs::{Ground, Run};
-use crate::scatter::{Shown, weighted};
+use crate::patch::{Copies, NodeRows, StencilBlock};
+use crate::points::{Points, PointsMut};
+use crate::runs::{Ground, ParticleBatch};
+use crate::scatter::{ExtrapolatedVelocity, weighted};
 use crate::scheme::Scheme;
-use crate::share::Share;
+use crate::share::ThreadPartition;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
-use grainbench_lanes::{FourKernel, FourLanes, Number, Wide, take_off};
+use grainbench_lanes::{FourKernel, FourLanes, Number, SimdPack, take_off};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -52,7 +52,7 @@ pub(crate) fn gather<S: Space>(
         macro_rules! gather {
             ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr, $project:literal, $move:literal) => {{
                 let (transfer, part, runs, basis) = ($transfer, $part, $runs, PhantomData::<$B>);
-                let (points, projected) = (&mut points, Summed::new(shares[number].alone_from, projected));
+                let (points, projected) = (&mut points, NodeRows::new(shares[number].alone_from, projected));
                 let gather: Gather<'_, '_, S, $B, $T, $project, $move> =
                     Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
                 processor.run_by_four(gather);
@@ -86,12 +86,12 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
     let Scheme { setting, processor, .. } = *scheme;
     let State { points, shares, team, .. } = state;
     let lattice = grid.lattice;
-    team.each(grid.parts(shares), |number, Own { projected, .. }| {
-        let Share { nodes, alone_from, .. } = &shares[number];
+    team.each(grid.parts(shares), |number, NodePartition { projected, .. }| {
+        let ThreadPartition { nodes, alone_from, .. } = &shares[number];
         for (other, body, runs) in state.reaching(nodes) {
             let ground = Ground::new(&lattice, &body.part, runs, points);
             let end = if other > number { projected.len() } else { alone_from - nodes.start };
-            let projected = Summed::new(nodes.start, &mut projected[..end]);
+            let projected = NodeRows::new(nodes.start, &mut projected[..end]);
             macro_rules! project {
                 ($B:ty, $T:ty) => {
                     processor.run_by_four(Project::<S, $B, $T> { ground, points, projected, how: PhantomData })
@@ -113,14 +113,14 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
 struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
     lattice: &'a Lattice,
     part: &'a Part,
-    runs: &'a [Run],
+    runs: &'a [ParticleBatch],
     transfer: T,
     time_step: f64,
     /// Damping factor of velocities in a step.
     keep: f64,
-    points: &'a mut Lent<'b, S>,
+    points: &'a mut PointsMut<'b, S>,
     nodes: &'a [Node<S>],
-    projected: Summed<'a, S::Vector>,
+    projected: NodeRows<'a, S::Vector>,
     basis: PhantomData<B>,
 }
 
@@ -130,7 +130,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, mut projected, .. } = self;
-        let zero = Wide::splat(lanes, 0.0);
+        let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in runs {
@@ -145,15 +145,15 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
                 let [values, _] = stencil.along_x();
                 let affine = stencil.affine_along_x();
                 let (mut around, mut change, mut made) = ([zero; 3], [zero; 3], [[zero; 3]; 3]);
-                for row in 0..Patch::rows::<S, B>() {
+                for row in 0..StencilBlock::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
                     let nodes = [&nodes[0], &nodes[1], &nodes[B::WIDTH - 1]];
                     for component in 0..S::DIMENSION {
                         let (mut velocity, mut changed) = ([zero; 3], [zero; 3]);
                         for (node, at) in nodes.into_iter().enumerate() {
-                            velocity[node] = Wide::splat(lanes, S::component(at.velocity, component));
-                            changed[node] = Wide::splat(lanes, S::component(at.change, component));
+                            velocity[node] = SimdPack::splat(lanes, S::component(at.velocity, component));
+                            changed[node] = SimdPack::splat(lanes, S::component(at.change, component));
                         }
                         let velocities = weighted::<B, _>(velocity, values);
                         let changes = weighted::<B, _>(changed, values);
@@ -198,7 +198,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
                     batch.write_matrices::<S, L>(affine, points.affine);
                 }
                 if PROJECT && let Some((reached, patch)) = &mut reached {
-                    let shown = Shown::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
+                    let shown = ExtrapolatedVelocity::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
                     let mass = batch.amounts(lanes, points.mass);
                     bring::<S, B, T, L>(&shown, &stencil, mass, reached, *patch);
                 }
@@ -214,7 +214,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
 struct Project<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
-    projected: Summed<'a, S::Vector>,
+    projected: NodeRows<'a, S::Vector>,
     how: PhantomData<(B, T)>,
 }
 
@@ -222,7 +222,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { ground, points, mut projected, .. } = self;
-        let zero = Wide::splat(lanes, 0.0);
+        let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in ground.runs {
             let window = &ground.part.window;
@@ -231,7 +231,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let velocity = batch.vectors::<S, L>(lanes, &points.velocity);
                 let affine = if T::AFFINE { batch.matrices::<S, L>(lanes, &points.affine) } else { [[zero; 3]; 3] };
-                let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
+                let shown = ExtrapolatedVelocity::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
                 bring::<S, B, T, L>(&shown, &stencil, batch.amounts(lanes, &points.mass), &mut reached, patch);
             }
             projected.put_back::<S, B>(window, run.base, &copies);
@@ -242,17 +242,17 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
 /// Adds the momentum of four points, with the velocities `shown` at the nodes, to the nodes.
 #[inline(always)]
 fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
-    shown: &Shown<Wide<L>>,
-    stencil: &Stencil<Wide<L>>,
-    mass: Wide<L>,
-    reached: &mut Summed<'_, S::Vector>,
-    patch: Patch,
+    shown: &ExtrapolatedVelocity<SimdPack<L>>,
+    stencil: &Stencil<SimdPack<L>>,
+    mass: SimdPack<L>,
+    reached: &mut NodeRows<'_, S::Vector>,
+    patch: StencilBlock,
 ) {
     let zero = mass.like(0.0);
-    let masses = Wide::scaled(stencil.along_x()[0], mass);
-    for row in 0..Patch::rows::<S, B>() {
+    let masses = SimdPack::scaled(stencil.along_x()[0], mass);
+    for row in 0..StencilBlock::rows::<S, B>() {
         let Some(reached) = reached.row(patch.row::<S, B>(row)) else { continue };
-        let masses = Wide::scaled(masses, stencil.across::<S, B>(row).value);
+        let masses = SimdPack::scaled(masses, stencil.across::<S, B>(row).value);
         let mut momenta = [[zero; 3]; 3];
         for (component, momenta) in momenta.iter_mut().enumerate().take(S::DIMENSION) {
             let velocities = shown.row::<S, B, T>(row, component);
@@ -266,17 +266,17 @@ fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
 
 /// Adds momentum of four points, by component, to the nodes of a row.
 #[inline(always)]
-fn give<S: Space, B: Basis, L: FourLanes>([x, y, z]: [[Wide<L>; 3]; 3], projected: &mut [S::Vector]) {
+fn give<S: Space, B: Basis, L: FourLanes>([x, y, z]: [[SimdPack<L>; 3]; 3], projected: &mut [S::Vector]) {
     let sums = if S::DIMENSION == 2 {
-        let [a, b, c, d] = Wide::sums([x[0], y[0], x[1], y[1]]);
-        let [e, f, ..] = Wide::sums([x[2], y[2], z[0], z[0]]);
+        let [a, b, c, d] = SimdPack::sums([x[0], y[0], x[1], y[1]]);
+        let [e, f, ..] = SimdPack::sums([x[2], y[2], z[0], z[0]]);
         [[a, b, 0.0, 0.0], [c, d, 0.0, 0.0], [e, f, 0.0, 0.0]]
     } else {
         let zero = x[0].like(0.0);
         [
-            Wide::sums([x[0], y[0], z[0], zero]),
-            Wide::sums([x[1], y[1], z[1], zero]),
-            Wide::sums([x[2], y[2], z[2], zero]),
+            SimdPack::sums([x[0], y[0], z[0], zero]),
+            SimdPack::sums([x[1], y[1], z[1], zero]),
+            SimdPack::sums([x[2], y[2], z[2], zero]),
         ]
     };
     for (projected, [x, y, z, _]) in projected.iter_mut().zip(sums).take(B::WIDTH) {

@@ -1,10 +1,10 @@
 //! Velocity gradients at points, and the positions to which these velocities move the points.
 
 use crate::basis::Basis;
-use crate::patch::{Copies, Patch};
+use crate::patch::{Copies, StencilBlock};
 use crate::runs::Ground;
 use crate::scatter::weighted;
-use grainbench_lanes::{FourKernel, FourLanes, Wide};
+use grainbench_lanes::{FourKernel, FourLanes, SimdPack};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
@@ -43,7 +43,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { ground, nodes, velocity, gradients, next, time_step, .. } = self;
-        let zero = Wide::splat(lanes, 0.0);
+        let zero = SimdPack::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
         // Placeholder that is overwritten before it is read.
         let Some(&any) = nodes.first() else { return };
@@ -54,7 +54,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let [values, slopes] = stencil.along_x();
                 let (mut gradient, mut around) = ([[zero; 3]; 3], [zero; 3]);
-                for row in 0..Patch::rows::<S, B>() {
+                for row in 0..StencilBlock::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
                     let nodes = [velocity(&nodes[0]), velocity(&nodes[1]), velocity(&nodes[B::WIDTH - 1])];
@@ -62,7 +62,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
                     for (component, (gradient, around)) in sums {
                         let mut velocity = [zero; 3];
                         for (velocity, node) in velocity.iter_mut().zip(nodes) {
-                            *velocity = Wide::splat(lanes, S::component(node, component));
+                            *velocity = SimdPack::splat(lanes, S::component(node, component));
                         }
                         let along = weighted::<B, _>(velocity, slopes);
                         let velocities = weighted::<B, _>(velocity, values);

@@ -157,7 +157,7 @@ pub(crate) struct Stencil<N> {
 
 /// Basis functions of a row of nodes along x, without the factors along x.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Across<N> {
+pub(crate) struct RowBasis<N> {
     /// Product of the functions along y and z.
     pub(crate) value: N,
     /// Same product with the slope along y, and along z (1/m).
@@ -168,7 +168,7 @@ pub(crate) struct Across<N> {
 
 /// A node of a stencil.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached<S: Space> {
+pub(crate) struct StencilNode<S: Space> {
     /// Slot of the node.
     pub(crate) slot: usize,
     /// Basis function at the point.
@@ -177,7 +177,7 @@ pub(crate) struct Reached<S: Space> {
     _space: std::marker::PhantomData<S>,
 }
 
-impl<S: Space> Reached<S> {
+impl<S: Space> StencilNode<S> {
     /// Returns the index of the node within the stencil along an axis.
     pub(crate) const fn offset(&self, axis: usize) -> i32 {
         self.axes[axis] as i32
@@ -221,18 +221,18 @@ impl<N: Number> Stencil<N> {
 
     /// Returns the product of the functions along y and z for a row of nodes along x.
     #[inline(always)]
-    pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> Across<N> {
+    pub(crate) fn across<S: Space, B: Basis>(&self, row: usize) -> RowBasis<N> {
         let (j, k) = (row % B::WIDTH, row / B::WIDTH);
         let [_, y, z] = &self.axes;
         let [slope, affine] = [y.slope[j] * self.inverse[1], y.affine[j] * self.inverse[1]];
         if S::DIMENSION == 2 {
             let zero = slope.like(0.0);
-            return Across { value: y.value[j], slope: [slope, zero], affine: [affine, zero] };
+            return RowBasis { value: y.value[j], slope: [slope, zero], affine: [affine, zero] };
         }
         let deep = z.value[k];
         let deep_slope = y.value[j] * (z.slope[k] * self.inverse[2]);
         let deep_affine = y.value[j] * (z.affine[k] * self.inverse[2]);
-        Across { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
+        RowBasis { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
     }
 
     /// Returns the distance from the point to the first node along an axis (m).
@@ -261,7 +261,7 @@ impl Stencil<f64> {
 
     /// Visits every node.
     #[inline(always)]
-    pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(Reached<S>)) {
+    pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(StencilNode<S>)) {
         let solid = S::DIMENSION == 3;
         let row = window.size[0] as usize;
         let layer = row * window.size[1] as usize;
@@ -279,7 +279,7 @@ impl Stencil<f64> {
                 let y = z + window.along(1, self.base[1] + j as i32) * row;
                 let weight = across * self.axes[1].value[j];
                 for (i, x) in x.into_iter().enumerate().take(B::WIDTH) {
-                    visit(Reached {
+                    visit(StencilNode {
                         slot: y + x,
                         weight: weight * self.axes[0].value[i],
                         axes: [i, j, k],
@@ -292,7 +292,7 @@ impl Stencil<f64> {
 
     /// Returns the product of function values over the axes, with `other` instead along each axis in turn (1/m).
     #[inline(always)]
-    fn along<S: Space>(&self, node: &Reached<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
+    fn along<S: Space>(&self, node: &StencilNode<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
         let [i, j, k] = node.axes;
         let [a, b, c] = &self.axes;
         let (x, y) = (a.value[i], b.value[j]);
@@ -306,7 +306,7 @@ impl Stencil<f64> {
 
     /// Returns the gradient of the node's basis function at the point (1/m).
     #[inline(always)]
-    pub(crate) fn gradient<S: Space>(&self, node: &Reached<S>) -> S::Vector {
+    pub(crate) fn gradient<S: Space>(&self, node: &StencilNode<S>) -> S::Vector {
         self.along(node, |axis| &axis.slope)
     }
 }

@@ -2,13 +2,13 @@
 //! energy of a closed run with its initial energy. Initial overlaps of bodies are checked once, in the first step.
 
 use crate::bodies::Body;
-use crate::contact::Other;
+use crate::contact::ContactPartner;
 use crate::failure::Failure;
 use crate::material::{Law, with_law};
 use crate::options::Contact;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Broken, Cause};
+use grainbench_scene::solver::{Cause, SimulationFailure};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ const LARGEST_STRAIN: f64 = 0.25;
 
 /// Energy of a closed run (J; J/m for discs).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Watched {
+pub(crate) struct EnergyGuard {
     /// Initial kinetic, elastic and gravitational energy; without the springs, whose energy is `springs`.
     start: f64,
     /// Initial energy of springs; known after the first step.
@@ -66,7 +66,7 @@ fn crossing_time(body: &Body, modulus: f64, volume_ratio: f64, cell: f64) -> f64
 
 impl<S: Space> Simulation<S> {
     /// Returns the error of a failure at the current step, with a critical time step (s).
-    fn simulation_failure(&self, failure: Failure, critical: f64) -> Box<Broken> {
+    fn simulation_failure(&self, failure: Failure, critical: f64) -> Box<SimulationFailure> {
         failure.into_simulation_failure(self.step, self.scheme.time_step, critical)
     }
 
@@ -74,7 +74,7 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn watch_energy(&mut self) {
         if is_closed(&self.scene) && keeps_energy(self.scheme.setting.contact) {
             let [inner, height] = self.energies();
-            self.watched = Some(Watched { start: inner + height, springs: None, largest: inner });
+            self.watched = Some(EnergyGuard { start: inner + height, springs: None, largest: inner });
         }
     }
 
@@ -87,7 +87,7 @@ impl<S: Space> Simulation<S> {
     ///
     /// # Errors
     /// When bodies overlap too much at the start, the step exceeds the critical time step, or the energy has grown.
-    pub(crate) fn check(&mut self) -> Result<(), Box<Broken>> {
+    pub(crate) fn check(&mut self) -> Result<(), Box<SimulationFailure>> {
         let is_first = std::mem::take(&mut self.is_fresh);
         if is_first {
             self.check_overlaps()?;
@@ -108,7 +108,7 @@ impl<S: Space> Simulation<S> {
     /// Rejects initial overlaps whose springs strain the surface layer too much.
     ///
     /// The strain is p/M, with p = κ δ the pressure of the springs and M the modulus of the softer body.
-    fn check_overlaps(&self) -> Result<(), Box<Broken>> {
+    fn check_overlaps(&self) -> Result<(), Box<SimulationFailure>> {
         let Self { scheme, state, contacts, grid, .. } = self;
         if scheme.setting.contact != Contact::Penalty {
             return Ok(());
@@ -119,8 +119,8 @@ impl<S: Space> Simulation<S> {
             let body = &state.bodies[touch.body as usize];
             let own = body.deformable.plane_modulus();
             let relative = match touch.other {
-                Other::Wall(_) => strain_in(body, own),
-                Other::Body(other) => {
+                ContactPartner::Wall(_) => strain_in(body, own),
+                ContactPartner::Body(other) => {
                     let other = &state.bodies[other as usize];
                     let theirs = other.deformable.plane_modulus();
                     let mean = 2.0 * own * theirs / (own + theirs);
@@ -140,7 +140,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Compares the time step with the current critical time step, in runs that satisfied it at the start.
-    fn check_step(&self) -> Result<(), Box<Broken>> {
+    fn check_step(&self) -> Result<(), Box<SimulationFailure>> {
         let Self { scheme, state, grid, critical, .. } = self;
         if scheme.time_step > *critical {
             return Ok(());
@@ -167,11 +167,11 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Compares the energy with its initial value.
-    fn check_energy(&mut self) -> Result<(), Box<Broken>> {
-        let Some(Watched { start, springs, largest }) = self.watched else { return Ok(()) };
+    fn check_energy(&mut self) -> Result<(), Box<SimulationFailure>> {
+        let Some(EnergyGuard { start, springs, largest }) = self.watched else { return Ok(()) };
         let [inner, height] = self.energies();
         let (largest, brought) = (largest.max(inner), springs.unwrap_or(0.0));
-        self.watched = Some(Watched { start, springs, largest });
+        self.watched = Some(EnergyGuard { start, springs, largest });
         let gained = inner + height - start - brought;
         let allowed = ALLOWED_GAIN * f64::max(largest - gained.max(0.0), brought);
         // NaN is reported where it arises.

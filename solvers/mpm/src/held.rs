@@ -22,11 +22,11 @@ struct Side {
 
 /// All fixed or symmetry boundaries.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Held {
+pub(crate) struct FixedBoundaries {
     sides: Vec<Side>,
 }
 
-impl Held {
+impl FixedBoundaries {
     pub(crate) fn new(bodies: &[Body], lattice: &Lattice) -> Self {
         let mut sides = Vec::new();
         for (body, held) in bodies.iter().enumerate().filter_map(|(at, body)| Some((at, body.held?))) {

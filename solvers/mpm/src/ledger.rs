@@ -1,6 +1,6 @@
 //! Outputs of the loops over tracers, nodes and points for the energy budget, if a run requests it.
 
-use crate::off::Off;
+use crate::off::AbsentEffect;
 use serde::{Deserialize, Serialize};
 
 /// Energies of contacts in a step.
@@ -23,7 +23,7 @@ pub(crate) trait Ledger {
     fn tally(&mut self) -> Option<&mut Tally>;
 }
 
-impl Ledger for Off {
+impl Ledger for AbsentEffect {
     #[inline(always)]
     fn tally(&mut self) -> Option<&mut Tally> {
         None

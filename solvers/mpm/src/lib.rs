@@ -14,7 +14,7 @@
 //!
 //! Type parameters select space, basis, transfer and material, each only in the loops over points that need it. An enum
 //! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Absent
-//! effects are removed by the same means. Friction of springs, plastic strain and the energy budget are [`off::Off`] in
+//! effects are removed by the same means. Friction of springs, plastic strain and the energy budget are [`off::AbsentEffect`] in
 //! loops without them and need no memory; the affine part of velocities is stored only if the transfer uses it.
 
 mod accounts;

@@ -3,7 +3,7 @@
 use crate::bodies::Body;
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node, Window};
-use crate::share::Share;
+use crate::share::ThreadPartition;
 use crate::state::State;
 use grainbench_lanes::take_off;
 use grainbench_scene::solver::Cause;
@@ -36,7 +36,7 @@ pub(crate) struct Grid<S: Space> {
 }
 
 /// Consecutive nodes of a thread partition.
-pub(crate) struct Own<'a, S: Space> {
+pub(crate) struct NodePartition<'a, S: Space> {
     pub(crate) nodes: &'a mut [Node<S>],
     pub(crate) projected: &'a mut [S::Vector],
     pub(crate) most: &'a mut [f64],
@@ -44,12 +44,12 @@ pub(crate) struct Own<'a, S: Space> {
 
 impl<S: Space> Grid<S> {
     /// Splits the nodes by thread partitions.
-    pub(crate) fn parts(&mut self, shares: &[Share<S>]) -> impl Iterator<Item = Own<'_, S>> {
+    pub(crate) fn parts(&mut self, shares: &[ThreadPartition<S>]) -> impl Iterator<Item = NodePartition<'_, S>> {
         let Self { nodes, projected, most, .. } = self;
         let (mut nodes, mut projected, mut most) = (&mut nodes[..], &mut projected[..], &mut most[..]);
         shares.iter().map(move |share| {
             let count = share.nodes.len();
-            Own {
+            NodePartition {
                 nodes: take_off(&mut nodes, count),
                 projected: take_off(&mut projected, count),
                 most: take_off(&mut most, count),
@@ -106,7 +106,7 @@ impl<S: Space> Grid<S> {
     /// Computes node velocities after the step, v ← keep v + gain (f/m + g), from momenta and forces, and keeps the
     /// velocities before it. Returns the number of nodes with mass. See [`Damping`] for keep and gain.
     pub(crate) fn step(&mut self, state: &State<S>, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
-        let step = |_, own: Own<'_, S>| {
+        let step = |_, own: NodePartition<'_, S>| {
             let mut stepped = 0;
             for node in own.nodes {
                 if node.mass > 0.0 {

@@ -1,20 +1,20 @@
 //! Observation of a simulation at a step.
 
 use crate::bodies::Body;
-use crate::contact::{Other, Touch};
+use crate::contact::{ContactPartner, ContactPoint};
 use crate::material::{self, Law, with_law};
 use crate::simulation::Simulation;
 use crate::stress::embed_deformation;
 use grainbench_scene::budget::Budget;
 use grainbench_scene::record::{
-    self, BodyState, ContactState, GrainState, Look, Owner, Partner, PointState, Snapshot, WallState,
+    self, BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, StepState, WallState,
 };
 use grainbench_scene::scene::{BodyName, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
 /// Motion and moments of a whole body.
-struct Whole {
+struct WholeBodyMotion {
     mass: f64,
     position: Vector3<f64>,
     velocity: Vector3<f64>,
@@ -33,8 +33,8 @@ struct Whole {
 
 impl<S: Space> Simulation<S> {
     /// Returns the current observation; with `points`, it includes every material point.
-    pub(crate) fn look(&mut self, with_points: bool) -> Look {
-        let wholes: Vec<Whole> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
+    pub(crate) fn look(&mut self, with_points: bool) -> StepState {
+        let wholes: Vec<WholeBodyMotion> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
         let (mut uneven_rotational_energy, mut uneven_angular_momentum) = (0.0, Vector3::zeros());
@@ -82,7 +82,7 @@ impl<S: Space> Simulation<S> {
         };
         let contacts = self.contacts();
         let slipping = contacts.iter().filter(|contact| contact.slipping).count();
-        Look {
+        StepState {
             touching: Some([contacts.len(), slipping]),
             elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
@@ -106,7 +106,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Returns the resultant contact force (N) and torque (N m) on each body.
-    fn forces(&self, wholes: &[Whole]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+    fn forces(&self, wholes: &[WholeBodyMotion]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let mut sums = vec![(Vector3::zeros(), Vector3::zeros()); wholes.len()];
         for touch in &self.contacts.touches {
             let mut push = |body: u32, force: Vector3<f64>| {
@@ -117,7 +117,7 @@ impl<S: Space> Simulation<S> {
             };
             let force = S::embed(touch.push + touch.shear);
             push(touch.body, force);
-            if let Other::Body(other) = touch.other {
+            if let ContactPartner::Body(other) = touch.other {
                 push(other, -force);
             }
         }
@@ -142,7 +142,7 @@ impl<S: Space> Simulation<S> {
         position
     }
 
-    fn whole(&mut self, body: usize) -> Whole {
+    fn whole(&mut self, body: usize) -> WholeBodyMotion {
         let points = &self.state.points;
         let range = self.state.bodies[body].part.points.clone();
         let (mass, position) = points.centre_of_mass(range.clone());
@@ -180,7 +180,7 @@ impl<S: Space> Simulation<S> {
             self.looked = self.step;
         }
         let (angular_momentum, plastic_strain) = (angular, flowed / mass);
-        Whole { mass, position, velocity, angular_momentum, spin, inertia, kinetic, angle, plastic_strain }
+        WholeBodyMotion { mass, position, velocity, angular_momentum, spin, inertia, kinetic, angle, plastic_strain }
     }
 
     /// Returns the velocity of a point at the time of the observation, half a step later than its stored velocity.
@@ -265,14 +265,14 @@ impl<S: Space> Simulation<S> {
 
     /// Returns one contact for each pair: the sum of all tracer forces, at their centre of force.
     fn contacts(&self) -> Vec<ContactState> {
-        let mut touches: Vec<(u32, Other, Touch<S>)> = Vec::new();
+        let mut touches: Vec<(u32, ContactPartner, ContactPoint<S>)> = Vec::new();
         for touch in &self.contacts.touches {
-            let swap = matches!(touch.other, Other::Body(other) if other < touch.body);
+            let swap = matches!(touch.other, ContactPartner::Body(other) if other < touch.body);
             match touch.other {
-                Other::Body(other) if swap => touches.push((
+                ContactPartner::Body(other) if swap => touches.push((
                     other,
-                    Other::Body(touch.body),
-                    Touch { push: -touch.push, shear: -touch.shear, ..*touch },
+                    ContactPartner::Body(touch.body),
+                    ContactPoint { push: -touch.push, shear: -touch.shear, ..*touch },
                 )),
                 other => touches.push((touch.body, other, *touch)),
             }
@@ -284,13 +284,13 @@ impl<S: Space> Simulation<S> {
                 let (body, other) = (group[0].0, group[0].1);
                 let Owner::Grain(grain) = self.state.bodies[body as usize].owner else { return None };
                 let partner = match other {
-                    Other::Wall(wall) => Partner::Wall(wall),
-                    Other::Body(body) => match self.state.bodies[body as usize].owner {
+                    ContactPartner::Wall(wall) => Partner::Wall(wall),
+                    ContactPartner::Body(body) => match self.state.bodies[body as usize].owner {
                         Owner::Grain(id) => Partner::Grain(id),
                         Owner::Body(place) => Partner::Body(place),
                     },
                 };
-                let size = |touch: &Touch<S>| S::dot(touch.push, touch.push).sqrt();
+                let size = |touch: &ContactPoint<S>| S::dot(touch.push, touch.push).sqrt();
                 let total: f64 = group.iter().map(|(_, _, touch)| size(touch)).sum();
                 let push: Vector3<f64> = group.iter().map(|(_, _, touch)| S::embed(touch.push)).sum();
                 let shear = group.iter().map(|(_, _, touch)| S::embed(touch.shear)).sum();

@@ -3,4 +3,4 @@
 /// Stage of an absent effect: friction if μ = 0 for all laws, plastic strain if nothing yields, or the energy budget if
 /// no probe requests it. It takes no memory and computes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Off;
+pub struct AbsentEffect;

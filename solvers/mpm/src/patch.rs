@@ -14,13 +14,13 @@ pub(crate) type Copies<T> = [T; MOST];
 
 /// Position of a stencil block in the node array: its first node, and the strides to the next row and layer.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Patch {
+pub(crate) struct StencilBlock {
     first: usize,
     row: usize,
     layer: usize,
 }
 
-impl Patch {
+impl StencilBlock {
     /// Block of copies.
     const COPIES: Self = Self { first: 0, row: 3, layer: 9 };
 
@@ -46,12 +46,12 @@ impl Window {
         base: [i32; 3],
         nodes: &'a [T],
         copies: &'a mut Copies<T>,
-    ) -> (&'a [T], Patch) {
+    ) -> (&'a [T], StencilBlock) {
         match self.patch::<S, B>(base) {
             Some(patch) => (nodes, patch),
             None => {
                 self.copy::<S, B, T>(base, nodes, copies);
-                (copies, Patch::COPIES)
+                (copies, StencilBlock::COPIES)
             }
         }
     }
@@ -66,14 +66,14 @@ impl Window {
 
     /// Returns the position of the block, or `None` if a periodic boundary cuts through it.
     #[inline(always)]
-    fn patch<S: Space, B: Basis>(&self, base: [i32; 3]) -> Option<Patch> {
+    fn patch<S: Space, B: Basis>(&self, base: [i32; 3]) -> Option<StencilBlock> {
         let [length, rows, _] = self.size.map(|size| size as usize);
         let [x, y, z] = [self.along(0, base[0]), self.along(1, base[1]), self.along(2, base[2])];
         let cut = |axis: usize, first: usize| self.whole[axis] && first + B::WIDTH > self.size[axis] as usize;
         if cut(0, x) || cut(1, y) || (S::DIMENSION == 3 && cut(2, z)) {
             return None;
         }
-        Some(Patch { first: self.start + (z * rows + y) * length + x, row: length, layer: length * rows })
+        Some(StencilBlock { first: self.start + (z * rows + y) * length + x, row: length, layer: length * rows })
     }
 
     /// Iterates over the slots of the nodes and the indices of their copies.
@@ -82,7 +82,10 @@ impl Window {
         (0..depth * B::WIDTH * B::WIDTH).map(move |number| {
             let offsets = [number % B::WIDTH, number / B::WIDTH % B::WIDTH, number / (B::WIDTH * B::WIDTH)];
             let node = [0, 1, 2].map(|axis| base[axis] + offsets[axis] as i32);
-            (self.slot(node), offsets[0] + Patch::COPIES.row * offsets[1] + Patch::COPIES.layer * offsets[2])
+            (
+                self.slot(node),
+                offsets[0] + StencilBlock::COPIES.row * offsets[1] + StencilBlock::COPIES.layer * offsets[2],
+            )
         })
     }
 
@@ -93,21 +96,21 @@ impl Window {
 }
 
 /// Consecutive nodes in whole rows, to which a thread adds.
-pub(crate) struct Summed<'a, T> {
+pub(crate) struct NodeRows<'a, T> {
     /// Slot of the first node in the common node array.
     first: usize,
     nodes: &'a mut [T],
 }
 
-impl<'a, T: Copy> Summed<'a, T> {
+impl<'a, T: Copy> NodeRows<'a, T> {
     /// Creates the view of nodes that start at slot `first`.
     pub(crate) const fn new(first: usize, nodes: &'a mut [T]) -> Self {
         Self { first, nodes }
     }
 
     /// Reborrows the view.
-    pub(crate) fn lent(&mut self) -> Summed<'_, T> {
-        Summed { first: self.first, nodes: self.nodes }
+    pub(crate) fn lent(&mut self) -> NodeRows<'_, T> {
+        NodeRows { first: self.first, nodes: self.nodes }
     }
 
     /// Returns a row, if the view contains it.
@@ -118,23 +121,23 @@ impl<'a, T: Copy> Summed<'a, T> {
     }
 
     /// Returns the nodes of the view in the block with first node `base`, for accumulation followed by
-    /// [`Summed::put_back`]; returns `None` if the view contains no node of the block.
+    /// [`NodeRows::put_back`]; returns `None` if the view contains no node of the block.
     #[inline(always)]
     pub(crate) fn reached<'b, S: Space, B: Basis>(
         &'b mut self,
         window: &Window,
         base: [i32; 3],
         copies: &'b mut Copies<T>,
-    ) -> Option<(Summed<'b, T>, Patch)> {
+    ) -> Option<(NodeRows<'b, T>, StencilBlock)> {
         match window.patch::<S, B>(base) {
             Some(patch) => {
-                let last = patch.row::<S, B>(Patch::rows::<S, B>() - 1).end;
+                let last = patch.row::<S, B>(StencilBlock::rows::<S, B>() - 1).end;
                 let is_reached = last > self.first && patch.first < self.first + self.nodes.len();
-                is_reached.then_some((Summed { first: self.first, nodes: self.nodes }, patch))
+                is_reached.then_some((NodeRows { first: self.first, nodes: self.nodes }, patch))
             }
             None => {
                 self.copy::<S, B>(window, base, copies);
-                Some((Summed { first: 0, nodes: copies }, Patch::COPIES))
+                Some((NodeRows { first: 0, nodes: copies }, StencilBlock::COPIES))
             }
         }
     }

@@ -196,7 +196,7 @@ fn put_in<'a, T: Copy + Send>(values: &'a mut [T], orders: &'a [Order]) -> Box<d
 }
 
 /// Mutable view of consecutive points for one thread.
-pub(crate) struct Lent<'a, S: Space> {
+pub(crate) struct PointsMut<'a, S: Space> {
     /// Index of the first point.
     pub(crate) first: usize,
     pub(crate) position: &'a mut [S::Vector],
@@ -211,7 +211,7 @@ pub(crate) struct Lent<'a, S: Space> {
     pub(crate) plastic_strain: &'a mut [f64],
 }
 
-impl<S: Space> Lent<'_, S> {
+impl<S: Space> PointsMut<'_, S> {
     /// Splits off the first `count` points.
     pub(crate) fn take_off(&mut self, count: usize) -> Self {
         let first = self.first;
@@ -238,8 +238,8 @@ impl<S: Space> Lent<'_, S> {
 
 impl<S: Space> Points<S> {
     /// Returns a mutable view of all points.
-    pub(crate) fn lent(&mut self) -> Lent<'_, S> {
-        Lent {
+    pub(crate) fn lent(&mut self) -> PointsMut<'_, S> {
+        PointsMut {
             first: 0,
             position: &mut self.position,
             next: &mut self.next,

@@ -3,9 +3,9 @@
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
-use crate::points::{Lent, Points};
+use crate::points::{Points, PointsMut};
 use crate::transfer::Part;
-use grainbench_lanes::{FourLanes, LANES, Number, Wide};
+use grainbench_lanes::{FourLanes, LANES, Number, SimdPack};
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
@@ -16,7 +16,7 @@ pub(crate) const LONGEST: usize = 256;
 
 /// A particle batch: consecutive points that share the same nodes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Run {
+pub(crate) struct ParticleBatch {
     pub(crate) start: usize,
     pub(crate) end: usize,
     /// First node of the stencil block.
@@ -25,7 +25,7 @@ pub(crate) struct Run {
     pub(crate) is_known: bool,
 }
 
-impl Run {
+impl ParticleBatch {
     /// Returns true if all positions in a box (m), given by its lower and upper corner, use the nodes of the batch.
     pub(crate) fn holds<S: Space>(&self, lattice: &Lattice, start: f64, box_around: [[f64; 3]; 2]) -> bool {
         box_around.iter().all(|&[x, y, z]| self.reaches::<S>(lattice, start, S::restrict(Vector3::new(x, y, z))))
@@ -46,8 +46,8 @@ pub(crate) fn find<S: Space, B: Basis>(
     lattice: &Lattice,
     range: Range<usize>,
     points: &Points<S>,
-    before: &mut &[Run],
-    runs: &mut Vec<Run>,
+    before: &mut &[ParticleBatch],
+    runs: &mut Vec<ParticleBatch>,
 ) -> Range<usize> {
     let first = runs.len();
     let mut start = range.start;
@@ -58,7 +58,7 @@ pub(crate) fn find<S: Space, B: Basis>(
             Some(same) => *same,
             None => {
                 let base = lattice.first::<S, B>(points.position[start]);
-                Run { start, end: start + 1, base, is_known: false }
+                ParticleBatch { start, end: start + 1, base, is_known: false }
             }
         };
         // If the next batch is known too and has other nodes, none of its points can belong to this batch.
@@ -75,7 +75,7 @@ pub(crate) fn find<S: Space, B: Basis>(
 }
 
 /// Groups consecutive batches so that a group has at most as many points as the longest batch.
-pub(crate) fn in_groups(mut runs: &[Run]) -> impl Iterator<Item = &[Run]> {
+pub(crate) fn in_groups(mut runs: &[ParticleBatch]) -> impl Iterator<Item = &[ParticleBatch]> {
     std::iter::from_fn(move || {
         let start = runs.first()?.start;
         let count = runs.iter().take_while(|run| run.end - start <= LONGEST).count();
@@ -90,7 +90,7 @@ pub(crate) fn in_groups(mut runs: &[Run]) -> impl Iterator<Item = &[Run]> {
 pub(crate) struct Ground<'a, S: Space> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
-    pub(crate) runs: &'a [Run],
+    pub(crate) runs: &'a [ParticleBatch],
     /// Index of the first point in the following arrays.
     pub(crate) first: usize,
     pub(crate) deformation: &'a [S::Matrix],
@@ -99,13 +99,18 @@ pub(crate) struct Ground<'a, S: Space> {
 
 impl<'a, S: Space> Ground<'a, S> {
     #[inline(always)]
-    pub(crate) fn new(lattice: &'a Lattice, part: &'a Part, runs: &'a [Run], points: &'a Points<S>) -> Self {
+    pub(crate) fn new(lattice: &'a Lattice, part: &'a Part, runs: &'a [ParticleBatch], points: &'a Points<S>) -> Self {
         Self { lattice, part, runs, first: 0, deformation: &points.deformation, position: &points.position }
     }
 
     /// Creates the view from a mutable view of points.
     #[inline(always)]
-    pub(crate) fn lent(lattice: &'a Lattice, part: &'a Part, runs: &'a [Run], points: &'a Lent<'_, S>) -> Self {
+    pub(crate) fn lent(
+        lattice: &'a Lattice,
+        part: &'a Part,
+        runs: &'a [ParticleBatch],
+        points: &'a PointsMut<'_, S>,
+    ) -> Self {
         Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
     }
 
@@ -114,26 +119,31 @@ impl<'a, S: Space> Ground<'a, S> {
     pub(crate) fn and_next(
         lattice: &'a Lattice,
         part: &'a Part,
-        runs: &'a [Run],
-        points: &'a mut Lent<'_, S>,
+        runs: &'a [ParticleBatch],
+        points: &'a mut PointsMut<'_, S>,
     ) -> (Self, &'a mut [S::Vector]) {
-        let Lent { first, deformation, position, next, .. } = points;
+        let PointsMut { first, deformation, position, next, .. } = points;
         (Self { lattice, part, runs, first: *first, deformation, position }, next)
     }
 
     /// Computes the stencil of a SIMD pack of a batch.
     #[inline(always)]
-    pub(crate) fn stencil<B: Basis, L: FourLanes>(&self, lanes: L, run: &Run, batch: Batch) -> Stencil<Wide<L>> {
+    pub(crate) fn stencil<B: Basis, L: FourLanes>(
+        &self,
+        lanes: L,
+        run: &ParticleBatch,
+        batch: Batch,
+    ) -> Stencil<SimdPack<L>> {
         let batch = batch.counted_from(self.first);
         let position = batch.spread_vectors::<S, L>(lanes, self.position);
-        let mut half = [Wide::splat(lanes, self.part.half); 3];
+        let mut half = [SimdPack::splat(lanes, self.part.half); 3];
         if B::EXTENDED {
             let mut last = None;
             let four = batch.four(self.deformation, &mut last);
             let extents = [0, 1, 2, 3].map(|lane: usize| self.part.extent::<S, B>(four[lane]));
             for (axis, half) in half.iter_mut().enumerate().take(S::DIMENSION) {
                 let [a, b, c, d] = &extents;
-                *half = batch.spread(lanes, Wide::four(lanes, [a[axis], b[axis], c[axis], d[axis]]));
+                *half = batch.spread(lanes, SimdPack::four(lanes, [a[axis], b[axis], c[axis], d[axis]]));
             }
         }
         Stencil::around::<S, B>(self.lattice, run.base, position, half)
@@ -168,7 +178,7 @@ pub(crate) fn first_batch<S: Space, B: Basis>(
 const OWN: [[f64; LANES]; LANES + 1] =
     [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; 4]];
 
-impl Run {
+impl ParticleBatch {
     /// Iterates over its points, four at a time.
     #[inline(always)]
     pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
@@ -201,7 +211,7 @@ impl Batch {
 
     /// Returns the positions of its points (m) by component, for a stencil: lanes without a point use the same nodes.
     #[inline(always)]
-    pub(crate) fn spread_vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
+    pub(crate) fn spread_vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [SimdPack<L>; 3] {
         let mut vectors = self.vectors::<S, L>(lanes, values);
         for vector in vectors.iter_mut().take(S::DIMENSION) {
             *vector = self.spread(lanes, *vector);
@@ -211,34 +221,34 @@ impl Batch {
 
     /// Sets lanes without a point to the value of the first point, so that all lanes use the nodes of the batch.
     #[inline(always)]
-    fn spread<L: FourLanes>(self, lanes: L, values: Wide<L>) -> Wide<L> {
+    fn spread<L: FourLanes>(self, lanes: L, values: SimdPack<L>) -> SimdPack<L> {
         let [first, ..] = values.values();
-        values.like(0.0).pick_below(Wide::four(lanes, OWN[self.count]), values, values.like(first))
+        values.like(0.0).pick_below(SimdPack::four(lanes, OWN[self.count]), values, values.like(first))
     }
 
     /// Returns an extensive quantity of each point, such as mass; zero in lanes without a point.
     #[inline(always)]
-    pub(crate) fn amounts<L: FourLanes>(self, lanes: L, values: &[f64]) -> Wide<L> {
+    pub(crate) fn amounts<L: FourLanes>(self, lanes: L, values: &[f64]) -> SimdPack<L> {
         let mut last = None;
-        Wide::four(lanes, *self.four(values, &mut last)) * Wide::four(lanes, OWN[self.count])
+        SimdPack::four(lanes, *self.four(values, &mut last)) * SimdPack::four(lanes, OWN[self.count])
     }
 
     /// Returns a vector of each point, by component.
     #[inline(always)]
-    pub(crate) fn vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [Wide<L>; 3] {
+    pub(crate) fn vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [SimdPack<L>; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
-        let mut vectors = [Wide::splat(lanes, 0.0); 3];
+        let mut vectors = [SimdPack::splat(lanes, 0.0); 3];
         for (axis, vector) in vectors.iter_mut().enumerate().take(S::DIMENSION) {
             let four = [S::component(a, axis), S::component(b, axis), S::component(c, axis), S::component(d, axis)];
-            *vector = Wide::four(lanes, four);
+            *vector = SimdPack::four(lanes, four);
         }
         vectors
     }
 
     /// Returns a matrix of each point, by rows.
     #[inline(always)]
-    pub(crate) fn matrices<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Matrix]) -> [[Wide<L>; 3]; 3] {
+    pub(crate) fn matrices<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Matrix]) -> [[SimdPack<L>; 3]; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
         let four = [S::embed_gradient(a), S::embed_gradient(b), S::embed_gradient(c), S::embed_gradient(d)];
@@ -247,7 +257,7 @@ impl Batch {
 
     /// Returns the components of a symmetric tensor of each point in this space, by rows.
     #[inline(always)]
-    pub(crate) fn tensors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Symmetric]) -> [[Wide<L>; 3]; 3] {
+    pub(crate) fn tensors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Symmetric]) -> [[SimdPack<L>; 3]; 3] {
         let mut last = None;
         let [a, b, c, d] = *self.four(values, &mut last);
         let four = [S::embed_symmetric(a), S::embed_symmetric(b), S::embed_symmetric(c), S::embed_symmetric(d)];
@@ -256,7 +266,7 @@ impl Batch {
 
     /// Writes a vector for each point.
     #[inline(always)]
-    pub(crate) fn write_vectors<S: Space, L: FourLanes>(self, vectors: [Wide<L>; 3], to: &mut [S::Vector]) {
+    pub(crate) fn write_vectors<S: Space, L: FourLanes>(self, vectors: [SimdPack<L>; 3], to: &mut [S::Vector]) {
         let [x, y, z] = [vectors[0].values(), vectors[1].values(), vectors[2].values()];
         for (lane, to) in to[self.start..self.start + self.count].iter_mut().enumerate() {
             *to = S::restrict(Vector3::new(x[lane], y[lane], z[lane]));
@@ -265,7 +275,7 @@ impl Batch {
 
     /// Writes a matrix, given by rows, for each point.
     #[inline(always)]
-    pub(crate) fn write_matrices<S: Space, L: FourLanes>(self, rows: [[Wide<L>; 3]; 3], to: &mut [S::Matrix]) {
+    pub(crate) fn write_matrices<S: Space, L: FourLanes>(self, rows: [[SimdPack<L>; 3]; 3], to: &mut [S::Matrix]) {
         let mut values = [[[0.0; LANES]; 3]; 3];
         for (values, row) in values.iter_mut().zip(rows) {
             *values = [row[0].values(), row[1].values(), row[2].values()];
@@ -278,12 +288,12 @@ impl Batch {
 
 /// Packs the components of four matrices in this space, by rows.
 #[inline(always)]
-fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[Wide<L>; 3]; 3] {
-    let mut rows = [[Wide::splat(lanes, 0.0); 3]; 3];
+fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[SimdPack<L>; 3]; 3] {
+    let mut rows = [[SimdPack::splat(lanes, 0.0); 3]; 3];
     for (row, to) in rows.iter_mut().enumerate().take(S::DIMENSION) {
         for (column, to) in to.iter_mut().enumerate().take(S::DIMENSION) {
             let at = (row, column);
-            *to = Wide::four(lanes, [a[at], b[at], c[at], d[at]]);
+            *to = SimdPack::four(lanes, [a[at], b[at], c[at], d[at]]);
         }
     }
     rows
@@ -318,7 +328,7 @@ mod tests {
             (100 * (y + 50) + x + 50) as usize
         });
         points.put_in(&[order], &grainbench_lanes::Team::default());
-        let (mut runs, mut known, mut unknown): (Vec<Run>, usize, usize) = Default::default();
+        let (mut runs, mut known, mut unknown): (Vec<ParticleBatch>, usize, usize) = Default::default();
         for step in 0..150 {
             let before = std::mem::take(&mut runs);
             known += before.iter().filter(|run| run.is_known).count();

@@ -11,15 +11,15 @@
 use crate::basis::{Basis, with_basis};
 use crate::contact::grip;
 use crate::grid::{Node, Stencil};
-use crate::nodes::{Grid, Own};
+use crate::nodes::{Grid, NodePartition};
 use crate::options;
-use crate::patch::{Copies, Patch, Summed};
+use crate::patch::{Copies, NodeRows, StencilBlock};
 use crate::points::Points;
 use crate::runs::Ground;
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Spin, Transfer};
-use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide};
+use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -30,11 +30,11 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
     let Scheme { setting, processor, .. } = scheme;
     let State { bodies, points, shares, team, .. } = state;
     let lattice = grid.lattice;
-    team.each(grid.parts(shares), |number, Own { nodes: own, projected, most }| {
+    team.each(grid.parts(shares), |number, NodePartition { nodes: own, projected, most }| {
         own.fill(Node::EMPTY);
         projected.fill(S::ORIGIN);
         let start = shares[number].nodes.start;
-        let mut nodes = Summed::new(start, own);
+        let mut nodes = NodeRows::new(start, own);
         for (_, body, runs) in state.reaching(&shares[number].nodes) {
             let ground = Ground::new(&lattice, &body.part, runs, points);
             let nodes = nodes.lent();
@@ -65,12 +65,12 @@ pub(crate) fn weighted<B: Basis, N: Number>(values: [N; 3], weights: [N; 3]) -> 
 
 /// Velocity of points extrapolated to the nodes of a stencil, v + A r with r from the point to the node. It holds the
 /// value at the first node, and the increment to the next node along each axis.
-pub(crate) struct Shown<N> {
+pub(crate) struct ExtrapolatedVelocity<N> {
     first: [N; 3],
     next: [[N; 3]; 3],
 }
 
-impl<N: Number> Shown<N> {
+impl<N: Number> ExtrapolatedVelocity<N> {
     #[inline(always)]
     pub(crate) fn new<S: Space, T: Transfer>(
         cell: &[f64; 3],
@@ -111,12 +111,12 @@ impl<N: Number> Shown<N> {
 struct Scatter<'a, S: Space, B, T> {
     ground: Ground<'a, S>,
     points: &'a Points<S>,
-    nodes: Summed<'a, Node<S>>,
+    nodes: NodeRows<'a, Node<S>>,
     how: PhantomData<(B, T)>,
 }
 
 impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
-    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: Summed<'a, Node<S>>) -> Self {
+    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: NodeRows<'a, Node<S>>) -> Self {
         Self { ground, points, nodes, how: PhantomData }
     }
 }
@@ -125,7 +125,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { ground, points, mut nodes, .. } = self;
-        let zero = Wide::splat(lanes, 0.0);
+        let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         for run in ground.runs {
             let window = &ground.part.window;
@@ -134,19 +134,19 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let velocity = batch.vectors::<S, L>(lanes, &points.velocity);
                 let affine = if T::AFFINE { batch.matrices::<S, L>(lanes, &points.affine) } else { [[zero; 3]; 3] };
-                let shown = Shown::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
+                let shown = ExtrapolatedVelocity::new::<S, T>(&ground.lattice.cell, &stencil, velocity, affine);
                 let [values, slopes] = stencil.along_x();
                 let mass = batch.amounts(lanes, &points.mass);
-                let masses = Wide::scaled(values, mass);
+                let masses = SimdPack::scaled(values, mass);
                 let volume = -batch.amounts(lanes, &points.volume);
                 let mut pull = batch.tensors::<S, L>(lanes, &points.stress);
                 for row in &mut pull {
-                    *row = Wide::scaled(*row, volume);
+                    *row = SimdPack::scaled(*row, volume);
                 }
-                for row in 0..Patch::rows::<S, B>() {
+                for row in 0..StencilBlock::rows::<S, B>() {
                     let Some(reached) = reached.row(patch.row::<S, B>(row)) else { continue };
                     let across = stencil.across::<S, B>(row);
-                    let masses = Wide::scaled(masses, across.value);
+                    let masses = SimdPack::scaled(masses, across.value);
                     let mut brought = [[zero; 2 * LANES]; 3];
                     for (brought, &mass) in brought.iter_mut().zip(&masses) {
                         brought[0] = mass;
@@ -173,23 +173,23 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
 
 /// Adds mass, momentum and force from four points to the nodes of a row.
 #[inline(always)]
-fn give<S: Space, B: Basis, L: FourLanes>(brought: [[Wide<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
+fn give<S: Space, B: Basis, L: FourLanes>(brought: [[SimdPack<L>; 2 * LANES]; 3], nodes: &mut [Node<S>]) {
     let zero = brought[0][7];
     let [x, y, z] = brought;
     let last = if S::DIMENSION == 2 {
         // One value of each node is left.
-        let [x, y, z, _] = Wide::sums([x[4], y[4], z[4], zero]);
+        let [x, y, z, _] = SimdPack::sums([x[4], y[4], z[4], zero]);
         [[x, 0.0, 0.0, 0.0], [y, 0.0, 0.0, 0.0], [z, 0.0, 0.0, 0.0]]
     } else {
         [
-            Wide::sums([x[4], x[5], x[6], zero]),
-            Wide::sums([y[4], y[5], y[6], zero]),
-            Wide::sums([z[4], z[5], z[6], zero]),
+            SimdPack::sums([x[4], x[5], x[6], zero]),
+            SimdPack::sums([y[4], y[5], y[6], zero]),
+            SimdPack::sums([z[4], z[5], z[6], zero]),
         ]
     };
     for (node, to) in nodes.iter_mut().enumerate().take(B::WIDTH) {
         let brought = &brought[node];
-        let [mass, a, b, c] = Wide::sums([brought[0], brought[1], brought[2], brought[3]]);
+        let [mass, a, b, c] = SimdPack::sums([brought[0], brought[1], brought[2], brought[3]]);
         let [d, e, f, _] = last[node];
         let sums = [a, b, c, d, e, f];
         to.mass += mass;

@@ -9,8 +9,8 @@ use crate::bodies::Body;
 use crate::failure::Failure;
 use crate::grid::{Lattice, Window};
 use crate::ledger::Flow;
-use crate::points::{Lent, Points};
-use crate::runs::{self, LONGEST, Run};
+use crate::points::{Points, PointsMut};
+use crate::runs::{self, LONGEST, ParticleBatch};
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(crate) const FEWEST: usize = 2000;
 
 /// A thread partition of points and nodes.
 #[derive(Clone, Debug)]
-pub(crate) struct Share<S: Space> {
+pub(crate) struct ThreadPartition<S: Space> {
     /// Points of the partition.
     pub(crate) points: Range<usize>,
     /// Nodes of the partition, in whole rows along x.
@@ -29,11 +29,11 @@ pub(crate) struct Share<S: Space> {
     /// End of the nodes that its points influence.
     reach: usize,
     /// Batches of its points in the current step.
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<ParticleBatch>,
     /// Batches of the previous step.
-    pub(crate) before: Vec<Run>,
+    pub(crate) before: Vec<ParticleBatch>,
     /// Ranges of batches by body.
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<BodyBatches>,
     /// Velocity gradients of the current points (1/s).
     pub(crate) gradients: Vec<S::Matrix>,
     /// Energies of stresses for the budget, batch by batch, if requested.
@@ -44,7 +44,7 @@ pub(crate) struct Share<S: Space> {
 
 /// Batches of a body in a partition.
 #[derive(Clone, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct BodyBatches {
     /// Index of the body.
     pub(crate) body: usize,
     /// Range of its batches within the partition.
@@ -58,21 +58,21 @@ pub(crate) const NO_BOX: [[f64; 3]; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY
 
 /// Largest displacement of a point in a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Way {
+pub(crate) struct LargestDisplacement {
     /// Square of the displacement (m²).
     pub(crate) squared: f64,
     /// True if any displacement is NaN.
     pub(crate) is_lost: bool,
 }
 
-impl Way {
+impl LargestDisplacement {
     /// Returns the larger of two displacements.
     pub(crate) fn farther(self, other: Self) -> Self {
         Self { squared: self.squared.max(other.squared), is_lost: self.is_lost || other.is_lost }
     }
 }
 
-impl<S: Space> Share<S> {
+impl<S: Space> ThreadPartition<S> {
     /// Returns an empty partition.
     pub(crate) fn new() -> Self {
         Self {
@@ -90,7 +90,7 @@ impl<S: Space> Share<S> {
     }
 
     /// Iterates over its batches with their bodies.
-    pub(crate) fn parts<'a>(&'a self, bodies: &'a [Body]) -> impl Iterator<Item = (&'a Body, &'a [Run])> {
+    pub(crate) fn parts<'a>(&'a self, bodies: &'a [Body]) -> impl Iterator<Item = (&'a Body, &'a [ParticleBatch])> {
         self.pieces.iter().map(|piece| (&bodies[piece.body], &self.runs[piece.runs.clone()]))
     }
 
@@ -98,8 +98,13 @@ impl<S: Space> Share<S> {
     /// still known.
     ///
     /// `start` is the [`Basis::START`] of the basis. Returns the largest displacement.
-    pub(crate) fn move_points(&mut self, points: &mut Lent<'_, S>, lattice: &Lattice, start: f64) -> Way {
-        let mut way = Way::default();
+    pub(crate) fn move_points(
+        &mut self,
+        points: &mut PointsMut<'_, S>,
+        lattice: &Lattice,
+        start: f64,
+    ) -> LargestDisplacement {
+        let mut way = LargestDisplacement::default();
         for piece in &mut self.pieces {
             piece.bounds = NO_BOX;
             for run in &mut self.runs[piece.runs.clone()] {
@@ -138,7 +143,7 @@ impl<S: Space> Share<S> {
                 let runs = runs::find::<S, B>(lattice, range, points, &mut before, &mut self.runs);
                 let ends = self.runs[runs.clone()].iter().map(|run| part.part.window.end_of::<S, B>(run.base));
                 self.reach = ends.fold(self.reach, usize::max);
-                self.pieces.push(Piece { body, runs, bounds: NO_BOX });
+                self.pieces.push(BodyBatches { body, runs, bounds: NO_BOX });
             }
         }
     }
@@ -148,7 +153,7 @@ impl<S: Space> Share<S> {
 ///
 /// A body is split only between points in different cells. Every batch ends there for any number of partitions.
 pub(crate) fn cut_points<S: Space, B: Basis>(
-    shares: &mut [Share<S>],
+    shares: &mut [ThreadPartition<S>],
     lattice: &Lattice,
     bodies: &[Body],
     points: &Points<S>,
@@ -173,9 +178,9 @@ pub(crate) fn cut_points<S: Space, B: Basis>(
 ///
 /// Each partition gets the nodes that its own points influence first. If all bodies share one field, the ranges are
 /// equal.
-pub(crate) fn cut_nodes<S: Space>(shares: &mut [Share<S>], bodies: &[Body], used: usize, one_field: bool) {
+pub(crate) fn cut_nodes<S: Space>(shares: &mut [ThreadPartition<S>], bodies: &[Body], used: usize, one_field: bool) {
     let count = shares.len();
-    let first_of = |(number, share): (usize, &Share<S>)| {
+    let first_of = |(number, share): (usize, &ThreadPartition<S>)| {
         if one_field {
             let row = bodies[0].part.window.size[0] as usize;
             return number * (used / row) / count * row;

@@ -8,25 +8,25 @@ use crate::accounts::Accounts;
 use crate::basis::{Basis, with_basis};
 use crate::bodies::seed;
 use crate::boundary::Boundary;
-use crate::contacts::{Asked, Contacts};
+use crate::contacts::{ContactRequest, Contacts};
 use crate::damping::Damping;
 use crate::failure::Failure;
 use crate::gather::gather;
 use crate::grid::Lattice;
-use crate::guard::Watched;
+use crate::guard::EnergyGuard;
 use crate::ledger::Tally;
 use crate::nodes::{Grid, Velocities};
 use crate::options::Setting;
-use crate::points::Lent;
+use crate::points::PointsMut;
 use crate::scatter::scatter;
 use crate::scheme::{Scheme, Surroundings};
-use crate::share::{FEWEST, Share, Way, cut_nodes};
+use crate::share::{FEWEST, LargestDisplacement, ThreadPartition, cut_nodes};
 use crate::state::State;
 use crate::{stress, transfer};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Broken;
+use grainbench_scene::solver::SimulationFailure;
 use grainbench_scene::space::Space;
 
 /// A running simulation.
@@ -41,7 +41,7 @@ pub(crate) struct Simulation<S: Space> {
     /// Energy budget, if requested.
     pub(crate) accounts: Option<Accounts<S>>,
     /// Energy of a closed run, once it is monitored.
-    pub(crate) watched: Option<Watched>,
+    pub(crate) watched: Option<EnergyGuard>,
     /// True before the first step.
     pub(crate) is_fresh: bool,
     /// Crossing time of the fastest wave through a cell (s).
@@ -88,7 +88,7 @@ impl<S: Space> Simulation<S> {
     ///
     /// # Errors
     /// When bodies extend farther than a grid can, or fail during relaxation.
-    pub(crate) fn begin(&mut self) -> Result<(), Box<Broken>> {
+    pub(crate) fn begin(&mut self) -> Result<(), Box<SimulationFailure>> {
         let team = self.state.team.clone();
         team.lead(|| self.settle())?;
         let Self { critical, scheme, .. } = *self;
@@ -109,7 +109,7 @@ impl<S: Space> Simulation<S> {
     ///
     /// # Errors
     /// When the state of a point becomes invalid.
-    pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<Broken>> {
+    pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         let team = self.state.team.clone();
         team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))
     }
@@ -118,7 +118,7 @@ impl<S: Space> Simulation<S> {
     ///
     /// # Errors
     /// When the state of a point becomes invalid.
-    pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<Broken>> {
+    pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<SimulationFailure>> {
         let Self { critical, step, scheme, .. } = *self;
         self.stages(record).map_err(|failure| failure.into_simulation_failure(step, scheme.time_step, critical))?;
         self.step += 1;
@@ -188,7 +188,7 @@ impl<S: Space> Simulation<S> {
         self.grid.project();
         self.finish_projection();
         let Self { scheme, state, grid, accounts, .. } = self;
-        let stay = |_: &mut Share<S>, _: &mut Lent<'_, S>| Way::default();
+        let stay = |_: &mut ThreadPartition<S>, _: &mut PointsMut<'_, S>| LargestDisplacement::default();
         let (flow, _) = stress::follow(scheme, state, (grid, Velocities::Projected), accounts.is_some(), stay)?;
         if let Some(accounts) = accounts {
             accounts.add_flow(flow);
@@ -230,7 +230,7 @@ impl<S: Space> Simulation<S> {
         if let Some(accounts) = accounts {
             accounts.note_internal_forces(&state.team, grid);
         }
-        let asked = Asked { accounts: accounts.as_mut(), touches: record };
+        let asked = ContactRequest { accounts: accounts.as_mut(), touches: record };
         contacts.push(scheme, state, grid, boundary, asked, cost);
         boundary.held.fold(&state.bodies, &mut grid.nodes, surroundings.gravity);
         if let Some(accounts) = accounts {
@@ -283,7 +283,9 @@ impl<S: Space> Simulation<S> {
         } else {
             let counts = accounts.is_some();
             let lattice = &grid.lattice;
-            let go = |share: &mut Share<S>, points: &mut Lent<'_, S>| share.move_points(points, lattice, start);
+            let go = |share: &mut ThreadPartition<S>, points: &mut PointsMut<'_, S>| {
+                share.move_points(points, lattice, start)
+            };
             let (flow, way) = stress::follow(scheme, state, (grid, velocities), counts, go)?;
             if let Some(accounts) = accounts {
                 accounts.add_flow(flow);

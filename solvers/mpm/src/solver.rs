@@ -6,9 +6,9 @@ use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
-use grainbench_scene::drive::{Course, Driven, Stepper};
+use grainbench_scene::drive::{Course, LoopOutput, Stepper};
 use grainbench_scene::memory;
-use grainbench_scene::record::{Counts, Look, Provenance, Record};
+use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run, beyond_steps};
@@ -136,7 +136,7 @@ impl Mpm {
         plan: &Plan,
         from: Option<&Checkpoint>,
         watch: &mut dyn Watch,
-    ) -> Result<Driven, RunError> {
+    ) -> Result<LoopOutput, RunError> {
         let &Plan { lattice, points, time_step, steps, critical } = plan;
         let mut simulation =
             Simulation::<S>::new(scene, self.setting, lattice, points, [time_step, critical], watch.threads());
@@ -144,7 +144,7 @@ impl Mpm {
         let run = Run { solver, scene, time_step, steps, layout: std::any::type_name::<Simulation<S>>() };
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        course.drive(&mut Running { simulation, run }, watch)
+        course.drive(&mut RunningSimulation { simulation, run }, watch)
     }
 
     /// Runs from the start or from a checkpoint to the end.
@@ -156,7 +156,7 @@ impl Mpm {
         watch: &mut dyn Watch,
     ) -> Result<Record, RunError> {
         let plan = self.plan(scene, resolution)?;
-        let Driven { series, snapshots, cost } = match scene.dimension {
+        let LoopOutput { series, snapshots, cost } = match scene.dimension {
             Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, watch)?,
             Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, watch)?,
         };
@@ -214,12 +214,12 @@ const SMALLEST: f64 = 0.5;
 const BETWEEN_SIDES: f64 = 1.5;
 
 /// A running simulation.
-struct Running<'a, S: Space> {
+struct RunningSimulation<'a, S: Space> {
     simulation: Simulation<S>,
     run: Run<'a>,
 }
 
-impl<S: Space> Stepper for Running<'_, S> {
+impl<S: Space> Stepper for RunningSimulation<'_, S> {
     fn begin(&mut self) -> Result<(), RunError> {
         Ok(self.simulation.begin()?)
     }
@@ -240,7 +240,7 @@ impl<S: Space> Stepper for Running<'_, S> {
         Ok(self.simulation.advance(steps)?)
     }
 
-    fn look(&mut self, snapshot: bool) -> Look {
+    fn look(&mut self, snapshot: bool) -> StepState {
         self.simulation.look(snapshot)
     }
 

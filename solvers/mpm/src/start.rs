@@ -8,13 +8,13 @@ use crate::simulation::Simulation;
 use crate::state::State;
 use crate::{stress_at_start, transfer};
 use grainbench_scene::record::Owner;
-use grainbench_scene::solver::Broken;
+use grainbench_scene::solver::SimulationFailure;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
 impl<S: Space> Simulation<S> {
     /// Applies the initial stress and runs the damped relaxation before time zero.
-    pub(crate) fn settle(&mut self) -> Result<(), Box<Broken>> {
+    pub(crate) fn settle(&mut self) -> Result<(), Box<SimulationFailure>> {
         let start = self.scene.start;
         let gravity = start.settle.map_or(self.scene.gravity, |settle| settle.gravity);
         stress_at_start::give(&self.scene, gravity, &mut self.state, &self.contacts.tracers);

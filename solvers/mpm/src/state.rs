@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::grid::{Lattice, Stencil};
 use crate::options::Basis;
 use crate::points::Points;
-use crate::runs::Run;
-use crate::share::{self, NO_BOX, Piece, Share, Way, enclose};
+use crate::runs::ParticleBatch;
+use crate::share::{self, BodyBatches, LargestDisplacement, NO_BOX, ThreadPartition, enclose};
 use crate::surface::Tracers;
 use grainbench_lanes::Team;
 use grainbench_scene::solver::Cause;
@@ -29,21 +29,21 @@ pub(crate) struct State<S: Space> {
     /// positions.
     pub(crate) before: Vec<S::Vector>,
     /// Thread partitions.
-    pub(crate) shares: Vec<Share<S>>,
+    pub(crate) shares: Vec<ThreadPartition<S>>,
     /// Threads of the run.
     pub(crate) team: Team,
 }
 
 impl<S: Space> State<S> {
     pub(crate) fn new(bodies: Vec<Body>, points: Points<S>, team: Team) -> Self {
-        let shares = vec![Share::new(); team.members()];
+        let shares = vec![ThreadPartition::new(); team.members()];
         Self { bodies, before: points.velocity.clone(), points, shares, team }
     }
 
     /// Replaces the threads.
     #[cfg(test)]
     pub(crate) fn set_team(&mut self, team: Team) {
-        (self.shares, self.team) = (vec![Share::new(); team.members()], team);
+        (self.shares, self.team) = (vec![ThreadPartition::new(); team.members()], team);
     }
 
     /// Returns the memory in use (bytes).
@@ -87,7 +87,7 @@ impl<S: Space> State<S> {
 
     /// Marks the batches of these bodies as unknown.
     fn forget_runs(&mut self, places: &[usize]) {
-        for Share { pieces, runs, .. } in &mut self.shares {
+        for ThreadPartition { pieces, runs, .. } in &mut self.shares {
             for piece in pieces.iter().filter(|piece| places.contains(&piece.body)) {
                 runs[piece.runs.clone()].iter_mut().for_each(|run| run.is_known = false);
             }
@@ -102,7 +102,7 @@ impl<S: Space> State<S> {
 
     /// Iterates over the bodies whose windows contain any of these nodes, with their batches and the number of the
     /// partition; the batches of a body are in order.
-    pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[Run])> {
+    pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[ParticleBatch])> {
         let Self { bodies, shares, .. } = self;
         let all = shares.iter().enumerate();
         let all = all.flat_map(|(number, share)| share.parts(bodies).map(move |(body, runs)| (number, body, runs)));
@@ -113,19 +113,19 @@ impl<S: Space> State<S> {
     }
 
     /// Moves the points to their next positions.
-    pub(crate) fn move_points(&mut self, lattice: &Lattice, start: f64) -> Way {
+    pub(crate) fn move_points(&mut self, lattice: &Lattice, start: f64) -> LargestDisplacement {
         let Self { points, shares, team, .. } = self;
         let mut left = points.lent();
         let parts = shares.iter_mut().map(|share| (left.take_off(share.points.len()), share));
-        let go = |_, (mut points, share): (_, &mut Share<S>)| share.move_points(&mut points, lattice, start);
-        team.fold(parts, go, Way::default(), Way::farther)
+        let go = |_, (mut points, share): (_, &mut ThreadPartition<S>)| share.move_points(&mut points, lattice, start);
+        team.fold(parts, go, LargestDisplacement::default(), LargestDisplacement::farther)
     }
 
     /// Computes the bounding boxes of all bodies from those of thread partitions and tracer chunks.
     pub(crate) fn gather_bounds(&mut self, tracers: &Tracers<S>) {
         let Self { bodies, shares, .. } = self;
         let mut around = vec![NO_BOX; bodies.len()];
-        for Piece { body, bounds: [low, high], .. } in shares.iter().flat_map(|share| &share.pieces) {
+        for BodyBatches { body, bounds: [low, high], .. } in shares.iter().flat_map(|share| &share.pieces) {
             let around = &mut around[*body];
             for axis in 0..S::DIMENSION {
                 around[0][axis] = around[0][axis].min(low[axis]);

@@ -9,10 +9,10 @@ use crate::ledger::Flow;
 use crate::material::{Law, PlasticStrain, VolumeRatio, with_law};
 use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
-use crate::points::Lent;
-use crate::runs::{self, Ground, LONGEST, Run};
+use crate::points::PointsMut;
+use crate::runs::{self, Ground, LONGEST, ParticleBatch};
 use crate::scheme::Scheme;
-use crate::share::{Share, Way};
+use crate::share::{LargestDisplacement, ThreadPartition};
 use crate::state::State;
 use grainbench_lanes::logarithm::ln;
 use grainbench_lanes::{FourKernel, FourLanes};
@@ -48,12 +48,12 @@ pub(crate) fn follow<S: Space>(
     state: &mut State<S>,
     grid: (&Grid<S>, Velocities),
     counts: bool,
-    then: impl Fn(&mut Share<S>, &mut Lent<'_, S>) -> Way + Sync,
-) -> Result<(Flow, Way), Failure> {
+    then: impl Fn(&mut ThreadPartition<S>, &mut PointsMut<'_, S>) -> LargestDisplacement + Sync,
+) -> Result<(Flow, LargestDisplacement), Failure> {
     let State { bodies, points, shares, team, .. } = state;
     let mut left = points.lent();
     let parts = shares.iter_mut().map(|share| (left.take_off(share.points.len()), share));
-    let follow = |_, (mut points, share): (Lent<'_, S>, &mut Share<S>)| {
+    let follow = |_, (mut points, share): (PointsMut<'_, S>, &mut ThreadPartition<S>)| {
         share.failure = None;
         share.flows.clear();
         for number in 0..share.pieces.len() {
@@ -61,7 +61,7 @@ pub(crate) fn follow<S: Space>(
         }
         then(share, &mut points)
     };
-    let way = team.fold(parts, follow, Way::default(), Way::farther);
+    let way = team.fold(parts, follow, LargestDisplacement::default(), LargestDisplacement::farther);
     if let Some(failure) = shares.iter_mut().find_map(|share| share.failure.take()) {
         return Err(failure);
     }
@@ -77,16 +77,16 @@ pub(crate) fn follow<S: Space>(
 /// Computes gradients, deformation and stress for the points of one body in a partition.
 fn follow_piece<S: Space>(
     scheme: &Scheme,
-    share: &mut Share<S>,
+    share: &mut ThreadPartition<S>,
     number: usize,
     bodies: &[Body],
-    points: &mut Lent<'_, S>,
+    points: &mut PointsMut<'_, S>,
     (grid, velocities): (&Grid<S>, Velocities),
     counts: bool,
 ) {
     let Grid { lattice, nodes, projected, .. } = grid;
     let Scheme { setting, time_step, processor } = *scheme;
-    let Share { runs, pieces, gradients, flows, failure, .. } = share;
+    let ThreadPartition { runs, pieces, gradients, flows, failure, .. } = share;
     let (spins, piece) = (setting.transfer == Transfer::Spin, &pieces[number]);
     let Body { part, law, owner, .. } = &bodies[piece.body];
     let mut broken = None;
@@ -138,11 +138,11 @@ fn follow_piece<S: Space>(
 struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     law: L,
     /// Consecutive batches with at most as many points as the longest batch.
-    runs: &'a [Run],
+    runs: &'a [ParticleBatch],
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
-    points: &'a mut Lent<'b, S>,
+    points: &'a mut PointsMut<'b, S>,
     /// Energies by batch, because these do not depend on the thread partitions.
     flows: &'a mut Vec<Flow>,
     /// First point with an invalid state.

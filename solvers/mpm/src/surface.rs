@@ -3,12 +3,12 @@
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Stencil};
-use crate::patch::{Copies, Patch};
+use crate::patch::{Copies, StencilBlock};
 use crate::runs;
 use crate::seed;
 use crate::share::{NO_BOX, enclose};
 use crate::transfer::Part;
-use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, Wide, take_off};
+use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack, take_off};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
@@ -72,7 +72,7 @@ impl<S: Space> Chunk<S> {
 
 /// Surface of a body near a position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Near<S: Space> {
+pub(crate) struct NearSurface<S: Space> {
     /// Distance above the surface (m), negative inside.
     pub(crate) gap: f64,
     /// Outward unit normal of the body.
@@ -102,9 +102,9 @@ impl<S: Space> Tracers<S> {
     }
 
     /// Returns a mutable view of all tracers.
-    pub(crate) fn lent(&mut self) -> TracersOf<'_, S> {
+    pub(crate) fn lent(&mut self) -> TracersMut<'_, S> {
         let Self { position, area, neighbours, chunks } = self;
-        TracersOf { first: 0, position, area, neighbours, chunks }
+        TracersMut { first: 0, position, area, neighbours, chunks }
     }
 
     /// Adds a closed surface; in the plane its elements are ordered with the body on their left.
@@ -179,7 +179,7 @@ impl<S: Space> Tracers<S> {
         facing: S::Vector,
         reach: f64,
         closest: &mut Option<usize>,
-    ) -> Option<Near<S>> {
+    ) -> Option<NearSurface<S>> {
         let distance_to = |at: usize| {
             let between = position - self.position[at];
             S::dot(between, between)
@@ -238,7 +238,7 @@ impl<S: Space> Tracers<S> {
         nearest: usize,
         position: S::Vector,
         facing: S::Vector,
-    ) -> Option<Near<S>> {
+    ) -> Option<NearSurface<S>> {
         let (middle, normal) = (self.position[nearest], self.normal(nearest));
         let foot = position - normal * S::dot(position - middle, normal);
         let area = S::dot(self.area[nearest], self.area[nearest]).sqrt();
@@ -268,7 +268,7 @@ impl<S: Space> Tracers<S> {
             }
         }
         let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
-        Some(Near { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
+        Some(NearSurface { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
     }
 
     /// Returns the chord between two tracers with its point nearest to a position.
@@ -282,14 +282,14 @@ impl<S: Space> Tracers<S> {
 
     /// Returns the surface over a chord: the cubic with the tracers' normals at its ends.
     #[inline(always)]
-    fn on(&self, &Chord { ends: [from, to], chord, part, off }: &Chord<S>) -> Near<S> {
+    fn on(&self, &Chord { ends: [from, to], chord, part, off }: &Chord<S>) -> NearSurface<S> {
         let [first, last] = [self.normal(from), self.normal(to)];
         let mean = first * (1.0 - part) + last * part;
         let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
         // Slopes of the surface relative to the chord, times its length, at both ends.
         let slope = |end: S::Vector| -S::dot(end, chord) / S::dot(end, normal);
         let bump = slope(first) * part * (1.0 - part) * (1.0 - part) - slope(last) * part * part * (1.0 - part);
-        Near { gap: S::dot(off, normal) - bump, normal }
+        NearSurface { gap: S::dot(off, normal) - bump, normal }
     }
 }
 
@@ -319,7 +319,7 @@ impl<S: Space> Chord<S> {
 }
 
 /// Mutable view of consecutive tracers of whole bodies, for one thread.
-pub(crate) struct TracersOf<'a, S: Space> {
+pub(crate) struct TracersMut<'a, S: Space> {
     /// Index of the first tracer.
     first: usize,
     position: &'a mut [S::Vector],
@@ -328,7 +328,7 @@ pub(crate) struct TracersOf<'a, S: Space> {
     chunks: &'a mut [Chunk<S>],
 }
 
-impl<S: Space> TracersOf<'_, S> {
+impl<S: Space> TracersMut<'_, S> {
     /// Splits off the tracers of the first bodies.
     pub(crate) fn take_off(&mut self, bodies: &[Body]) -> Self {
         let count = bodies.iter().map(|body| body.tracers.len()).sum();
@@ -349,7 +349,7 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     /// Tracers to move.
-    pub(crate) of: TracersOf<'a, S>,
+    pub(crate) of: TracersMut<'a, S>,
     pub(crate) nodes: &'a [N],
     /// Weight limit of each node.
     pub(crate) most: &'a [f64],
@@ -362,8 +362,8 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, of: tracers, nodes, most, velocity, elapsed, .. } = self;
-        let TracersOf { first, position, area, neighbours, chunks } = tracers;
-        let zero = Wide::splat(lanes, 0.0);
+        let TracersMut { first, position, area, neighbours, chunks } = tracers;
+        let zero = SimdPack::splat(lanes, 0.0);
         // Placeholder that is overwritten before it is read.
         let Some(&any) = nodes.first() else { return };
         let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
@@ -377,15 +377,15 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'
             let (seen, patch) = part.window.seen::<S, B, _>(base, nodes, &mut copies);
             let (bounds, _) = part.window.seen::<S, B, _>(base, most, &mut most_copies);
             let at = batch.spread_vectors::<S, L>(lanes, position);
-            let stencil = Stencil::around::<S, B>(lattice, base, at, [Wide::splat(lanes, part.half); 3]);
+            let stencil = Stencil::around::<S, B>(lattice, base, at, [SimdPack::splat(lanes, part.half); 3]);
             let [values, slopes] = stencil.along_x();
             let (mut total, mut way) = (zero, [zero; 3]);
             let (mut gradient, mut slope) = ([[zero; 3]; 3], [zero; 3]);
-            for row in 0..Patch::rows::<S, B>() {
+            for row in 0..StencilBlock::rows::<S, B>() {
                 let across = stencil.across::<S, B>(row);
                 let places = patch.row::<S, B>(row);
                 for (node, place) in places.enumerate() {
-                    let bound = Wide::splat(lanes, bounds[place]);
+                    let bound = SimdPack::splat(lanes, bounds[place]);
                     let value = across.value * values[node];
                     let weight = value.pick_below(bound, value, bound);
                     total = total + weight;

@@ -4,7 +4,7 @@
 use crate::options::Contact;
 use crate::solver::Mpm;
 use grainbench_scene::solver::Resolution;
-use grainbench_scene::terms::{Less, Terms};
+use grainbench_scene::terms::{Limitation, Terms};
 
 const ANGULAR: &str = "mass is lumped at nodes, and what a point hands on is at its node and not where the point is: angular \
                        momentum is kept to second order in the cell";
@@ -24,12 +24,12 @@ const OWN_NORMALS: &str = "each body is stopped along a normal of its own, so th
 const OPPOSED: &str = "each body is stopped along a normal of its own, before it touches: impulses that are not opposite add \
                        energy where several bodies meet";
 
-const fn less(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Less {
-    Less { property, quantity, at_most, because }
+const fn less(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Limitation {
+    Limitation { property, quantity, at_most, because }
 }
 
 /// Limits with spins of points and quadratic splines.
-const BEST: &[Less] = &[
+const BEST: &[Limitation] = &[
     less("momentum", "angular", 1e-3, ANGULAR),
     less("galilean-invariance", "", 0.1, GRID_AT_REST),
     less("rotation-invariance", "", 0.05, GRID_HAS_AXES),
@@ -37,7 +37,7 @@ const BEST: &[Less] = &[
 ];
 
 /// Limits with hat functions.
-const HATS: &[Less] = &[
+const HATS: &[Limitation] = &[
     less("momentum", "angular", 0.1, ANGULAR),
     less("galilean-invariance", "", 0.8, GRID_AT_REST),
     less("mirror-invariance", "", 0.01, KINK),
@@ -48,7 +48,7 @@ const HATS: &[Less] = &[
 ];
 
 /// Limits with hat functions and the contacts of the original papers.
-const PAPERS: &[Less] = &[
+const PAPERS: &[Limitation] = &[
     less("momentum", "momentum", 0.6, OWN_NORMALS),
     less("momentum", "angular", 1.0, OWN_NORMALS),
     less("galilean-invariance", "", 0.8, GRID_AT_REST),

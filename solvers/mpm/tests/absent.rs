@@ -4,7 +4,7 @@
 mod support;
 
 use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, VonMises};
-use grainbench_mpm::off::Off;
+use grainbench_mpm::off::AbsentEffect;
 use grainbench_mpm::options::Transfer;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::effect::Effect;
@@ -41,7 +41,7 @@ fn bytes_of(solver: Mpm, scene: &Scene) -> u64 {
 
 #[test]
 fn what_is_off_has_no_size() {
-    assert_eq!(size_of::<Off>(), 0);
+    assert_eq!(size_of::<AbsentEffect>(), 0);
     assert_eq!(size_of::<<Hypoelastic as Law>::PlasticStrain>(), 0);
     assert_eq!(size_of::<<NeoHookean as Law>::PlasticStrain>(), 0);
     assert_eq!(size_of::<<KelvinVoigt as Law>::PlasticStrain>(), 0);

@@ -5,12 +5,12 @@
 mod support;
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
-use grainbench_scene::solver::{Broken, Cause, Resolution, RunError};
+use grainbench_scene::solver::{Cause, Resolution, RunError, SimulationFailure};
 use support::{column, try_run};
 
 const AT: Resolution = Resolution::grid(4.0, 3);
 
-fn broken(error: RunError) -> Broken {
+fn broken(error: RunError) -> SimulationFailure {
     let RunError::Broken(broken) = error else { panic!("{error}") };
     *broken
 }

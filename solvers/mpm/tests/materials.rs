@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VolumeRatio, VonMises};
-use grainbench_mpm::off::Off;
+use grainbench_mpm::off::AbsentEffect;
 use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -100,7 +100,7 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     let increment = S::restrict_gradient(rotation - Matrix3::identity());
     let mut stress = S::restrict_symmetric(stress);
     for _ in 0..steps {
-        stress = law.follow::<S>(increment, VolumeRatio::new(1.0), increment, stress, &mut Off);
+        stress = law.follow::<S>(increment, VolumeRatio::new(1.0), increment, stress, &mut AbsentEffect);
     }
     S::embed_symmetric(stress)
 }

@@ -32,7 +32,7 @@ pub(crate) struct Placement {
 
 /// State of a grain in the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moving {
+pub(crate) struct GrainMotion {
     /// Centre (m).
     pub(crate) position: Vector3<f64>,
     /// Velocity (m/s).
@@ -45,7 +45,7 @@ pub(crate) struct Moving {
 
 /// A contact that carried load in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Touch {
+pub(crate) struct LoadedContact {
     /// The two contact partners.
     pub(crate) sides: [Side; 2],
     /// Unit vector from the first partner to the second.
@@ -63,9 +63,9 @@ pub(crate) trait Engine {
     /// Takes a step; moving walls are at the positions `walls` at its end.
     fn step(&mut self, walls: &[Placement]);
     /// Returns the state of a grain by its index in the scene.
-    fn grain(&self, at: usize) -> Moving;
+    fn grain(&self, at: usize) -> GrainMotion;
     /// Returns the contacts that carried load in the last step.
-    fn touches(&self) -> Vec<Touch>;
+    fn touches(&self) -> Vec<LoadedContact>;
     /// Returns the numbers of pairs that were tested for contact in the last step, and of pairs that were solved.
     fn counts(&self) -> (u64, u64);
 }

@@ -1,11 +1,11 @@
 //! Simulation: steps an engine, moves walls, detects failures and observes the state.
 
-use crate::engine::{Engine, Moving, Placement, Stepping, Touch};
+use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
 use grainbench_scene::overlap::distance;
-use grainbench_scene::record::{ContactState, Counts, GrainState, Look, Partner, Snapshot, WallState};
+use grainbench_scene::record::{ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState};
 use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
-use grainbench_scene::solver::{Broken, Cause, Subject};
+use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
 use nalgebra::Vector3;
 
 /// Fraction of the Coulomb limit from which a friction impulse counts as slipping.
@@ -26,7 +26,7 @@ pub(crate) struct Simulation<'a> {
     stepping: Stepping,
     engine: Box<dyn Engine>,
     moving: Vec<usize>,
-    state: Vec<Moving>,
+    state: Vec<GrainMotion>,
     /// Rotation in the plane since the start, including full turns (rad).
     angles: Vec<f64>,
     step: u64,
@@ -41,7 +41,7 @@ impl<'a> Simulation<'a> {
             Dimension::Two => Box::new(crate::plane::world::World::new(scene, pairs, &stepping)),
             Dimension::Three => Box::new(crate::solid::world::World::new(scene, pairs, &stepping)),
         };
-        let state: Vec<Moving> = (0..scene.grains.len()).map(|at| engine.grain(at)).collect();
+        let state: Vec<GrainMotion> = (0..scene.grains.len()).map(|at| engine.grain(at)).collect();
         Self {
             scene,
             stepping,
@@ -62,7 +62,7 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// When the state of a grain is not finite, it has moved so far that contacts may be missed, or it spins too fast.
-    pub(crate) fn advance(&mut self) -> Result<(), Box<Broken>> {
+    pub(crate) fn advance(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.step += 1;
         let time = self.time();
         let place = |&wall: &usize| {
@@ -89,7 +89,7 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    fn check(&self, at: usize, now: &Moving) -> Result<(), Box<Broken>> {
+    fn check(&self, at: usize, now: &GrainMotion) -> Result<(), Box<SimulationFailure>> {
         let radius = self.scene.grains[at].radius;
         let moved = (now.position - self.state[at].position).norm();
         let turned = self.state[at].spin.norm() * self.stepping.time_step;
@@ -107,10 +107,10 @@ impl<'a> Simulation<'a> {
         } else {
             return Ok(());
         };
-        Err(Box::new(Broken {
+        Err(Box::new(SimulationFailure {
             time: self.time(),
             step: self.step,
-            subject: Subject::Grain(at as u32 + 1),
+            subject: FailedParticle::Grain(at as u32 + 1),
             position: self.state[at].position,
             cause,
             time_step: self.stepping.time_step,
@@ -127,7 +127,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Returns the current observation. Forces are impulses of the last step divided by its length.
-    pub(crate) fn look(&self) -> Look {
+    pub(crate) fn look(&self) -> StepState {
         let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
         let mut contacts: Vec<ContactState> =
             self.engine.touches().iter().filter_map(|touch| self.contact(touch, &displaced)).collect();
@@ -158,7 +158,7 @@ impl<'a> Simulation<'a> {
         let shapes = self.scene.walls.iter().zip(&displaced);
         let walls = shapes.zip(on_walls).map(|((wall, shape), force)| wall_state(wall, shape, force)).collect();
         let bounds = bounds(self.scene, &grains);
-        Look::of_rigid(
+        StepState::of_rigid(
             Snapshot {
                 step: self.step,
                 time: self.time(),
@@ -195,7 +195,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Returns a contact as seen from its grain, or from the grain with the lower index, with the current overlap.
-    fn contact(&self, touch: &Touch, walls: &[WallShape]) -> Option<ContactState> {
+    fn contact(&self, touch: &LoadedContact, walls: &[WallShape]) -> Option<ContactState> {
         let (grain, other, sign) = match touch.sides {
             [Side::Grain(a), Side::Grain(b)] if a > b => (b, Side::Grain(a), -1.0),
             [Side::Grain(a), other] => (a, other, 1.0),
@@ -261,15 +261,15 @@ mod tests {
     use std::path::Path;
 
     /// An engine that reports one contact.
-    struct Reporting(Touch);
+    struct OneContactEngine(LoadedContact);
 
-    impl Engine for Reporting {
+    impl Engine for OneContactEngine {
         fn step(&mut self, _: &[Placement]) {}
-        fn grain(&self, at: usize) -> Moving {
+        fn grain(&self, at: usize) -> GrainMotion {
             let position = Vector3::x() * (0.9 * at as f64);
-            Moving { position, velocity: Vector3::zeros(), spin: Vector3::zeros(), orientation: 0.0 }
+            GrainMotion { position, velocity: Vector3::zeros(), spin: Vector3::zeros(), orientation: 0.0 }
         }
-        fn touches(&self) -> Vec<Touch> {
+        fn touches(&self) -> Vec<LoadedContact> {
             vec![self.0]
         }
         fn counts(&self) -> (u64, u64) {
@@ -290,11 +290,11 @@ mod tests {
         let stepping = Stepping { time_step: 0.1, iterations: 4, length: 1.0, mass: 1.0, settings };
         for (other, normal) in [(Side::Grain(1), Vector3::x()), (Side::Wall(0), -Vector3::x())] {
             let shear = Vector3::y() * 0.3;
-            let touch = Touch { sides: [Side::Grain(0), other], normal, push: 2.0, shear, friction: 1.0 };
-            let turned = Touch { sides: [other, Side::Grain(0)], normal: -normal, shear: -shear, ..touch };
+            let touch = LoadedContact { sides: [Side::Grain(0), other], normal, push: 2.0, shear, friction: 1.0 };
+            let turned = LoadedContact { sides: [other, Side::Grain(0)], normal: -normal, shear: -shear, ..touch };
             for touch in [touch, turned] {
                 let mut simulation = Simulation::new(&scene, stepping);
-                simulation.engine = Box::new(Reporting(touch));
+                simulation.engine = Box::new(OneContactEngine(touch));
                 let snapshot = simulation.look().snapshot;
                 let force = (shear - normal * 2.0) / 0.1;
                 let on_other = if other == Side::Wall(0) { snapshot.walls[0].force } else { snapshot.grains[1].force };

@@ -4,11 +4,11 @@ use crate::engine::Stepping;
 use crate::limits;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
-use grainbench_scene::drive::{Course, Driven, Stepper};
-use grainbench_scene::record::{Counts, Look, Provenance, Record};
+use grainbench_scene::drive::{Course, LoopOutput, Stepper};
+use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run};
-use grainbench_scene::terms::{Less, Terms};
+use grainbench_scene::terms::{Limitation, Terms};
 
 /// Version of rapier.
 const RAPIER: &str = "rapier 0.36, f64";
@@ -30,40 +30,40 @@ pub struct Rigid {
 impl Rigid {
     /// Conformance properties, with the weaker limits of the engine.
     pub const TERMS: Terms = Terms::at(Resolution::substeps(8)).owing_less(&[
-        Less {
+        Limitation {
             property: "momentum",
             quantity: "angular",
             at_most: 1e-3,
             because: "points of contact are fixed on the grains for a step and turn with them: the two impulses of a contact \
                       act at points that part by about v Δt",
         },
-        Less {
+        Limitation {
             property: "galilean-invariance",
             quantity: "",
             at_most: 1e-9,
             because: "tolerances of the engine are absolute lengths and speeds, which a moving frame meets elsewhere",
         },
-        Less {
+        Limitation {
             property: "rotation-invariance",
             quantity: "",
             at_most: 1e-9,
             because: "tolerances of the engine are absolute lengths and speeds, which a turned scene meets elsewhere",
         },
-        Less {
+        Limitation {
             property: "permutation",
             quantity: "",
             at_most: 3e-3,
             because: "contacts are solved one after another, in the order of the list, and the solver stops after some \
                       iterations",
         },
-        Less {
+        Limitation {
             property: "free-flight",
             quantity: "",
             at_most: 1e-12,
             because: "spins are turned to and from the engine's units at every step, which rounds them once more",
         },
-        Less { property: "objectivity", quantity: "place", at_most: 0.1, because: PRESSED },
-        Less { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
+        Limitation { property: "objectivity", quantity: "place", at_most: 0.1, because: PRESSED },
+        Limitation { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
     ]);
 
     /// Returns rapier with its default settings.
@@ -145,9 +145,9 @@ impl Solver for Rigid {
         let mean_mass = scene.grains.iter().map(|grain| grain.mass).sum::<f64>() / scene.grains.len().max(1) as f64;
         let mass = if mean_mass > 0.0 { libm::exp2(libm::log2(mean_mass).round()) } else { 1.0 };
         let stepping = Stepping { time_step, iterations, length, mass, settings: self.settings };
-        let mut running = Running { simulation: Simulation::new(scene, stepping), step: 0 };
+        let mut running = RunningSimulation { simulation: Simulation::new(scene, stepping), step: 0 };
         let course = Course { scene, time_step, steps, resumed: None, between_progress: STEPS_BETWEEN_PROGRESS };
-        let Driven { series, snapshots, cost } = course.drive(&mut running, watch)?;
+        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, watch)?;
         Ok(Record {
             provenance: Provenance {
                 critical_time_step: None,
@@ -161,12 +161,12 @@ impl Solver for Rigid {
 }
 
 /// A running simulation.
-struct Running<'a> {
+struct RunningSimulation<'a> {
     simulation: Simulation<'a>,
     step: u64,
 }
 
-impl Stepper for Running<'_> {
+impl Stepper for RunningSimulation<'_> {
     fn step(&self) -> u64 {
         self.step
     }
@@ -179,7 +179,7 @@ impl Stepper for Running<'_> {
         Ok(())
     }
 
-    fn look(&mut self, _snapshot: bool) -> Look {
+    fn look(&mut self, _snapshot: bool) -> StepState {
         self.simulation.look()
     }
 

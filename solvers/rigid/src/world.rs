@@ -8,15 +8,15 @@ use super::rapier::prelude::{
 use super::{
     choose_friction, embedded, embedded_spin, finite, mass_properties, orientation, pose, shear, spin, vector,
 };
-use crate::engine::{Engine, Moving, Placement, Stepping, Touch};
+use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::Vector3;
 
 /// Hook that sets the coefficients of every pair from the scene.
-struct FromScene(Pairs);
+struct SceneCoefficients(Pairs);
 
-impl PhysicsHooks for FromScene {
+impl PhysicsHooks for SceneCoefficients {
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext<'_>) {
         let side = |handle| context.colliders.get(handle).map(|collider| Side::of_tag(collider.user_data));
         let (Some(one), Some(other)) = (side(context.collider1), side(context.collider2)) else { return };
@@ -35,7 +35,7 @@ impl PhysicsHooks for FromScene {
 /// rapier with the bodies of a scene.
 pub(crate) struct World {
     world: PhysicsWorld,
-    hooks: FromScene,
+    hooks: SceneCoefficients,
     grains: Vec<RigidBodyHandle>,
     walls: Vec<RigidBodyHandle>,
     /// Unit of mass (kg).
@@ -98,7 +98,7 @@ impl World {
             }
         });
         let walls = walls.collect();
-        Self { world, hooks: FromScene(pairs), grains, walls, mass: stepping.mass }
+        Self { world, hooks: SceneCoefficients(pairs), grains, walls, mass: stepping.mass }
     }
 }
 
@@ -132,12 +132,12 @@ impl Engine for World {
         self.world.step_with_events(&self.hooks, &());
     }
 
-    fn grain(&self, at: usize) -> Moving {
+    fn grain(&self, at: usize) -> GrainMotion {
         // A missing body, which rapier itself never causes, is reported as not finite.
         let gone = Vector3::repeat(f64::NAN);
         self.world.bodies.get(self.grains[at]).map_or(
-            Moving { position: gone, velocity: gone, spin: gone, orientation: 0.0 },
-            |body| Moving {
+            GrainMotion { position: gone, velocity: gone, spin: gone, orientation: 0.0 },
+            |body| GrainMotion {
                 position: embedded(body.translation()),
                 velocity: embedded(body.linvel()),
                 spin: embedded_spin(body.angvel()),
@@ -146,14 +146,14 @@ impl Engine for World {
         )
     }
 
-    fn touches(&self) -> Vec<Touch> {
+    fn touches(&self) -> Vec<LoadedContact> {
         let side = |handle| self.world.colliders.get(handle).map(|collider| Side::of_tag(collider.user_data));
         let mut touches = Vec::new();
         for pair in self.world.narrow_phase.contact_pairs() {
             let (Some(one), Some(other)) = (side(pair.collider1), side(pair.collider2)) else { continue };
             for manifold in pair.solver_manifolds() {
                 for point in manifold.points.iter().filter(|point| point.data.impulse > 0.0) {
-                    touches.push(Touch {
+                    touches.push(LoadedContact {
                         sides: [one, other],
                         normal: embedded(manifold.data.normal),
                         push: point.data.impulse * self.mass,

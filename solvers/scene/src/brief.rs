@@ -1,6 +1,6 @@
 //! Summary of a snapshot, for runs that do not need its rows.
 
-use crate::record::{GrainState, Look, Snapshot};
+use crate::record::{GrainState, Snapshot, StepState};
 use serde::{Deserialize, Serialize};
 
 /// Summary of a snapshot.
@@ -43,7 +43,7 @@ impl Brief {
 
     /// Summarises the state of a simulation at one step.
     #[must_use]
-    pub fn of_look(look: &Look) -> Self {
+    pub fn of_look(look: &StepState) -> Self {
         let Snapshot { step, time, grains, .. } = &look.snapshot;
         Self::of_grains((*step, *time), grains.iter().cloned(), look.touching)
     }

@@ -4,7 +4,7 @@
 //! postcard's format. This format keeps every bit of a number.
 
 use crate::scene::Scene;
-use crate::sealed::{self, Broken};
+use crate::sealed::{self, SealError};
 use crate::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -144,8 +144,8 @@ impl RunIdentity {
 /// rest is hashed as debug output, which shows every bit of a number.
 #[must_use]
 pub fn fingerprint(scene: &Scene) -> blake3::Hash {
-    struct Hashed(blake3::Hasher);
-    impl fmt::Write for Hashed {
+    struct HashWriter(blake3::Hasher);
+    impl fmt::Write for HashWriter {
         fn write_str(&mut self, text: &str) -> fmt::Result {
             self.0.update(text.as_bytes());
             Ok(())
@@ -153,7 +153,7 @@ pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     }
     let mut rest = scene.clone();
     let (grains, springs) = (mem::take(&mut rest.grains), rest.springs.take());
-    let mut hashed = Hashed(blake3::Hasher::new());
+    let mut hashed = HashWriter(blake3::Hasher::new());
     for bits in [grains.bits(), springs.map_or_else(Vec::new, |springs| springs.bits())] {
         hashed.0.update(&bits.len().to_le_bytes());
         hashed.0.update(&bits);
@@ -234,11 +234,11 @@ impl Checkpoint {
     /// When the file is of another kind or another format, truncated or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let body = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
-            Broken::Foreign => CheckpointError::Foreign,
-            Broken::Older(found) => CheckpointError::Older { found },
-            Broken::Newer(found) => CheckpointError::Newer { found },
-            Broken::Length(expected, found) => CheckpointError::Length { expected, found },
-            Broken::Changed => CheckpointError::Damaged("its bytes are not those that were written".to_owned()),
+            SealError::Foreign => CheckpointError::Foreign,
+            SealError::Older(found) => CheckpointError::Older { found },
+            SealError::Newer(found) => CheckpointError::Newer { found },
+            SealError::Length(expected, found) => CheckpointError::Length { expected, found },
+            SealError::Changed => CheckpointError::Damaged("its bytes are not those that were written".to_owned()),
         })?;
         postcard::from_bytes(body).map_err(|error| CheckpointError::Damaged(error.to_string()))
     }

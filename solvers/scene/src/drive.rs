@@ -4,10 +4,10 @@
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::end_state::EndState;
-use crate::record::{Cost, Counts, Look, Remains, Series, Snapshot};
+use crate::record::{Cost, Counts, PartialOutput, Series, Snapshot, StepState};
 use crate::recorder::Recorder;
 use crate::scene::Scene;
-use crate::solver::{Ahead, RunError, Watch};
+use crate::solver::{RunError, RunOutline, Watch};
 use std::time::Instant;
 
 /// State that can be advanced in time.
@@ -36,7 +36,7 @@ pub trait Stepper {
 
     /// Returns the state after the last step; with all snapshot data if `snapshot` is true. It is called at most once
     /// per step, because a second call may return no contacts.
-    fn look(&mut self, snapshot: bool) -> Look;
+    fn look(&mut self, snapshot: bool) -> StepState;
 
     /// Returns the number of rows of grains, contacts and points that a snapshot would have now.
     fn rows(&self, scene: &Scene) -> u64 {
@@ -86,7 +86,7 @@ pub struct Course<'a> {
 }
 
 /// Results of the main loop.
-pub struct Driven {
+pub struct LoopOutput {
     /// Time series.
     pub series: Series,
     /// Snapshots.
@@ -101,9 +101,9 @@ impl Course<'_> {
     /// # Errors
     /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The watcher
     /// receives the partial results of a run that broke or was interrupted.
-    pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<Driven, RunError> {
+    pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<LoopOutput, RunError> {
         let particles = stepper.particles(self.scene);
-        watch.begin(Ahead { time_step: self.time_step, steps: self.steps, particles });
+        watch.begin(RunOutline { time_step: self.time_step, steps: self.steps, particles });
         let clock = Instant::now();
         let resumed = self.resumed.take();
         let begins = resumed.is_none();
@@ -135,7 +135,7 @@ impl Course<'_> {
             if let Some(mut end) = end {
                 self.scene.columns.keep(&mut end);
                 let (series, snapshots) = recorder.finish();
-                watch.broke(Remains { series, snapshots, end });
+                watch.broke(PartialOutput { series, snapshots, end });
             }
             return Err(error);
         }
@@ -146,7 +146,7 @@ impl Course<'_> {
         }
         let cost = Cost::new(stepper.counts(), clock.elapsed().as_secs_f64());
         let (series, snapshots) = recorder.finish();
-        Ok(Driven { series, snapshots, cost })
+        Ok(LoopOutput { series, snapshots, cost })
     }
 
     fn steps(

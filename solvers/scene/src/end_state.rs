@@ -5,8 +5,8 @@
 //! [`EndState`] in postcard's format. This format keeps every bit of a number. The smaller form is described in
 //! `rounded_state`.
 
-use crate::rounded_state::{self, Packed};
-use crate::sealed::{self, Broken};
+use crate::rounded_state::{self, PackedState};
+use crate::sealed::{self, SealError};
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
@@ -110,7 +110,7 @@ impl EndState {
     /// # Errors
     /// When a part of the state cannot be rounded; the error is a message.
     pub fn to_rounded_bytes(&self) -> Result<Vec<u8>, String> {
-        sealed_body(&Packed::new(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
+        sealed_body(&PackedState::new(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
     /// Returns the bytes of a file of about a quarter of that size, for a bed at rest. Positions are rounded more
@@ -128,7 +128,7 @@ impl EndState {
             springs: Springs::default(),
             ..*self
         };
-        let packed = Packed::new(&state, rounded_state::ROUNDING_AT_REST)?;
+        let packed = PackedState::new(&state, rounded_state::ROUNDING_AT_REST)?;
         sealed_body(&packed, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
@@ -138,7 +138,7 @@ impl EndState {
     /// When the bytes are not a valid state; the error names what was found.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let state: Self = if bytes.starts_with(rounded_state::MAGIC) {
-            body_of::<Packed>(bytes, rounded_state::MAGIC, rounded_state::FORMAT)?.state()?
+            body_of::<PackedState>(bytes, rounded_state::MAGIC, rounded_state::FORMAT)?.state()?
         } else {
             body_of(bytes, MAGIC, FORMAT)?
         };
@@ -175,13 +175,13 @@ fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u
 /// Reads the value in a sealed file of one kind.
 fn body_of<T: DeserializeOwned>(bytes: &[u8], magic: &[u8], format: u32) -> Result<T, String> {
     let packed = sealed::open(magic, format, bytes).map_err(|broken| match broken {
-        Broken::Foreign => "another kind of file".to_owned(),
-        Broken::Older(found) => format!("format {found}, which an older version of the program wrote"),
-        Broken::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
-        Broken::Length(expected, found) => {
+        SealError::Foreign => "another kind of file".to_owned(),
+        SealError::Older(found) => format!("format {found}, which an older version of the program wrote"),
+        SealError::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
+        SealError::Length(expected, found) => {
             format!("{found} bytes where it says {expected}: it is cut off or changed")
         }
-        Broken::Changed => "bytes that are not those that were written".to_owned(),
+        SealError::Changed => "bytes that are not those that were written".to_owned(),
     })?;
     let mut body = Vec::new();
     let unpacked = ZlibDecoder::new(packed).take(MOST).read_to_end(&mut body);

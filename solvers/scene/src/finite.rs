@@ -17,28 +17,28 @@ struct Search;
 
 /// A number that is not finite.
 #[derive(Debug)]
-struct NotFinite;
+struct NonFiniteNumber;
 
-impl Display for NotFinite {
+impl Display for NonFiniteNumber {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("a number that is not finite")
     }
 }
 
-impl std::error::Error for NotFinite {}
+impl std::error::Error for NonFiniteNumber {}
 
-impl ser::Error for NotFinite {
+impl ser::Error for NonFiniteNumber {
     fn custom<T: Display>(_: T) -> Self {
         Self
     }
 }
 
-type Found = Result<(), NotFinite>;
+type FiniteResult = Result<(), NonFiniteNumber>;
 
 /// Methods for values without a floating-point number.
 macro_rules! passed_over {
     ($($method:ident($($kind:ty),*);)*) => {
-        $(fn $method(self, $(_: $kind),*) -> Found { Ok(()) })*
+        $(fn $method(self, $(_: $kind),*) -> FiniteResult { Ok(()) })*
     };
 }
 
@@ -47,9 +47,9 @@ macro_rules! parts {
     ($($part:ident: $($method:ident),*;)*) => {
         $(impl $part for Search {
             type Ok = ();
-            type Error = NotFinite;
-            $(fn $method<T: ?Sized + Serialize>(&mut self, part: &T) -> Found { part.serialize(Search) })*
-            fn end(self) -> Found { Ok(()) }
+            type Error = NonFiniteNumber;
+            $(fn $method<T: ?Sized + Serialize>(&mut self, part: &T) -> FiniteResult { part.serialize(Search) })*
+            fn end(self) -> FiniteResult { Ok(()) }
         })*
     };
 }
@@ -59,11 +59,11 @@ macro_rules! named_parts {
     ($($part:ident),*) => {
         $(impl $part for Search {
             type Ok = ();
-            type Error = NotFinite;
-            fn serialize_field<T: ?Sized + Serialize>(&mut self, _: &'static str, part: &T) -> Found {
+            type Error = NonFiniteNumber;
+            fn serialize_field<T: ?Sized + Serialize>(&mut self, _: &'static str, part: &T) -> FiniteResult {
                 part.serialize(Search)
             }
-            fn end(self) -> Found { Ok(()) }
+            fn end(self) -> FiniteResult { Ok(()) }
         })*
     };
 }
@@ -79,7 +79,7 @@ named_parts!(SerializeStruct, SerializeStructVariant);
 
 impl Serializer for Search {
     type Ok = ();
-    type Error = NotFinite;
+    type Error = NonFiniteNumber;
     type SerializeSeq = Self;
     type SerializeTuple = Self;
     type SerializeTupleStruct = Self;
@@ -107,19 +107,19 @@ impl Serializer for Search {
         serialize_unit_variant(&'static str, u32, &'static str);
     }
 
-    fn serialize_f32(self, value: f32) -> Found {
-        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+    fn serialize_f32(self, value: f32) -> FiniteResult {
+        if value.is_finite() { Ok(()) } else { Err(NonFiniteNumber) }
     }
 
-    fn serialize_f64(self, value: f64) -> Found {
-        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+    fn serialize_f64(self, value: f64) -> FiniteResult {
+        if value.is_finite() { Ok(()) } else { Err(NonFiniteNumber) }
     }
 
-    fn serialize_some<T: ?Sized + Serialize>(self, value: &T) -> Found {
+    fn serialize_some<T: ?Sized + Serialize>(self, value: &T) -> FiniteResult {
         value.serialize(self)
     }
 
-    fn serialize_newtype_struct<T: ?Sized + Serialize>(self, _: &'static str, value: &T) -> Found {
+    fn serialize_newtype_struct<T: ?Sized + Serialize>(self, _: &'static str, value: &T) -> FiniteResult {
         value.serialize(self)
     }
 
@@ -129,35 +129,47 @@ impl Serializer for Search {
         _: u32,
         _: &'static str,
         value: &T,
-    ) -> Found {
+    ) -> FiniteResult {
         value.serialize(self)
     }
 
-    fn serialize_seq(self, _: Option<usize>) -> Result<Self, NotFinite> {
+    fn serialize_seq(self, _: Option<usize>) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_tuple(self, _: usize) -> Result<Self, NotFinite> {
+    fn serialize_tuple(self, _: usize) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+    fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_tuple_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_map(self, _: Option<usize>) -> Result<Self, NotFinite> {
+    fn serialize_map(self, _: Option<usize>) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 
-    fn serialize_struct_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Self, NotFinite> {
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Self, NonFiniteNumber> {
         Ok(self)
     }
 }

@@ -52,7 +52,7 @@ pub fn perturb(places: &mut [Vector3<f64>], most: f64, seed: u64, dimension: Dim
 
 /// Randomly placed grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct PlacedGrain {
     /// Centre (m).
     pub position: Vector3<f64>,
     /// Radius (m).
@@ -85,7 +85,7 @@ pub fn random(
     speed: f64,
     domain: &Domain,
     dimension: Dimension,
-) -> Result<Vec<Placed>, NoRoom> {
+) -> Result<Vec<PlacedGrain>, NoRoom> {
     random_within(VISITS, (count, seed), radii, speed, domain, dimension)
 }
 
@@ -96,13 +96,13 @@ fn random_within(
     speed: f64,
     domain: &Domain,
     dimension: Dimension,
-) -> Result<Vec<Placed>, NoRoom> {
+) -> Result<Vec<PlacedGrain>, NoRoom> {
     const TRIES: u32 = 10_000;
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut sizes: Vec<f64> = (0..count).map(|_| radii.draw(&mut generator)).collect();
     sizes.sort_by(|a, b| b.total_cmp(a));
     let cell = 2.0 * radii.largest();
-    let mut taken = Taken::new(cell, sizes.len(), dimension);
+    let mut taken = PlacedSpheres::new(cell, sizes.len(), dimension);
     let mut placed = Vec::with_capacity(sizes.len());
     for &radius in &sizes {
         let position = (0..TRIES).take_while(|_| taken.visits.get() < most).find_map(|_| {
@@ -118,7 +118,7 @@ fn random_within(
         })?;
         taken.add(position, radius);
         let velocity = direction(&mut generator, dimension) * speed;
-        placed.push(Placed { position, radius, velocity });
+        placed.push(PlacedGrain { position, radius, velocity });
     }
     Ok(placed)
 }
@@ -167,7 +167,7 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
 
 /// Spheres placed so far, hashed by cell. A cell is as wide as the largest diameter. Distant cells may share a bucket;
 /// this costs extra distance tests, but no sphere is missed.
-struct Taken {
+struct PlacedSpheres {
     /// Edge of a cell (m).
     cell: f64,
     /// Number of layers of cells along z that are searched: 1 in the plane, 3 in space.
@@ -178,7 +178,7 @@ struct Taken {
     visits: Cell<u64>,
 }
 
-impl Taken {
+impl PlacedSpheres {
     fn new(cell: f64, most: usize, dimension: Dimension) -> Self {
         let layers = if dimension == Dimension::Two { 1 } else { 3 };
         Self { cell, layers, buckets: vec![Vec::new(); most.next_power_of_two()], visits: Cell::new(0) }

@@ -11,13 +11,13 @@ const MAGIC: &[u8] = b"grainbench record ";
 const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
-struct Written<'a> {
+struct BorrowedRecord<'a> {
     name: &'a str,
     record: &'a Record,
 }
 
 #[derive(Deserialize)]
-struct Read {
+struct OwnedRecord {
     name: String,
     record: Record,
 }
@@ -35,13 +35,13 @@ pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
 /// # Errors
 /// When the record cannot be serialised.
 pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
-    postcard::to_allocvec(&Written { name, record }).map_err(|error| error.to_string())
+    postcard::to_allocvec(&BorrowedRecord { name, record }).map_err(|error| error.to_string())
 }
 
 /// Reads the record stored under this name; `None` if the bytes are damaged, of another format or of another name.
 #[must_use]
 pub fn from_bytes(name: &str, bytes: &[u8]) -> Option<Record> {
     let body = sealed::open(MAGIC, FORMAT, bytes).ok()?;
-    let read: Read = postcard::from_bytes(body).ok()?;
+    let read: OwnedRecord = postcard::from_bytes(body).ok()?;
     (read.name == name).then_some(read.record)
 }

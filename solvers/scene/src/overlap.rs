@@ -7,14 +7,14 @@ use std::ops::ControlFlow;
 
 /// Deepest overlap of a scene, relative to the smaller radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Deepest {
+pub enum DeepestOverlap {
     /// Two grains, by index.
     Grains(usize, usize, f64),
     /// Grain and wall, by index.
     GrainWall(usize, usize, f64),
 }
 
-impl Deepest {
+impl DeepestOverlap {
     /// Returns the overlap divided by the smaller radius.
     #[must_use]
     pub const fn ratio(&self) -> f64 {
@@ -46,19 +46,18 @@ impl Deepest {
 /// grains ends at the first overlap above `enough`, because many grains at one position would require a comparison of
 /// all pairs. The time is proportional to the number of grains.
 #[must_use]
-pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
+pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough: f64) -> Option<DeepestOverlap> {
     let pairs = grain_pairs(grains, domain, enough);
     let contacts = grains.iter().enumerate().flat_map(|(g, grain)| {
-        walls
-            .iter()
-            .enumerate()
-            .map(move |(w, wall)| Deepest::GrainWall(g, w, 1.0 - distance(grain.position, &wall.shape) / grain.radius))
+        walls.iter().enumerate().map(move |(w, wall)| {
+            DeepestOverlap::GrainWall(g, w, 1.0 - distance(grain.position, &wall.shape) / grain.radius)
+        })
     });
     pairs.into_iter().chain(contacts).filter(|found| found.ratio() > 0.0).max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
 /// Returns the deepest overlap among grains; the first one of equal depth.
-fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option<Deepest> {
+fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option<DeepestOverlap> {
     let centres: Vec<Vector3<f64>> = grains.iter().map(|grain| grain.position).collect();
     let radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
     let mut worst = (0.0, usize::MAX, usize::MAX);
@@ -77,7 +76,7 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
         if worst.0 > enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     let (ratio, first, second) = worst;
-    (ratio > 0.0).then_some(Deepest::Grains(first, second, ratio))
+    (ratio > 0.0).then_some(DeepestOverlap::Grains(first, second, ratio))
 }
 
 /// Returns the shortest vector between two positions in a periodic domain (m).
@@ -160,7 +159,7 @@ mod tests {
         };
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(4.0), periodic: [true, false, false] };
         let found = deepest(&[grain(4001.0), grain(2.5), grain(1.15)], &[], Some(&domain), 1.0).unwrap();
-        assert!(matches!(found, Deepest::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
+        assert!(matches!(found, DeepestOverlap::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
     }
 
     /// No sampled point of the cone is nearer than the result, and the result lies on the cone.

@@ -30,7 +30,7 @@ pub struct Pour {
 
 /// Reason that grains cannot be poured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unpourable {
+pub enum PouringError {
     /// No room was found for a grain in 10,000 tries.
     NoRoom,
     /// More than 20,000 grains are still near the box: they do not fall out of it, or the box spans the domain.
@@ -46,7 +46,7 @@ pub fn poured(
     pour: &Pour,
     domain: Option<&Domain>,
     dimension: Dimension,
-) -> Result<Vec<(f64, Vector3<f64>)>, Unpourable> {
+) -> Result<Vec<(f64, Vector3<f64>)>, PouringError> {
     const TRIES: u32 = 10_000;
     const CROWD: usize = 20_000;
     let mut generator = Pcg64::seed_from_u64(pour.seed);
@@ -69,7 +69,7 @@ pub fn poured(
             near.pop_front();
         }
         if near.len() > CROWD {
-            return Err(Unpourable::Crowd);
+            return Err(PouringError::Crowd);
         }
         let places: Vec<Vector3<f64>> = near.iter().map(now).collect();
         let is_free = |centre: &Vector3<f64>| {
@@ -89,7 +89,7 @@ pub fn poured(
             }
             is_free(&centre).then_some(centre)
         });
-        let centre = centre.ok_or(Unpourable::NoRoom)?;
+        let centre = centre.ok_or(PouringError::NoRoom)?;
         near.push_back((time, centre));
         all.push((time, centre));
     }
@@ -135,11 +135,11 @@ mod tests {
     #[test]
     fn a_rate_that_leaves_no_room_is_told() {
         let with = |pour: Pour| poured(&pour, None, Dimension::Three);
-        assert_eq!(with(Pour { rate: 4000.0, ..pour() }), Err(Unpourable::NoRoom));
+        assert_eq!(with(Pour { rate: 4000.0, ..pour() }), Err(PouringError::NoRoom));
         // An insertion time that is infinite, and grains that do not fall.
-        assert_eq!(with(Pour { rate: 1e-320, ..pour() }), Err(Unpourable::NoRoom));
+        assert_eq!(with(Pour { rate: 1e-320, ..pour() }), Err(PouringError::NoRoom));
         let (still, corners) = (Vector3::zeros(), [Vector3::zeros(), Vector3::repeat(1e4)]);
         let resting = Pour { count: 1_000_000, velocity: still, gravity: still, corners, ..pour() };
-        assert_eq!(with(resting), Err(Unpourable::Crowd));
+        assert_eq!(with(resting), Err(PouringError::Crowd));
     }
 }

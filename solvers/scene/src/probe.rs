@@ -1,7 +1,7 @@
 //! Time series of a scene's probes.
 
 use crate::budget::Budget;
-use crate::record::{BodyState, Column, ContactState, GrainState, Look, Partner, Series, Snapshot};
+use crate::record::{BodyState, Column, ContactState, GrainState, Partner, Series, Snapshot, StepState};
 use crate::scene::{Dimension, Probe, ProbeTarget, Scene, WallShape};
 use nalgebra::{Matrix3, Vector3};
 
@@ -55,7 +55,7 @@ pub(crate) fn empty_series(scene: &Scene) -> Series {
 }
 
 /// Adds one sample of every probe.
-pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &Look) {
+pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &StepState) {
     series.step.push(look.snapshot.step);
     series.time.push(look.snapshot.time);
     let values = scene.probes.iter().flat_map(|probe| values(probe, scene, look));
@@ -167,7 +167,7 @@ fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static s
     }
 }
 
-fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
+fn values(probe: &Probe, scene: &Scene, look: &StepState) -> Vec<f64> {
     let count = scene.dimension.count();
     let flat = scene.dimension == Dimension::Two;
     let snapshot = &look.snapshot;
@@ -262,7 +262,7 @@ fn values(probe: &Probe, scene: &Scene, look: &Look) -> Vec<f64> {
 /// Returns overlap, normal force, shear force and slipping of one contact: zeros without contact, NaN if contacts are
 /// not reported. In the plane, the shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the
 /// normal `e` to the partner.
-fn contact_values(look: &Look, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
+fn contact_values(look: &StepState, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
     let id = grain as u32 + 1;
     let Some(contacts) = &look.snapshot.contacts else { return vec![f64::NAN; 4] };
     let found = contacts.iter().find(|contact| {

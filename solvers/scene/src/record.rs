@@ -307,7 +307,7 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
 
 /// State of a simulation at one step, with the data that probes need in addition to the snapshot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct StepState {
     /// Grains sorted by id, contacts and walls.
     pub snapshot: Snapshot,
     /// Number of contacts and number of slipping contacts, if known. They may be known without a list of contacts.
@@ -329,7 +329,7 @@ pub struct Look {
     pub budget: Option<Budget>,
 }
 
-impl Look {
+impl StepState {
     /// Returns the state of a simulation with rigid grains.
     #[must_use]
     pub fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
@@ -454,7 +454,7 @@ impl Provenance {
 
 /// Partial output of a run that broke or was interrupted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Remains {
+pub struct PartialOutput {
     /// Time series up to the last sample.
     pub series: Series,
     /// Snapshots so far, without those that the watcher took over.

@@ -2,7 +2,7 @@
 
 use crate::memory;
 use crate::probe;
-use crate::record::{Look, Series, Snapshot};
+use crate::record::{Series, Snapshot, StepState};
 use crate::scene::{Sampling, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -95,7 +95,7 @@ impl Recorder {
     }
 
     /// Records the sample of a step, if one is due.
-    pub fn sample(&mut self, scene: &Scene, look: &Look) {
+    pub fn sample(&mut self, scene: &Scene, look: &StepState) {
         if self.is_sample(look.snapshot.step) {
             probe::sample(&mut self.series, scene, look);
         }
@@ -110,7 +110,7 @@ impl Recorder {
     }
 
     /// Records the sample at the step of `look`, if one is due, and returns the snapshot, if one is due.
-    pub fn take(&mut self, scene: &Scene, look: Look) -> Option<Snapshot> {
+    pub fn take(&mut self, scene: &Scene, look: StepState) -> Option<Snapshot> {
         self.sample(scene, &look);
         self.is_snapshot(look.snapshot.step).then(|| {
             let mut snapshot = look.snapshot;

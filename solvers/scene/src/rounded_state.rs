@@ -19,7 +19,7 @@
 //! of a single grain causes an overlap of 3.5·10⁻⁸ m.
 //!
 //! A file holds the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a
-//! [`Packed`] in postcard's format. Each column stores the lowest bytes of all its numbers first, then the next bytes,
+//! [`PackedState`] in postcard's format. Each column stores the lowest bytes of all its numbers first, then the next bytes,
 //! and so on. The high bytes hardly differ, so they compress well.
 
 use crate::end_state::{EndState, Springs, StateGrain};
@@ -40,7 +40,7 @@ const FARTHEST: f64 = (1_u64 << 53) as f64;
 
 /// Packed data of a state.
 #[derive(Serialize, Deserialize)]
-pub(crate) struct Packed {
+pub(crate) struct PackedState {
     of: [String; 2],
     dimension: usize,
     time: f64,
@@ -118,7 +118,7 @@ fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
     places.iter().copied().zip(std::iter::once(0).chain(places.iter().copied()))
 }
 
-impl Packed {
+impl PackedState {
     /// Rounds a state. Positions are rounded to `rounding` times the power of two at or below the smallest radius.
     pub(crate) fn new(state: &EndState, rounding: f64) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);

@@ -8,7 +8,7 @@ const DIGITS: usize = 11;
 
 /// Reason that bytes are not a valid sealed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Broken {
+pub(crate) enum SealError {
     /// Another kind of file.
     Foreign,
     /// Earlier format.
@@ -31,18 +31,18 @@ pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
 }
 
 /// Returns the sealed bytes.
-pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], Broken> {
+pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], SealError> {
     let start = &bytes[..bytes.len().min(magic.len() + DIGITS)];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let number = line.strip_prefix(magic).ok_or(Broken::Foreign)?;
+    let number = line.strip_prefix(magic).ok_or(SealError::Foreign)?;
     let after_line = bytes.get(line.len() + 1..).unwrap_or_default();
     match std::str::from_utf8(number).ok().and_then(|digits| digits.parse::<u32>().ok()) {
         Some(found) if found == format => {}
-        Some(found) if found > format => return Err(Broken::Newer(found)),
-        Some(found @ 1..) => return Err(Broken::Older(found)),
-        _ => return Err(Broken::Foreign),
+        Some(found) if found > format => return Err(SealError::Newer(found)),
+        Some(found @ 1..) => return Err(SealError::Older(found)),
+        _ => return Err(SealError::Foreign),
     }
-    let whole = |expected: u64| Broken::Length(expected, after_line.len() as u64);
+    let whole = |expected: u64| SealError::Length(expected, after_line.len() as u64);
     let (length, rest) = after_line.split_first_chunk::<8>().ok_or_else(|| whole(HEAD))?;
     let (hash, body) = rest.split_first_chunk::<32>().ok_or_else(|| whole(HEAD))?;
     let length = u64::from_le_bytes(*length);
@@ -50,7 +50,7 @@ pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b
         return Err(whole(HEAD.saturating_add(length)));
     }
     if blake3::hash(body).as_bytes() != hash {
-        return Err(Broken::Changed);
+        return Err(SealError::Changed);
     }
     Ok(body)
 }

@@ -3,7 +3,7 @@
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::end_state::EndState;
-use crate::record::{Record, Remains, Snapshot};
+use crate::record::{PartialOutput, Record, Snapshot};
 use crate::recorder;
 use crate::scene::{Duration, Scene};
 use nalgebra::Vector3;
@@ -378,7 +378,7 @@ impl fmt::Display for Cause {
 
 /// Particle that broke the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum FailedParticle {
     /// Grain, by id from 1.
     Grain(u32),
     /// Material point of a grain, by id of the grain from 1.
@@ -387,7 +387,7 @@ pub enum Subject {
     PointOfBody(u32),
 }
 
-impl fmt::Display for Subject {
+impl fmt::Display for FailedParticle {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Grain(id) => write!(formatter, "grain {id}"),
@@ -404,13 +404,13 @@ impl fmt::Display for Subject {
      was {time_step:.4e} s{}; {advice}",
     position.x, position.y, position.z, of_critical(*time_step, *critical)
 )]
-pub struct Broken {
+pub struct SimulationFailure {
     /// Time (s).
     pub time: f64,
     /// Step.
     pub step: u64,
     /// Particle that broke.
-    pub subject: Subject,
+    pub subject: FailedParticle,
     /// Last position (m).
     pub position: Vector3<f64>,
     /// Cause.
@@ -491,7 +491,7 @@ pub enum RunError {
     },
     /// The simulation broke.
     #[error(transparent)]
-    Broken(#[from] Box<Broken>),
+    Broken(#[from] Box<SimulationFailure>),
     /// The watcher interrupted the run.
     #[error("the simulation was interrupted at t = {time:.6e} s (step {step})")]
     Interrupted {
@@ -502,7 +502,7 @@ pub enum RunError {
     },
     /// A snapshot could not be stored.
     #[error(transparent)]
-    NotStored(#[from] NotStored),
+    NotStored(#[from] StorageError),
     /// The run cannot continue from this checkpoint, or a checkpoint cannot be stored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -511,7 +511,7 @@ pub enum RunError {
 /// Error of a watcher that could not store output.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
-pub struct NotStored(pub String);
+pub struct StorageError(pub String);
 
 /// Failure of an external program.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -539,7 +539,7 @@ fn last_words(lines: &[String]) -> String {
 
 /// Size of a run, known before its first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ahead {
+pub struct RunOutline {
     /// Time step (s).
     pub time_step: f64,
     /// Number of steps.
@@ -551,7 +551,7 @@ pub struct Ahead {
 /// Observer of a run.
 pub trait Watch {
     /// Called once, before the first step.
-    fn begin(&mut self, _ahead: Ahead) {}
+    fn begin(&mut self, _ahead: RunOutline) {}
     /// Returns the number of threads for solvers that use several; called once. No bit of the record depends on it.
     fn threads(&self) -> usize {
         1
@@ -567,7 +567,7 @@ pub trait Watch {
     ///
     /// # Errors
     /// When the snapshot cannot be stored. The run ends with this error.
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, NotStored> {
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         Ok(Some(snapshot))
     }
     /// Returns the largest number of rows of grains, contacts and points in a wanted snapshot; called before the first
@@ -596,7 +596,7 @@ pub trait Watch {
         false
     }
     /// Called with the partial output when the simulation broke or was interrupted.
-    fn broke(&mut self, _remains: Remains) {}
+    fn broke(&mut self, _remains: PartialOutput) {}
     /// Called with every checkpoint.
     ///
     /// # Errors
@@ -622,9 +622,9 @@ impl Watch for Threads {
 }
 
 /// Watcher that allows time steps above the critical one.
-pub struct Unstable;
+pub struct UnstableStepWatch;
 
-impl Watch for Unstable {
+impl Watch for UnstableStepWatch {
     fn progress(&mut self, _done: u64, _total: u64) {}
     fn allows_unstable(&self) -> bool {
         true

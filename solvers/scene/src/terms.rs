@@ -11,7 +11,7 @@ pub struct Terms {
     /// Order of convergence in the time step; `None` if the solver claims none.
     pub order: Option<Order>,
     /// Limitations compared with other methods.
-    pub less: &'static [Less],
+    pub less: &'static [Limitation],
     /// True if scenes in space are run too. They take some methods a long time.
     pub in_space: bool,
     /// True if runs that monitor the energy take 10⁵ steps instead of some thousands.
@@ -29,7 +29,7 @@ pub struct Order {
 
 /// Limitation: property that a method satisfies only within an error limit, not to rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Less {
+pub struct Limitation {
     /// Property, such as `rotation-invariance`.
     pub property: &'static str,
     /// Prefix of the quantity, such as `angular`; empty for all quantities of the property.
@@ -66,7 +66,7 @@ impl Terms {
 
     /// Returns the properties with limitations.
     #[must_use]
-    pub const fn owing_less(self, less: &'static [Less]) -> Self {
+    pub const fn owing_less(self, less: &'static [Limitation]) -> Self {
         Self { less, ..self }
     }
 
@@ -84,7 +84,7 @@ impl Terms {
 
     /// Returns the limitation that applies to a quantity; `None` if there is none.
     #[must_use]
-    pub fn less_of(&self, property: &str, quantity: &str) -> Option<&'static Less> {
+    pub fn less_of(&self, property: &str, quantity: &str) -> Option<&'static Limitation> {
         self.less.iter().find(|less| less.property == property && quantity.starts_with(less.quantity))
     }
 }

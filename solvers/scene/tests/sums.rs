@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_scene::record::{BodyState, ContactState, GrainState, Look, Partner, Snapshot};
+use grainbench_scene::record::{BodyState, ContactState, GrainState, Partner, Snapshot, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::source::SceneSource;
 use grainbench_scene::virial;
@@ -39,11 +39,11 @@ fn energies_and_momenta() {
     let grains = Snapshot::of_grains(&scene, 0, 0.0, vec![disc]);
     let snapshot = Snapshot { bodies: vec![body], contacts: Some(Vec::new()), ..grains };
     let mut recorder = Recorder::new(&scene, 1.0, 1);
-    let look = Look {
+    let look = StepState {
         inner_kinetic_energy: 11.0,
         uneven_rotational_energy: 3.0,
         uneven_angular_momentum: Vector3::new(0.0, 0.0, -8.0),
-        ..Look::of_rigid(snapshot, 13.0)
+        ..StepState::of_rigid(snapshot, 13.0)
     };
     recorder.take(&scene, look);
     let series = recorder.finish().0;
@@ -98,7 +98,7 @@ fn mean_stress_and_coordination() {
     ];
     let snapshot = Snapshot { contacts: Some(contacts), ..Snapshot::of_grains(&scene, 0, 0.0, grains) };
     let mut recorder = Recorder::new(&scene, 1.0, 1);
-    recorder.take(&scene, Look::of_rigid(snapshot, 0.0));
+    recorder.take(&scene, StepState::of_rigid(snapshot, 0.0));
     let series = recorder.finish().0;
     for (column, expected) in
         [("sigma_xx", -2.25), ("sigma_yy", -4.0), ("sigma_xy", 0.675), ("coordination", 4.0 / 3.0)]

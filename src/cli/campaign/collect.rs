@@ -3,7 +3,7 @@
 use super::plan::Arguments as Planned;
 use super::{enter, study};
 use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
-use grainbench::campaign::finished::Finished;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::plan::Plan;
 use grainbench::reports::trend::{Column, write_trend};
 use std::collections::BTreeSet;
@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
 }
 
 /// Options of a report.
-pub(crate) struct How<'a> {
+pub(crate) struct ReportOptions<'a> {
     /// Directory of the report.
     pub(crate) out: &'a Path,
     pub(crate) strict: bool,
@@ -67,10 +67,10 @@ pub(crate) fn collect(arguments: &Arguments) -> Outcome {
     plan.check_program()?;
     check_writable(&out)?;
     let study = study::from_arguments(&Planned::read(&plan)?)?;
-    let finished = Finished::read(&plan.path, true)?;
+    let finished = FinishedTasks::read(&plan.path, true)?;
     let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
     let done = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));
-    let how = How {
+    let how = ReportOptions {
         out: &out,
         strict: arguments.strict,
         parquet: arguments.parquet,
@@ -100,7 +100,7 @@ fn unfinished(plan: &Plan, missing: usize) -> Option<String> {
 }
 
 /// Returns the number of finished tasks if some are missing, the machines, and the system load during timed tasks.
-fn words(plan: &Plan, finished: &Finished, missing: usize) -> Vec<String> {
+fn words(plan: &Plan, finished: &FinishedTasks, missing: usize) -> Vec<String> {
     let mut words: Vec<String> = unfinished(plan, missing).into_iter().collect();
     let used: BTreeSet<usize> =
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();

@@ -1,23 +1,23 @@
 //! Plan of a cost study: one task per point, and one each for the parts of a step and for large scenes.
 
-use super::collect::How;
+use super::collect::ReportOptions;
 use super::plan::Arguments;
-use super::study::{Came, Study, came};
+use super::study::{Study, TaskResult, came};
 use crate::cli::cost::{self, ROUNDS};
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
-use crate::cli::strangers::WithStrangers;
-use grainbench::campaign::finished::Finished;
+use crate::cli::strangers::NamedSolvers;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::share::share;
 use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::Desk;
+use grainbench::campaign::work::ResultSink;
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::subject::Subject;
-use grainbench::reports::study::point::{Point, Standing};
+use grainbench::harness::subject::TargetQuantity;
+use grainbench::reports::study::point::{Point, PointStatus};
 use grainbench::reports::study::{Study as Report, points_of, study_json, write_study};
-use grainbench::studies::cost::run::{Meter, Wanted};
+use grainbench::studies::cost::run::{Meter, PointSelection};
 use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -32,15 +32,15 @@ const PRICES: f64 = 40.0;
 const LOADS: f64 = 90.0;
 
 /// Cost study of a plan.
-pub(crate) struct OfCost {
-    subjects: Vec<Subject>,
+pub(crate) struct CostStudy {
+    subjects: Vec<TargetQuantity>,
     solver: Vec<String>,
-    wanted: Wanted,
+    wanted: PointSelection,
     prices: bool,
     arguments: Arguments,
 }
 
-impl OfCost {
+impl CostStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
         arguments.only(&["CASE", "--solver", "--levels", "--prices", "--counts"])?;
         let all = match &arguments.levels[..] {
@@ -53,18 +53,18 @@ impl OfCost {
             }
         };
         let subjects = cost::subjects(&arguments.cases)?;
-        let (_, named) = WithStrangers::read_by_content(&arguments.solver)?;
+        let (_, named) = NamedSolvers::read_by_content(&arguments.solver)?;
         Ok(Self {
             subjects,
             solver: arguments.solver.clone(),
-            wanted: Wanted { solvers: named, all, counts: arguments.counts },
+            wanted: PointSelection { solvers: named, all, counts: arguments.counts },
             prices: !arguments.counts && (arguments.prices || arguments.cases.is_empty()),
             arguments: arguments.clone(),
         })
     }
 
-    fn solvers(&self) -> Result<WithStrangers, Fault> {
-        WithStrangers::read_by_content(&self.solver).map(|(solvers, _)| solvers)
+    fn solvers(&self) -> Result<NamedSolvers, Fault> {
+        NamedSolvers::read_by_content(&self.solver).map(|(solvers, _)| solvers)
     }
 
     /// Returns the tasks outside the diagrams: the cost of the parts of a step, and of a step at different numbers of
@@ -85,7 +85,7 @@ fn seconds_of(point: &Point) -> f64 {
     point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
 }
 
-impl Study for OfCost {
+impl Study for CostStudy {
     fn kind(&self) -> Kind {
         Kind::Cost
     }
@@ -137,7 +137,7 @@ impl Study for OfCost {
         self.solvers().map_or_else(|_| BTreeMap::new(), |solvers| solvers.inputs())
     }
 
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
         let solvers = self.solvers()?;
         let wanted: BTreeSet<Id> = tasks.iter().map(|task| task.id).collect();
         for (id, word, _) in self.beside(&plan.head.program) {
@@ -161,7 +161,7 @@ impl Study for OfCost {
                 let point: Option<Point> = serde_json::from_str(text).ok();
                 let failed = point
                     .as_ref()
-                    .is_some_and(|point| matches!(point.standing, Standing::Failed | Standing::NotAvailable));
+                    .is_some_and(|point| matches!(point.standing, PointStatus::Failed | PointStatus::NotAvailable));
                 if let Some(id) = id_of(name) {
                     let state = if failed { State::Failed } else { State::Done };
                     at.leave_text(id, state, point.as_ref().map_or(0.0, seconds_of), text);
@@ -203,7 +203,7 @@ impl Study for OfCost {
         Ok(())
     }
 
-    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose().map_err(Fault::input)?;
         let solvers = self.solvers()?;
         let texts: HashMap<Id, String> = plan
@@ -230,12 +230,12 @@ impl Study for OfCost {
         if self.prices {
             let [(prices, ..), (loads, ..)] = self.beside(&plan.head.program);
             study.model = match came(finished, prices) {
-                Came::Out(model) => Some(model),
-                Came::Nothing | Came::Crash(_) => None,
+                TaskResult::Out(model) => Some(model),
+                TaskResult::Nothing | TaskResult::Crash(_) => None,
             };
             study.loads = match came(finished, loads) {
-                Came::Out(loads) => loads,
-                Came::Nothing | Came::Crash(_) => Vec::new(),
+                TaskResult::Out(loads) => loads,
+                TaskResult::Nothing | TaskResult::Crash(_) => Vec::new(),
             };
         }
         study.diagrams = self.subjects.iter().map(|subject| meter.finished(subject)).collect();

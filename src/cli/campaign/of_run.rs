@@ -1,24 +1,24 @@
 //! Plan of claims: one task per claim with its control, one for the figures of a case, and one for the conformance of
 //! each solver.
 
-use super::collect::How;
+use super::collect::ReportOptions;
 use super::plan::Arguments;
-use super::study::{Came, Study, came};
+use super::study::{Study, TaskResult, came};
 use crate::cli::cache;
 use crate::cli::conform;
 use crate::cli::exit::{self, Fault, Outcome, print};
 use crate::cli::filter::Filters;
 use crate::cli::provenance::provenance;
 use crate::cli::run;
-use crate::cli::select::{self, Selected};
+use crate::cli::select::{self, CaseSelection};
 use crate::cli::solver::is_manifest;
-use crate::cli::strangers::WithStrangers;
-use grainbench::campaign::finished::Finished;
+use crate::cli::strangers::NamedSolvers;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
 use grainbench::campaign::share::share;
 use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::Desk;
+use grainbench::campaign::work::ResultSink;
 use grainbench::cases::folder;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
@@ -47,10 +47,10 @@ const KEPT: f64 = 0.1;
 const START: f64 = 0.5;
 
 /// Claims of a plan.
-pub(crate) struct OfRun {
-    selected: Vec<Selected>,
+pub(crate) struct ClaimStudy {
+    selected: Vec<CaseSelection>,
     /// External solvers of the plan.
-    strangers: WithStrangers,
+    strangers: NamedSolvers,
     options: run::Options,
     arguments: Arguments,
     /// True if all resolution levels run.
@@ -61,14 +61,14 @@ pub(crate) struct OfRun {
 
 /// Parser for the options of `run`.
 #[derive(clap::Parser)]
-struct Again {
+struct RunParser {
     #[command(flatten)]
     arguments: run::Arguments,
 }
 
 /// Work item, with indices of the case and of the claim within the case.
 #[derive(Clone, Copy)]
-enum Piece {
+enum WorkItem {
     Row(usize, usize),
     Figures(usize),
     Owed(usize),
@@ -84,7 +84,7 @@ struct Part {
     without: Option<String>,
 }
 
-impl OfRun {
+impl ClaimStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
         arguments.only(&["CASE", "--solver", "--levels", "--filter", "--no-controls", "--live"])?;
         let mut words = vec!["run".to_owned()];
@@ -94,7 +94,7 @@ impl OfRun {
         words.extend(arguments.filter.iter().map(|value| format!("--filter={value}")));
         words.extend(arguments.no_controls.then(|| "--no-controls".to_owned()));
         words.extend(arguments.live.then(|| "--live".to_owned()));
-        let again = <Again as clap::Parser>::try_parse_from(words).map_err(Fault::input)?;
+        let again = <RunParser as clap::Parser>::try_parse_from(words).map_err(Fault::input)?;
         let run::Arguments { cases, options } = again.arguments;
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
@@ -105,7 +105,7 @@ impl OfRun {
         let thorough = options.levels.iter().any(|level| level == "all");
         let is_whole = cases.is_empty() && options.filter.is_empty();
         let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
-        let (strangers, _) = WithStrangers::read_by_content(&manifests)?;
+        let (strangers, _) = NamedSolvers::read_by_content(&manifests)?;
         Ok(Self { selected, strangers, options, arguments: arguments.clone(), thorough, is_whole })
     }
 
@@ -115,7 +115,7 @@ impl OfRun {
     }
 
     /// Returns all work items with their ids, in the order of the report.
-    fn pieces(&self, program: &str) -> Result<Vec<(Id, Piece)>, Fault> {
+    fn pieces(&self, program: &str) -> Result<Vec<(Id, WorkItem)>, Fault> {
         let mut pieces = Vec::new();
         let mut seen: HashMap<String, usize> = HashMap::new();
         let settings = format!("{} {} {}", self.options.no_controls, self.options.live, self.thorough);
@@ -139,22 +139,25 @@ impl OfRun {
                 rows += &words;
                 pieces.push((
                     Id::of_words(program, &["row", &words, &number.to_string(), &settings]),
-                    Piece::Row(at, gate),
+                    WorkItem::Row(at, gate),
                 ));
             }
-            pieces.push((Id::of_words(program, &["figures", &rows, &settings]), Piece::Figures(at)));
+            pieces.push((Id::of_words(program, &["figures", &rows, &settings]), WorkItem::Figures(at)));
         }
         if self.owes() {
             for (at, (solver, _)) in conform::owing(&self.options.solver)?.iter().enumerate() {
                 let name = solver.name();
-                pieces.push((Id::of_words(program, &["owed", &name, &self.strangers.edition(&name)]), Piece::Owed(at)));
+                pieces.push((
+                    Id::of_words(program, &["owed", &name, &self.strangers.edition(&name)]),
+                    WorkItem::Owed(at),
+                ));
             }
         }
         Ok(pieces)
     }
 
     /// Returns the work items of a plan, which must be those that it was made with.
-    fn planned(&self, plan: &Plan) -> Result<Vec<(Id, Piece)>, Fault> {
+    fn planned(&self, plan: &Plan) -> Result<Vec<(Id, WorkItem)>, Fault> {
         let pieces = self.pieces(&plan.head.program)?;
         let known: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
         if pieces.iter().all(|(id, _)| known.contains(id)) {
@@ -192,7 +195,7 @@ impl OfRun {
 }
 
 /// Returns the files that the results of a case depend on; none if the case is built in.
-fn files_of(selected: &Selected) -> Result<Vec<PathBuf>, Fault> {
+fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
     if CASES.iter().any(|case| std::ptr::eq(*case, selected.case)) {
         return Ok(Vec::new());
     }
@@ -200,7 +203,7 @@ fn files_of(selected: &Selected) -> Result<Vec<PathBuf>, Fault> {
 }
 
 /// Evaluates a claim and its control.
-fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (State, Part) {
+fn row(selected: &CaseSelection, runner: &Runner, gate: usize, controls: bool) -> (State, Part) {
     let claim = &selected.claims[gate];
     let verdict = runner.judge(claim);
     let tried = controls && runner.tries_control(claim, &verdict);
@@ -221,7 +224,7 @@ fn row(selected: &Selected, runner: &Runner, gate: usize, controls: bool) -> (St
 }
 
 /// Draws the figures of a case.
-fn figures(selected: &Selected, runner: &Runner) -> (State, Part) {
+fn figures(selected: &CaseSelection, runner: &Runner) -> (State, Part) {
     let mut part = Part { keys: Vec::new(), section: run::blank(selected), without: None };
     match run::draw(selected, runner) {
         Ok(figures) => part.section.figures = figures,
@@ -241,7 +244,7 @@ fn in_short(part: Part) -> Part {
     Part { section, ..part }
 }
 
-impl Study for OfRun {
+impl Study for ClaimStudy {
     fn kind(&self) -> Kind {
         Kind::Run
     }
@@ -258,7 +261,7 @@ impl Study for OfRun {
             .map(|selected| run::runner(selected, &self.options, self.thorough, Arc::clone(&solvers)))
             .collect();
         let owing = if self.owes() { conform::owing(&self.options.solver)? } else { Vec::new() };
-        let task = |(id, piece): (Id, Piece)| {
+        let task = |(id, piece): (Id, WorkItem)| {
             let new = |scene: String, solver: String, level: String, what: String, seconds: f64| Task {
                 id,
                 scene,
@@ -271,7 +274,7 @@ impl Study for OfRun {
                 group: None,
             };
             match piece {
-                Piece::Row(at, gate) => {
+                WorkItem::Row(at, gate) => {
                     let selected = &self.selected[at];
                     let claim = &selected.claims[gate];
                     let first = claim.runs.first();
@@ -282,11 +285,11 @@ impl Study for OfRun {
                     let scene = format!("{}/{variant}", selected.case.name);
                     new(scene, solver, claim.resolution(), claim.quantity.clone(), seconds)
                 }
-                Piece::Figures(at) => {
+                WorkItem::Figures(at) => {
                     let name = self.selected[at].case.name.to_owned();
                     new(name, String::new(), String::new(), "figures".to_owned(), FIGURES)
                 }
-                Piece::Owed(at) => {
+                WorkItem::Owed(at) => {
                     let solver = owing[at].0.name();
                     new("conformance".to_owned(), solver, String::new(), "what it owes".to_owned(), CONFORMANCE)
                 }
@@ -303,10 +306,10 @@ impl Study for OfRun {
         inputs
     }
 
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
         let cache = cache::open(false);
         let solvers = cache::solvers(cache.as_ref());
-        let known: HashMap<Id, Piece> = self.planned(plan)?.into_iter().collect();
+        let known: HashMap<Id, WorkItem> = self.planned(plan)?.into_iter().collect();
         let owing = if self.owes() { conform::owing(&self.options.solver)? } else { Vec::new() };
         let runners = self.runners();
         let runner = |at: usize| {
@@ -316,12 +319,12 @@ impl Study for OfRun {
         let do_piece = |piece: usize| {
             let id = tasks[piece].id;
             match known.get(&id) {
-                Some(&Piece::Row(at, gate)) => {
+                Some(&WorkItem::Row(at, gate)) => {
                     let controls = !self.options.no_controls;
                     desk.attempt(id, || row(&self.selected[at], runner(at), gate, controls));
                 }
-                Some(&Piece::Figures(at)) => desk.attempt(id, || figures(&self.selected[at], runner(at))),
-                Some(&Piece::Owed(at)) => desk.attempt(id, || {
+                Some(&WorkItem::Figures(at)) => desk.attempt(id, || figures(&self.selected[at], runner(at))),
+                Some(&WorkItem::Owed(at)) => desk.attempt(id, || {
                     let (solver, terms) = &owing[at];
                     let (verdicts, controls) = conformance::judge(&**solver, terms);
                     let section = Section { title: String::new(), ..conform::section_of(verdicts, controls) };
@@ -337,27 +340,27 @@ impl Study for OfRun {
         Ok(())
     }
 
-    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
         let mut sections: Vec<Section> = self.selected.iter().map(run::blank).collect();
         let mut runs: Vec<BTreeMap<String, RunCost>> = vec![BTreeMap::new(); sections.len()];
         let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
         for (id, piece) in self.planned(plan)? {
             let part: Part = match (came(finished, id), piece) {
-                (Came::Out(part), _) => part,
-                (Came::Nothing, _) => continue,
-                (Came::Crash(detail), Piece::Row(at, gate)) => {
+                (TaskResult::Out(part), _) => part,
+                (TaskResult::Nothing, _) => continue,
+                (TaskResult::Crash(detail), WorkItem::Row(at, gate)) => {
                     let selected = &self.selected[at];
                     let runner = run::runner(selected, &self.options, self.thorough, cache::solvers(None));
                     sections[at].verdicts.push(runner.crashed(&selected.claims[gate], detail));
                     continue;
                 }
-                (Came::Crash(detail), _) => {
+                (TaskResult::Crash(detail), _) => {
                     exit::say("warning", &format!("figures or what a solver owes are left out: {detail}"));
                     continue;
                 }
             };
             match piece {
-                Piece::Row(at, _) | Piece::Figures(at) => {
+                WorkItem::Row(at, _) | WorkItem::Figures(at) => {
                     if let Some(error) = part.without {
                         let case = &sections[at].name;
                         exit::say("warning", &format!("{case}: its figures are left out: {error}"));
@@ -367,7 +370,7 @@ impl Study for OfRun {
                     sections[at].verdicts.extend(part.section.verdicts);
                     sections[at].controls.extend(part.section.controls);
                 }
-                Piece::Owed(_) => {
+                WorkItem::Owed(_) => {
                     verdicts.extend(part.section.verdicts);
                     controls.extend(part.section.controls);
                 }

@@ -1,19 +1,19 @@
 //! Plan of a stability study: one task per limit or hard case.
 
-use super::collect::How;
+use super::collect::ReportOptions;
 use super::plan::Arguments;
 use super::study::Study;
 use crate::cli::cost::Follower;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
-use crate::cli::stability::{self, Piece};
-use crate::cli::strangers::WithStrangers;
-use grainbench::campaign::finished::Finished;
+use crate::cli::stability::{self, WorkItem};
+use crate::cli::strangers::NamedSolvers;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::share::share;
 use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::Desk;
+use grainbench::campaign::work::ResultSink;
 use grainbench::reports::study::{Study as Report, study_json, write_study};
 use grainbench::studies::identity;
 use grainbench::studies::result_cache::ResultCache;
@@ -32,13 +32,13 @@ const CELLS: f64 = 0.05;
 const TRIES: f64 = 3.0;
 
 /// Limits and hard cases of a plan.
-pub(crate) struct OfStability {
+pub(crate) struct StabilityStudy {
     assemblies: Vec<Assembly>,
     hard: Vec<HardCase>,
     arguments: Arguments,
 }
 
-impl OfStability {
+impl StabilityStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
         arguments.only(&["CASE", "--solver"])?;
         let study = Self { assemblies: assembly::all()?, hard: hard::all(), arguments: arguments.clone() };
@@ -46,8 +46,8 @@ impl OfStability {
     }
 
     /// Calls a function with the work items and solvers of the plan.
-    fn with<T>(&self, work: impl FnOnce(&[Piece<'_>], &WithStrangers) -> Result<T, Fault>) -> Result<T, Fault> {
-        let (solvers, named) = WithStrangers::read_by_content(&self.arguments.solver)?;
+    fn with<T>(&self, work: impl FnOnce(&[WorkItem<'_>], &NamedSolvers) -> Result<T, Fault>) -> Result<T, Fault> {
+        let (solvers, named) = NamedSolvers::read_by_content(&self.arguments.solver)?;
         let strangers = solvers.names();
         let pieces = stability::select(&self.arguments.cases, [&named, &strangers], &self.assemblies, &self.hard)?;
         work(&pieces, &solvers)
@@ -55,17 +55,17 @@ impl OfStability {
 }
 
 /// Returns the name of a work item in a result cache.
-fn name(piece: &Piece<'_>, program: &str, solvers: &WithStrangers) -> String {
+fn name(piece: &WorkItem<'_>, program: &str, solvers: &NamedSolvers) -> String {
     use grainbench::harness::solvers::Solvers;
     let by = |solver: &str| program.to_owned() + &solvers.edition(solver);
     match *piece {
-        Piece::Assembly(assembly, solver) => limit::name_of_assembly(&by(solver), assembly, solver),
-        Piece::Bar(setting, cells) => limit::name_of_bar(program, setting, cells),
-        Piece::Hard(case, solver) => hard::name_of(&by(solver), case, solver),
+        WorkItem::Assembly(assembly, solver) => limit::name_of_assembly(&by(solver), assembly, solver),
+        WorkItem::Bar(setting, cells) => limit::name_of_bar(program, setting, cells),
+        WorkItem::Hard(case, solver) => hard::name_of(&by(solver), case, solver),
     }
 }
 
-impl Study for OfStability {
+impl Study for StabilityStudy {
     fn kind(&self) -> Kind {
         Kind::Stability
     }
@@ -76,21 +76,21 @@ impl Study for OfStability {
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         self.with(|pieces, solvers| {
-            let task = |piece: &Piece<'_>| {
+            let task = |piece: &WorkItem<'_>| {
                 let (scene, solver, level, seconds) = match *piece {
-                    Piece::Assembly(assembly, solver) => {
+                    WorkItem::Assembly(assembly, solver) => {
                         let at = assembly.kappa.map_or_else(String::new, |kappa| format!(" {kappa}"));
                         (format!("{}{at}", assembly.name), solver, String::new(), SPRINGS)
                     }
-                    Piece::Bar(setting, cells) => {
+                    WorkItem::Bar(setting, cells) => {
                         ("vibrating-bar".to_owned(), setting, format!("cells={cells}"), CELLS * cells)
                     }
-                    Piece::Hard(case, solver) => {
+                    WorkItem::Hard(case, solver) => {
                         (case.name.clone(), solver, String::new(), TRIES * hard::seconds(case, solver))
                     }
                 };
                 let id = Id::of_hash(&name(piece, program, solvers))?;
-                let what = if matches!(piece, Piece::Hard(..)) { "hard case" } else { "limit" };
+                let what = if matches!(piece, WorkItem::Hard(..)) { "hard case" } else { "limit" };
                 Some(Task {
                     id,
                     scene,
@@ -111,10 +111,10 @@ impl Study for OfStability {
         self.with(|_, solvers| Ok(solvers.inputs())).unwrap_or_default()
     }
 
-    fn work(&self, _plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+    fn work(&self, _plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
         let program = identity::of_this_program();
         self.with(|pieces, solvers| {
-            let known: HashMap<Id, &Piece<'_>> = pieces
+            let known: HashMap<Id, &WorkItem<'_>> = pieces
                 .iter()
                 .filter_map(|piece| Some((Id::of_hash(&name(piece, &program, solvers))?, piece)))
                 .collect();
@@ -146,7 +146,7 @@ impl Study for OfStability {
         })
     }
 
-    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
         let texts: HashMap<Id, String> = plan
             .tasks
             .iter()

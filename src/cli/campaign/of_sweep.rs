@@ -1,23 +1,23 @@
 //! Plan of a sweep.
 
-use super::collect::How;
+use super::collect::ReportOptions;
 use super::plan::Arguments;
-use super::study::{Came, Study, came};
+use super::study::{Study, TaskResult, came};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
 use crate::cli::solver::is_manifest;
-use crate::cli::strangers::WithStrangers;
-use grainbench::campaign::finished::Finished;
+use crate::cli::strangers::NamedSolvers;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
 use grainbench::campaign::share::share;
 use grainbench::campaign::sweep::Sweep;
 use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::Desk;
+use grainbench::campaign::work::ResultSink;
 use grainbench::harness::verdict;
 use grainbench::reports::number;
-use grainbench::reports::sweep::{Left, Looked, sweep_json, write_sweep};
+use grainbench::reports::sweep::{PointOutput, QuantityResult, sweep_json, write_sweep};
 use grainbench::scene::solver::Solver;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Sweep with its solvers.
-pub(crate) struct OfSweep {
+pub(crate) struct SweepStudy {
     path: String,
     sweep: Sweep,
     /// Solvers as the file names them.
@@ -34,7 +34,7 @@ pub(crate) struct OfSweep {
     names: Vec<String>,
 }
 
-impl OfSweep {
+impl SweepStudy {
     pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
         if !is_manifest(file) {
             return Err(Fault::unknown("`SWEEP.toml`, or what is planned", file, ["run", "cost", "stability"]));
@@ -45,16 +45,16 @@ impl OfSweep {
         // Paths of manifests are relative to the sweep file.
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
-        let (_, names) = WithStrangers::read_by_content(&asked)?;
+        let (_, names) = NamedSolvers::read_by_content(&asked)?;
         Ok(Self { path: file.to_owned(), sweep, asked, names })
     }
 
-    fn solvers(&self) -> Result<WithStrangers, Fault> {
-        WithStrangers::read_by_content(&self.asked).map(|(solvers, _)| solvers)
+    fn solvers(&self) -> Result<NamedSolvers, Fault> {
+        NamedSolvers::read_by_content(&self.asked).map(|(solvers, _)| solvers)
     }
 }
 
-impl Study for OfSweep {
+impl Study for SweepStudy {
     fn kind(&self) -> Kind {
         Kind::Sweep
     }
@@ -78,7 +78,7 @@ impl Study for OfSweep {
         inputs
     }
 
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault> {
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
         // Timed tasks are always run, and never taken from the cache.
         let cache = if self.is_timed() { None } else { cache::open(false) };
         let solvers = cache::with(self.solvers()?, cache.as_ref());
@@ -103,16 +103,17 @@ impl Study for OfSweep {
         Ok(())
     }
 
-    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome {
+    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
-        let left = |place: usize| -> Option<Left> {
+        let left = |place: usize| -> Option<PointOutput> {
             match came(finished, plan.tasks.get(place)?.id) {
-                Came::Nothing => None,
-                Came::Out(left) => Some(left),
-                Came::Crash(detail) => {
-                    let looked = Looked { verdict: Some(verdict::Outcome::Broken), ..Looked::default() };
-                    Some(Left { looked: vec![looked], detail: Some(detail), ..Left::default() })
+                TaskResult::Nothing => None,
+                TaskResult::Out(left) => Some(left),
+                TaskResult::Crash(detail) => {
+                    let looked =
+                        QuantityResult { verdict: Some(verdict::Outcome::Broken), ..QuantityResult::default() };
+                    Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
                 }
             }
         };

@@ -53,7 +53,7 @@ pub(crate) struct Arguments {
 
 /// Parser for the arguments of a stored plan.
 #[derive(clap::Parser)]
-struct Again {
+struct PlanParser {
     #[command(flatten)]
     arguments: Arguments,
 }
@@ -78,7 +78,7 @@ impl Arguments {
     /// Reads the arguments from a stored plan.
     pub(crate) fn read(plan: &Plan) -> Result<Self, Fault> {
         let words = std::iter::once("plan").chain(plan.head.arguments.iter().map(String::as_str));
-        let again = <Again as clap::Parser>::try_parse_from(words).map_err(|error| {
+        let again = <PlanParser as clap::Parser>::try_parse_from(words).map_err(|error| {
             let found = error.to_string().lines().next().unwrap_or_default().to_owned();
             Fault::input(format!("{}: arguments: expected those of `plan`, found others: {found}", plan.path.display()))
         })?;

@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
 
 /// JSON form of the progress.
 #[derive(Serialize)]
-struct Told<'a> {
+struct StatusJson<'a> {
     #[serde(flatten)]
     status: &'a Status,
     /// Number of elements of job arrays that wait or run; null if the batch system does not answer.
@@ -35,7 +35,7 @@ pub(crate) fn status(arguments: &Arguments) -> Outcome {
     let status = Status::from_plan(&plan)?;
     let queued = slurm::in_queue(&plan.path);
     if arguments.json {
-        print_json(&Told { status: &status, queued: queued.ok() })?;
+        print_json(&StatusJson { status: &status, queued: queued.ok() })?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut text = String::new();

@@ -1,17 +1,17 @@
 //! Kinds of plans: each lists its tasks, runs them, and makes the report.
 
-use super::collect::How;
-use super::of_cost::OfCost;
-use super::of_run::OfRun;
-use super::of_stability::OfStability;
-use super::of_sweep::OfSweep;
+use super::collect::ReportOptions;
+use super::of_cost::CostStudy;
+use super::of_run::ClaimStudy;
+use super::of_stability::StabilityStudy;
+use super::of_sweep::SweepStudy;
 use super::plan::Arguments;
 use crate::cli::exit::{Fault, Outcome};
-use grainbench::campaign::finished::Finished;
+use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::Desk;
+use grainbench::campaign::work::ResultSink;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,23 +29,23 @@ pub(crate) trait Study: Sync {
         BTreeMap::new()
     }
     /// Runs tasks, at most `jobs` at a time.
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<Desk>) -> Result<(), Fault>;
+    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault>;
     /// Writes the report of the finished tasks.
-    fn collect(&self, plan: &Plan, finished: &Finished, how: &How<'_>) -> Outcome;
+    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
 }
 
 /// Returns the study that the arguments ask for.
 pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
     Ok(match arguments.what.as_str() {
-        "run" => Box::new(OfRun::new(arguments)?),
-        "cost" => Box::new(OfCost::new(arguments)?),
-        "stability" => Box::new(OfStability::new(arguments)?),
-        file => Box::new(OfSweep::new(file, arguments)?),
+        "run" => Box::new(ClaimStudy::new(arguments)?),
+        "cost" => Box::new(CostStudy::new(arguments)?),
+        "stability" => Box::new(StabilityStudy::new(arguments)?),
+        file => Box::new(SweepStudy::new(file, arguments)?),
     })
 }
 
 /// Result of a task.
-pub(crate) enum Came<T> {
+pub(crate) enum TaskResult<T> {
     /// No result yet.
     Nothing,
     /// Result.
@@ -55,13 +55,15 @@ pub(crate) enum Came<T> {
 }
 
 /// Reads the result of a task.
-pub(crate) fn came<T: DeserializeOwned>(finished: &Finished, id: Id) -> Came<T> {
-    let Some(entry) = finished.entries.get(&id) else { return Came::Nothing };
+pub(crate) fn came<T: DeserializeOwned>(finished: &FinishedTasks, id: Id) -> TaskResult<T> {
+    let Some(entry) = finished.entries.get(&id) else { return TaskResult::Nothing };
     if entry.state == State::Crashed {
-        return Came::Crash(serde_json::from_str(&entry.json).unwrap_or_else(|_| "our program failed".to_owned()));
+        return TaskResult::Crash(
+            serde_json::from_str(&entry.json).unwrap_or_else(|_| "our program failed".to_owned()),
+        );
     }
     match serde_json::from_str(&entry.json) {
-        Ok(result) => Came::Out(result),
-        Err(error) => Came::Crash(format!("what was left of it cannot be read: {error}")),
+        Ok(result) => TaskResult::Out(result),
+        Err(error) => TaskResult::Crash(format!("what was left of it cannot be read: {error}")),
     }
 }

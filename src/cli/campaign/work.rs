@@ -9,10 +9,10 @@ use crate::cli::progress::Progress;
 use crate::cli::provenance::provenance;
 use crate::cli::value::whole;
 use grainbench::campaign::chunk::Chunk;
-use grainbench::campaign::lease::Said;
+use grainbench::campaign::lease::LeaseContents;
 use grainbench::campaign::log::Worker;
 use grainbench::campaign::plan::Plan;
-use grainbench::campaign::work::{Asked, Summary, Watch, work as do_chunk};
+use grainbench::campaign::work::{Summary, Watch, WorkRequest, work as do_chunk};
 use grainbench::campaign::{machine, slurm};
 use grainbench::reference::has_ended_programs;
 use grainbench::reports::number;
@@ -64,10 +64,10 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
         (Some(jobs), false) => usize::from(jobs),
         (None, false) => cores(),
     };
-    let observer = Arc::new(Told { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
-    let asked = Asked { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.retry_failed };
+    let observer = Arc::new(WorkObserver { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
+    let asked = WorkRequest { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.retry_failed };
     let worker = worker();
-    let watch = Arc::<Told>::clone(&observer);
+    let watch = Arc::<WorkObserver>::clone(&observer);
     let done = do_chunk(&plan, &asked, &worker, watch, &|tasks, desk| {
         study.work(&plan, tasks, jobs, desk).map_err(|fault| grainbench::campaign::Fault::Input(fault.to_string()))
     });
@@ -83,7 +83,7 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
 
 fn submit(plan: &Plan, arguments: &Arguments) -> Outcome {
     let program = env::current_exe().map_err(|error| Fault::input(format!("this program: {error}")))?;
-    let asked = slurm::Asked { program: &program, again: arguments.resubmit, options: &arguments.sbatch };
+    let asked = slurm::SubmitRequest { program: &program, again: arguments.resubmit, options: &arguments.sbatch };
     match slurm::submit(plan, &asked)? {
         Some(job) => print(&format!("job {}: chunks {} of {}\n", job.job, job.indexes, job.chunks))?,
         None => print("nothing is missing that is not queued or somebody's\n")?,
@@ -121,12 +121,12 @@ fn worker() -> Worker {
 }
 
 /// Observer that shows the progress and stops the work on an interrupt.
-struct Told {
+struct WorkObserver {
     interrupt: Interrupt,
     progress: Mutex<Option<Progress>>,
 }
 
-impl Watch for Told {
+impl Watch for WorkObserver {
     fn goes_on(&self) -> bool {
         !self.interrupt.is_asked()
     }
@@ -146,7 +146,7 @@ impl Watch for Told {
         }
     }
 
-    fn waits(&self, others: &[Said]) {
+    fn waits(&self, others: &[LeaseContents]) {
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let progress = progress.get_or_insert_with(|| Progress::new(0, "tasks"));
         let names: Vec<&str> = others.iter().map(|other| other.worker.as_str()).collect();

@@ -15,7 +15,7 @@
 //! 36 pairs of sessions these shifted all points of a case by up to 6 % more than 3s.
 
 use grainbench_harness::statistics::median;
-use grainbench_reports::study::point::{Change, Point, Standing};
+use grainbench_reports::study::point::{Change, Point, PointStatus};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Relative change of time that occurs between sessions of the same code.
@@ -98,21 +98,21 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
 
 /// Returns the logarithm of the ratio of times, and its standard error.
 fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
-    let measured = |point: &Point| point.standing == Standing::Measured && point.wall_seconds >= Some(TOO_SHORT);
+    let measured = |point: &Point| point.standing == PointStatus::Measured && point.wall_seconds >= Some(TOO_SHORT);
     if !(measured(old) && measured(new)) {
         return None;
     }
-    let (was, is) = (Middle::of_repetitions(old)?, Middle::of_repetitions(new)?);
+    let (was, is) = (MedianEstimate::of_repetitions(old)?, MedianEstimate::of_repetitions(new)?);
     Some((is.value - was.value, is.error.hypot(was.error)))
 }
 
 /// A median and its standard error, for a normal distribution.
-struct Middle {
+struct MedianEstimate {
     value: f64,
     error: f64,
 }
 
-impl Middle {
+impl MedianEstimate {
     /// Computes the median of at least one number, and its standard error from the median absolute deviation.
     ///
     /// The deviation is robust against a few outliers. The error of a single number is unknown and set to zero.
@@ -136,7 +136,7 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
         return None;
     }
     let logarithms: Vec<f64> = ratios.iter().map(|(ratio, _)| *ratio).collect();
-    let Middle { value: middle, error: scatter } = Middle::from_values(&logarithms);
+    let MedianEstimate { value: middle, error: scatter } = MedianEstimate::from_values(&logarithms);
     let doubt = ratios.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / ratios.len() as f64;
     let error = scatter.max(doubt);
     let worse = middle > 0.0;
@@ -194,7 +194,7 @@ mod tests {
             knobs: String::new(),
             quantity: "x".to_owned(),
             unit: "m".to_owned(),
-            standing: Standing::Measured,
+            standing: PointStatus::Measured,
             value: Some(1.0),
             expected: Some(1.0),
             error: Some(0.0),

@@ -1,13 +1,13 @@
 //! Parameters of each kind of solver, and the sweep points of the cost study.
 
-use grainbench_harness::solvers::Stranger;
-use grainbench_harness::subject::Lane;
+use grainbench_harness::solvers::ExternalSolver;
+use grainbench_harness::subject::SolverSetup;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Method, Resolution};
 
 /// A sweep point: one setting of a solver's parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turn {
+pub struct SweepPoint {
     /// Solver name, including the settings of the material point method.
     pub solver: String,
     /// Curve of the diagram that contains the point: the solver without its settings.
@@ -51,11 +51,11 @@ const SETTINGS: [(&str, &str); 8] = [
 /// External solvers take part by name if they have contact springs or deformable bodies. They use their declared time
 /// steps or cell counts.
 #[must_use]
-pub fn turns(lane: &Lane, strangers: &[Stranger]) -> Vec<Turn> {
+pub fn turns(lane: &SolverSetup, strangers: &[ExternalSolver]) -> Vec<SweepPoint> {
     own(lane).into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
 }
 
-fn theirs(lane: &Lane, stranger: &Stranger) -> Vec<Turn> {
+fn theirs(lane: &SolverSetup, stranger: &ExternalSolver) -> Vec<SweepPoint> {
     let at = |resolution, sequence| turn(&stranger.name, &stranger.name, resolution, &lane.knobs, Some(sequence));
     match (lane.method, lane.about) {
         (Method::Dem, _) if stranger.has_springs => {
@@ -71,7 +71,7 @@ fn theirs(lane: &Lane, stranger: &Stranger) -> Vec<Turn> {
     }
 }
 
-fn own(lane: &Lane) -> Vec<Turn> {
+fn own(lane: &SolverSetup) -> Vec<SweepPoint> {
     match lane.method {
         Method::Dem => dem(lane),
         Method::Rigid => rigid(lane),
@@ -79,11 +79,11 @@ fn own(lane: &Lane) -> Vec<Turn> {
     }
 }
 
-fn turn(solver: &str, line: &str, resolution: Resolution, knobs: &str, sequence: Option<f64>) -> Turn {
-    Turn { solver: solver.to_owned(), line: line.to_owned(), resolution, knobs: knobs.to_owned(), sequence }
+fn turn(solver: &str, line: &str, resolution: Resolution, knobs: &str, sequence: Option<f64>) -> SweepPoint {
+    SweepPoint { solver: solver.to_owned(), line: line.to_owned(), resolution, knobs: knobs.to_owned(), sequence }
 }
 
-fn dem(lane: &Lane) -> Vec<Turn> {
+fn dem(lane: &SolverSetup) -> Vec<SweepPoint> {
     let own = FRACTIONS
         .map(|fraction| turn("dem", "dem", Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction)));
     let programs = ["lammps", "liggghts"].into_iter().flat_map(|name| {
@@ -93,7 +93,7 @@ fn dem(lane: &Lane) -> Vec<Turn> {
     own.into_iter().chain(programs).collect()
 }
 
-fn rigid(lane: &Lane) -> Vec<Turn> {
+fn rigid(lane: &SolverSetup) -> Vec<SweepPoint> {
     let substeps =
         SUBSTEPS.map(|count| turn("rigid", "rigid", Resolution::substeps(count), &lane.knobs, Some(f64::from(count))));
     let iterations = ITERATIONS.map(|iterations| {
@@ -107,10 +107,10 @@ fn rigid(lane: &Lane) -> Vec<Turn> {
     substeps.into_iter().chain(iterations).chain(steps).collect()
 }
 
-fn grid(lane: &Lane) -> Vec<Turn> {
+fn grid(lane: &SolverSetup) -> Vec<SweepPoint> {
     let Resolution::Grid { cells, points, courant } = lane.about else { return Vec::new() };
     let at = |factor: f64, points: u32, courant: f64| Resolution::Grid { cells: cells * factor, points, courant };
-    let mut turns: Vec<Turn> = CELLS
+    let mut turns: Vec<SweepPoint> = CELLS
         .iter()
         .map(|&factor| turn("mpm", "mpm", at(factor, points, courant), &lane.knobs, Some(factor)))
         .collect();

@@ -5,10 +5,10 @@
 //! short run without its step is the start-up. All solvers take turns, with one timing of each scene in a round.
 
 use super::knobs::nominal_seconds;
-use crate::Follow;
+use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
-use grainbench_reports::study::load::{Lap, Load};
+use grainbench_reports::study::load::{Load, TimingDifference};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_scene::solver::{Resolution, RunError, Solver};
@@ -49,7 +49,11 @@ struct Entrant {
 ///
 /// # Errors
 /// When the scene cannot be read, which does not occur for the scene of this study.
-pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> Result<Vec<Load>, SceneError> {
+pub fn measure(
+    solvers: &dyn Solvers,
+    rounds: u32,
+    follow: &mut impl ProgressObserver,
+) -> Result<Vec<Load>, SceneError> {
     let mut entrants = Vec::new();
     for edge in EDGES {
         let scene = Arc::new(box_of_discs(edge)?);
@@ -85,11 +89,11 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> 
 }
 
 /// Measures one timing.
-fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<Lap, RunError> {
+fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<TimingDifference, RunError> {
     let step = step(scene, resolution).map_err(|reason| RunError::Resolution { solver: solver.name(), reason })?;
     // The duration of the scene is one second, so the nominal time is that of one simulated second.
     let seconds = (LONG / nominal_seconds(scene, resolution)).clamp(STEPS[0] * step, STEPS[1] * step);
-    let run = |seconds: f64| -> Result<Spent, RunError> {
+    let run = |seconds: f64| -> Result<LoadCost, RunError> {
         let scene = Scene {
             duration: Duration::Seconds(seconds),
             sampling: Sampling::Seconds(seconds),
@@ -98,13 +102,13 @@ fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<La
         };
         let begun = cpu_seconds();
         let steps = solver.run(&scene, resolution, &mut ())?.cost.steps;
-        Ok(Spent { steps, seconds, processor: cpu_seconds() - begun })
+        Ok(LoadCost { steps, seconds, processor: cpu_seconds() - begun })
     };
-    Ok(Spent::lap(run(step)?, run(seconds)?))
+    Ok(LoadCost::lap(run(step)?, run(seconds)?))
 }
 
 /// Cost of a run.
-struct Spent {
+struct LoadCost {
     steps: u64,
     /// Simulated time (s).
     seconds: f64,
@@ -112,13 +116,13 @@ struct Spent {
     processor: f64,
 }
 
-impl Spent {
+impl LoadCost {
     /// Computes the difference of a long and a short run. A negative start-up counts as zero.
-    fn lap(short: Self, long: Self) -> Lap {
+    fn lap(short: Self, long: Self) -> TimingDifference {
         let more = long.processor - short.processor;
         let step = more / (long.steps - short.steps) as f64;
         let start_up = (short.processor - short.steps as f64 * step).max(0.0);
-        Lap { start_up, step, second: more / (long.seconds - short.seconds) }
+        TimingDifference { start_up, step, second: more / (long.seconds - short.seconds) }
     }
 }
 
@@ -164,8 +168,9 @@ mod tests {
     /// The start takes 3 ms, and each step of 1 ms takes 20 µs.
     #[test]
     fn start_up_is_told_apart_from_steps() {
-        let spent = |steps: u64| Spent { steps, seconds: 1e-3 * steps as f64, processor: 3e-3 + 20e-6 * steps as f64 };
-        let Lap { start_up, step, second } = Spent::lap(spent(100), spent(1000));
+        let spent =
+            |steps: u64| LoadCost { steps, seconds: 1e-3 * steps as f64, processor: 3e-3 + 20e-6 * steps as f64 };
+        let TimingDifference { start_up, step, second } = LoadCost::lap(spent(100), spent(1000));
         for (found, expected) in [(start_up, 3e-3), (step, 20e-6), (second, 0.02)] {
             assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
         }

@@ -1,15 +1,15 @@
 //! Measures points one at a time, with the repetitions of a target quantity in alternation.
 
-use super::knobs::{self, Turn};
-use crate::clock::{self, Clocked};
+use super::knobs::{self, SweepPoint};
+use crate::clock::{self, TimedResult};
 use crate::result_cache::ResultCache;
-use crate::{Follow, identity};
-use grainbench_harness::run::{Change, Done};
+use crate::{ProgressObserver, identity};
+use grainbench_harness::run::{Change, FinishedRun};
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::statistics::range;
-use grainbench_harness::subject::Subject;
+use grainbench_harness::subject::TargetQuantity;
 use grainbench_reports::WriteError;
-use grainbench_reports::study::point::{Counts, Diagram, Point, Standing, Timing};
+use grainbench_reports::study::point::{Counts, Diagram, Point, PointStatus, Timing};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{RunError, Solver};
@@ -45,7 +45,7 @@ const ROUNDING: f64 = 1e-11;
 
 /// Selection of points.
 #[derive(Clone, Debug, Default)]
-pub struct Wanted {
+pub struct PointSelection {
     /// Solvers to measure; all if empty.
     pub solvers: Vec<String>,
     /// True to include points that take longer than twenty seconds.
@@ -56,7 +56,7 @@ pub struct Wanted {
 
 /// Description of a point before its measurement.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Planned {
+pub struct PointPlan {
     /// Name in the result cache.
     pub name: String,
     /// Solver with its settings.
@@ -69,7 +69,7 @@ pub struct Planned {
 
 /// Point to measure.
 struct Task {
-    turn: Turn,
+    turn: SweepPoint,
     /// Cause of the error that remains at the finest resolution.
     floor: &'static str,
     scene: Arc<Scene>,
@@ -110,7 +110,7 @@ pub struct Meter<'a> {
     /// Cache of finished points.
     pub cache: &'a ResultCache,
     /// Selection of points.
-    pub wanted: Wanted,
+    pub wanted: PointSelection,
     /// Finds solvers by name.
     pub solvers: &'a dyn Solvers,
 }
@@ -118,28 +118,28 @@ pub struct Meter<'a> {
 impl<'a> Meter<'a> {
     /// Returns a meter for the given solvers.
     #[must_use]
-    pub fn new(cache: &'a ResultCache, wanted: Wanted, solvers: &'a dyn Solvers) -> Self {
+    pub fn new(cache: &'a ResultCache, wanted: PointSelection, solvers: &'a dyn Solvers) -> Self {
         Self { program: identity::of_this_program(), cache, wanted, solvers }
     }
 
     /// Returns the number of points of a target quantity.
     #[must_use]
-    pub fn count(&self, subject: &Subject) -> usize {
+    pub fn count(&self, subject: &TargetQuantity) -> usize {
         self.tasks(subject).len()
     }
 
     /// Returns the points of a target quantity in the order of their first measurement.
     #[must_use]
-    pub fn planned(&self, subject: &Subject) -> Vec<Planned> {
+    pub fn planned(&self, subject: &TargetQuantity) -> Vec<PointPlan> {
         let planned = |task: Task| {
             let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
             let once = if task.is_program { PROGRAM * once } else { once };
             let times = if self.wanted.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
             // A repetition lasts at least as long as the clock resolves.
             let seconds = times * once.max(if self.wanted.counts { 0.0 } else { LEAST });
-            let Turn { solver, resolution, knobs, .. } = task.turn;
+            let SweepPoint { solver, resolution, knobs, .. } = task.turn;
             let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
-            Planned { name: task.name, solver, setting, seconds }
+            PointPlan { name: task.name, solver, setting, seconds }
         };
         self.tasks(subject).into_iter().map(planned).collect()
     }
@@ -148,7 +148,7 @@ impl<'a> Meter<'a> {
     ///
     /// # Errors
     /// When a point cannot be stored.
-    pub fn diagram(&self, subject: &Subject, follow: &mut dyn Follow) -> Result<Diagram, WriteError> {
+    pub fn diagram(&self, subject: &TargetQuantity, follow: &mut dyn ProgressObserver) -> Result<Diagram, WriteError> {
         let tasks = self.tasks(subject);
         let points = self.measure(subject, &tasks, follow)?;
         Ok(drawn(subject, &tasks, points))
@@ -156,7 +156,7 @@ impl<'a> Meter<'a> {
 
     /// Returns the diagram of the finished points of a target quantity, without new measurements.
     #[must_use]
-    pub fn finished(&self, subject: &Subject) -> Diagram {
+    pub fn finished(&self, subject: &TargetQuantity) -> Diagram {
         let mut tasks = self.tasks(subject);
         let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
         let mut is_there = points.iter().map(Option::is_some).collect::<Vec<_>>().into_iter();
@@ -171,9 +171,9 @@ impl<'a> Meter<'a> {
     /// When a point cannot be stored.
     pub fn measure_named(
         &self,
-        subject: &Subject,
+        subject: &TargetQuantity,
         wanted: &dyn Fn(&str) -> bool,
-        follow: &mut dyn Follow,
+        follow: &mut dyn ProgressObserver,
     ) -> Result<(), WriteError> {
         let mut tasks = self.tasks(subject);
         tasks.retain(|task| wanted(&task.name));
@@ -183,9 +183,9 @@ impl<'a> Meter<'a> {
     /// Measures the unfinished points of a target quantity one at a time, with repetitions in alternation.
     fn measure(
         &self,
-        subject: &Subject,
+        subject: &TargetQuantity,
         tasks: &[Task],
-        follow: &mut dyn Follow,
+        follow: &mut dyn ProgressObserver,
     ) -> Result<Vec<Option<Point>>, WriteError> {
         let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
         points.iter().flatten().for_each(|_| follow.done(true));
@@ -197,7 +197,7 @@ impl<'a> Meter<'a> {
             follow.now(&format!("{} · {} {}", subject.case.name, task.turn.solver, task.turn.resolution));
             let point = first(subject, task);
             let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
-            if whole < SHORT && point.standing == Standing::Measured && !self.wanted.counts {
+            if whole < SHORT && point.standing == PointStatus::Measured && !self.wanted.counts {
                 let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
                 open.push((at, whole, Point { repetitions, ..point }));
             } else {
@@ -221,7 +221,7 @@ impl<'a> Meter<'a> {
         Ok(points)
     }
 
-    fn tasks(&self, subject: &Subject) -> Vec<Task> {
+    fn tasks(&self, subject: &TargetQuantity) -> Vec<Task> {
         let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
         let strangers = self.solvers.strangers();
         let mut tasks = Vec::new();
@@ -267,7 +267,7 @@ impl<'a> Meter<'a> {
 }
 
 /// Returns the diagram of measured points.
-fn drawn(subject: &Subject, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
+fn drawn(subject: &TargetQuantity, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
     let mut points: Vec<Point> = points.into_iter().flatten().collect();
     mark_floors(tasks, &mut points);
     Diagram {
@@ -283,7 +283,7 @@ fn drawn(subject: &Subject, tasks: &[Task], points: Vec<Option<Point>>) -> Diagr
 /// before and after.
 fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
     let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
-    let Clocked { done: record, cpu, wall: whole, reference } = clocked;
+    let TimedResult { done: record, cpu, wall: whole, reference } = clocked;
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
     // A failed run has no record: all of its time counts as loop time.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
@@ -312,7 +312,7 @@ fn repeated(task: &Task, whole: f64) -> Option<Timing> {
 }
 
 /// Measures the first run and its error.
-fn first(subject: &Subject, task: &Task) -> Point {
+fn first(subject: &TargetQuantity, task: &Task) -> Point {
     let (timing, record) = timed(task, AT_FIRST);
     let mut point = Point {
         case: subject.case.name.to_owned(),
@@ -322,7 +322,7 @@ fn first(subject: &Subject, task: &Task) -> Point {
         knobs: task.turn.knobs.clone(),
         quantity: subject.quantity.clone(),
         unit: subject.unit.to_owned(),
-        standing: Standing::Failed,
+        standing: PointStatus::Failed,
         value: None,
         expected: None,
         error: None,
@@ -338,26 +338,26 @@ fn first(subject: &Subject, task: &Task) -> Point {
     match record {
         Ok(record) => {
             point.counts = Counts::from(&record.cost);
-            let done = Done::new(Arc::clone(&task.scene), Arc::new(record));
+            let done = FinishedRun::new(Arc::clone(&task.scene), Arc::new(record));
             match (subject.measure)(&[done]) {
                 Ok(measured) if measured.error().is_finite() => {
-                    point.standing = Standing::Measured;
+                    point.standing = PointStatus::Measured;
                     point.value = Some(measured.value);
                     point.expected = measured.expected.value();
                     point.error = Some(measured.error().abs());
                 }
                 Ok(_) => point.detail = Some("its error is not finite".to_owned()),
                 Err(missing) => {
-                    point.standing = Standing::Unsupported;
+                    point.standing = PointStatus::Unsupported;
                     point.detail = Some(missing.to_string());
                 }
             }
         }
         Err(error) => {
             point.standing = match &error {
-                RunError::Unsupported { .. } => Standing::Unsupported,
-                RunError::NotAvailable { .. } => Standing::NotAvailable,
-                _ => Standing::Failed,
+                RunError::Unsupported { .. } => PointStatus::Unsupported,
+                RunError::NotAvailable { .. } => PointStatus::NotAvailable,
+                _ => PointStatus::Failed,
             };
             point.detail = Some(error.to_string());
         }
@@ -392,7 +392,7 @@ fn summarise(point: &mut Point) {
 fn mark_floors(tasks: &[Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {
-        if let (Some(fineness), Standing::Measured) = (task.turn.sequence, points[at].standing) {
+        if let (Some(fineness), PointStatus::Measured) = (task.turn.sequence, points[at].standing) {
             let line = (task.turn.solver.clone(), task.turn.knobs.clone());
             sequences.entry(line).or_default().push((fineness, at));
         }

@@ -6,11 +6,11 @@
 //! points in a cell and with sixteen: `t = a·points + b·nodes` in both. A timing is the processor time of a long run
 //! less that of a short run. All runs take turns.
 
-use crate::Follow;
+use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
 use grainbench_lanes::{Processor, Quad, probe};
-use grainbench_reports::study::step::{Model, Price, Probe};
+use grainbench_reports::study::step::{Model, Probe, TaskCost};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Cost;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
@@ -51,13 +51,13 @@ pub fn pieces(rounds: u32) -> u64 {
 ///
 /// # Errors
 /// When a solver cannot run its scene.
-pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl Follow) -> Result<Model, RunError> {
+pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObserver) -> Result<Model, RunError> {
     let families =
         families().map_err(|error| RunError::Resolution { solver: "dem".to_owned(), reason: error.to_string() })?;
     let mut probe = Probe { streamed: Vec::new(), computed: Vec::new() };
-    let mut prices: Vec<Price> = Vec::new();
+    let mut prices: Vec<TaskCost> = Vec::new();
     for family in &families {
-        prices.extend(family.pieces.iter().map(|(piece, found)| Price {
+        prices.extend(family.pieces.iter().map(|(piece, found)| TaskCost {
             solver: family.solver.to_owned(),
             piece: (*piece).to_owned(),
             found: (*found).to_owned(),

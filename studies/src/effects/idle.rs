@@ -17,7 +17,7 @@ const MOST: usize = 15;
 
 /// Result of a trial with a neutral value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Idle {
+pub struct NeutralTrial {
     /// True if all numbers are equal; the sign of zero is ignored.
     pub same: bool,
     /// Ratio of particle-steps and contact evaluations with the effect to those without it.
@@ -47,7 +47,7 @@ pub fn try_idly(
     resolution: &Resolution,
     effect: Effect,
     patience: Duration,
-) -> Result<Option<Idle>, RunError> {
+) -> Result<Option<NeutralTrial>, RunError> {
     let mut plain = scene.clone();
     if let Ok((time_step, steps)) = resolution.steps(scene) {
         let most = STEPS.min(PARTICLE_STEPS / scene.grains.len().max(1) as u64).max(1);
@@ -81,7 +81,7 @@ pub fn try_idly(
     timed.sort_by(f64::total_cmp);
     let [Some(without), Some(with)] = records else { return Ok(None) };
     let work = |record: &Record| record.cost.work() as f64;
-    Ok(Some(Idle {
+    Ok(Some(NeutralTrial {
         same: same(&without, &with),
         counts: work(&with) / work(&without).max(1.0),
         time: timed.get(timed.len() / 2).copied().filter(|_| timed.len() == ratios.len()),

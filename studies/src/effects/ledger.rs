@@ -1,15 +1,15 @@
 //! Effects study of a case: the influence of each physical effect on its claims.
 
-use super::idle::{Idle, ratio_of_times, try_idly};
+use super::idle::{NeutralTrial, ratio_of_times, try_idly};
 use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
-use grainbench_harness::run::{Done, Run, Set, Standing};
+use grainbench_harness::run::{ExpectedOutcome, FinishedRun, Run, Set};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::WriteError;
-use grainbench_reports::study::effects::{Entry, Shift, Worth};
+use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Duration::Seconds;
@@ -26,7 +26,7 @@ const STEPS_OF_A_GRID: u64 = 200;
 
 /// An effect in one scene of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct SceneEffect {
     /// Variant of the scene.
     pub variant: &'static str,
     /// The effect.
@@ -42,7 +42,7 @@ pub struct Ledger {
     runner: Runner,
     claims: Vec<Claim>,
     /// Runs without an effect, by effect and run.
-    without: BTreeMap<(Effect, String), Result<Done, RunError>>,
+    without: BTreeMap<(Effect, String), Result<FinishedRun, RunError>>,
 }
 
 impl Ledger {
@@ -53,15 +53,15 @@ impl Ledger {
         let mut claims = (case.claims)();
         claims.retain(|claim| {
             let is_short = |run: &Run| run.set < Set::Long && run.reading.is_none();
-            claim.standing() == Standing::Passes && claim.runs.iter().all(is_short) && runner.is_available(claim)
+            claim.standing() == ExpectedOutcome::Passes && claim.runs.iter().all(is_short) && runner.is_available(claim)
         });
         Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
 
     /// Returns each variant used by the claims with each effect, on or off.
     #[must_use]
-    pub fn pieces(&self) -> Vec<Piece> {
-        let mut pieces: Vec<Piece> = Vec::new();
+    pub fn pieces(&self) -> Vec<SceneEffect> {
+        let mut pieces: Vec<SceneEffect> = Vec::new();
         for run in self.claims.iter().flat_map(|claim| &claim.runs) {
             let Ok(scene) = self.runner.scene(run) else { continue };
             for effect in Effect::switches() {
@@ -69,7 +69,7 @@ impl Ledger {
                 match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
                     // A claim's change of the scene may turn on an effect that is off in the unchanged scene.
                     Some(piece) => piece.key = piece.key.take().or(key),
-                    None => pieces.push(Piece { variant: run.variant, effect, key }),
+                    None => pieces.push(SceneEffect { variant: run.variant, effect, key }),
                 }
             }
         }
@@ -85,7 +85,7 @@ impl Ledger {
     pub fn entry(
         &mut self,
         program: &str,
-        piece: &Piece,
+        piece: &SceneEffect,
         cache: &ResultCache,
     ) -> Result<(Option<Entry>, bool), WriteError> {
         let name = identity::of_words(program, &["effect", self.case.name, piece.variant, piece.effect.word()]);
@@ -125,14 +125,14 @@ impl Ledger {
             .any(|run| knows(run, effect) && self.runner.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
     }
 
-    fn blank(&self, piece: &Piece) -> Entry {
+    fn blank(&self, piece: &SceneEffect) -> Entry {
         Entry {
             case: self.case.name.to_owned(),
             variant: piece.variant.to_owned(),
             effect: piece.effect.word().to_owned(),
             on: piece.key.is_some(),
             key: piece.key.clone().unwrap_or_default(),
-            worth: Worth::Untold,
+            worth: EffectResult::Untold,
             shifts: Vec::new(),
             counts: None,
             time: None,
@@ -141,7 +141,7 @@ impl Ledger {
     }
 
     /// Evaluates each claim of the variant without the effect.
-    fn switched_off(&mut self, piece: &Piece) -> Entry {
+    fn switched_off(&mut self, piece: &SceneEffect) -> Entry {
         let mut entry = self.blank(piece);
         let claims: Vec<Claim> = self
             .claims
@@ -154,9 +154,9 @@ impl Ledger {
         }
         let red = entry.shifts.iter().any(|shift| shift.red);
         entry.worth = match (red, entry.shifts.is_empty()) {
-            (true, _) => Worth::Needed,
-            (false, false) => Worth::NotWorthSimulating,
-            (false, true) => Worth::Untold,
+            (true, _) => EffectResult::Needed,
+            (false, false) => EffectResult::NotWorthSimulating,
+            (false, true) => EffectResult::Untold,
         };
         if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_judged(run)) {
             let with = self.runner.run(run);
@@ -187,7 +187,8 @@ impl Ledger {
 
     /// Returns the error of a claim without an effect and its limit, or `None` if it cannot be run or measured.
     fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
-        let done: Result<Vec<Done>, RunError> = claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
+        let done: Result<Vec<FinishedRun>, RunError> =
+            claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
         let done = done.ok()?;
         let error = (claim.measure)(&done).ok().map(|measured| measured.error()).filter(|error| error.is_finite())?;
         Some((error, self.runner.allowed(claim, &done)?.0))
@@ -196,7 +197,7 @@ impl Ledger {
     /// Runs the scene without the effect. The expectation still uses the unchanged scene.
     ///
     /// Reference runs keep the effect.
-    fn run_without(&mut self, run: &Run, effect: Effect) -> Result<Done, RunError> {
+    fn run_without(&mut self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
         if !self.is_judged(run) {
             return self.runner.run(run);
         }
@@ -209,7 +210,7 @@ impl Ledger {
         done
     }
 
-    fn simulate_without(&self, run: &Run, effect: Effect) -> Result<Done, RunError> {
+    fn simulate_without(&self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
         let scene = self.runner.scene(run)?;
         let mut given = (*scene).clone();
         effect.switch_off(&mut given);
@@ -217,7 +218,7 @@ impl Ledger {
             || RunError::Unsupported { solver: run.solver.to_owned(), reason: "there is no such solver".to_owned() };
         let solver = self.solvers.find(run.solver).ok_or_else(unknown)?;
         let record = solver.run(&given, &run.resolution, &mut ())?;
-        Ok(Done::new(scene, Arc::new(record)))
+        Ok(FinishedRun::new(scene, Arc::new(record)))
     }
 
     /// Returns true for a run of our solver that is not a reference run.
@@ -228,12 +229,12 @@ impl Ledger {
     /// Tests an absent effect with the first run of the variant for each kind of solver that can leave the effect out.
     ///
     /// The effect is inert if it is inert for all of these solvers. Counts and times are from the first solver.
-    fn idle(&self, piece: &Piece) -> Option<Entry> {
-        let mut entry = Entry { worth: Worth::Inert, ..self.blank(piece) };
+    fn idle(&self, piece: &SceneEffect) -> Option<Entry> {
+        let mut entry = Entry { worth: EffectResult::Inert, ..self.blank(piece) };
         for &method in piece.effect.left_out_by() {
             let Some((solver, idle)) = self.idle_with(piece, method) else { continue };
             if !idle.same {
-                entry.worth = Worth::NotInert;
+                entry.worth = EffectResult::NotInert;
             }
             entry.counts.get_or_insert(idle.counts);
             entry.time = entry.time.or(idle.time);
@@ -242,7 +243,7 @@ impl Ledger {
         (!entry.tried.is_empty()).then_some(entry)
     }
 
-    fn idle_with(&self, piece: &Piece, method: Method) -> Option<(&'static str, Idle)> {
+    fn idle_with(&self, piece: &SceneEffect, method: Method) -> Option<(&'static str, NeutralTrial)> {
         let is_ours = |run: &&Run| {
             self.is_judged(run) && run.variant == piece.variant && Method::from_name(run.solver) == Some(method)
         };

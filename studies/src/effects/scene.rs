@@ -1,7 +1,7 @@
 //! Effects study of a scene without claims: the change of its probes without an effect, and the cost of the effect.
 
 use super::idle::{ratio_of_times, try_idly};
-use grainbench_reports::study::effects::{Entry, Shift, Worth};
+use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -12,7 +12,7 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Scene, solver and resolution of an effects study.
-pub struct Asked<'a> {
+pub struct StudyInput<'a> {
     /// Name of the scene.
     pub name: String,
     /// The scene.
@@ -25,7 +25,7 @@ pub struct Asked<'a> {
     pub matters: f64,
 }
 
-impl Asked<'_> {
+impl StudyInput<'_> {
     /// Runs the unchanged scene.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl Asked<'_> {
             effect: effect.word().to_owned(),
             on: key.is_some(),
             key: key.unwrap_or_default(),
-            worth: Worth::Untold,
+            worth: EffectResult::Untold,
             shifts: Vec::new(),
             counts: None,
             time: None,
@@ -86,9 +86,9 @@ impl Asked<'_> {
             });
         }
         entry.worth = match (entry.shifts.iter().any(|shift| shift.red), entry.shifts.is_empty()) {
-            (true, _) => Worth::Needed,
-            (false, false) => Worth::NotWorthSimulating,
-            (false, true) => Worth::Untold,
+            (true, _) => EffectResult::Needed,
+            (false, false) => EffectResult::NotWorthSimulating,
+            (false, true) => EffectResult::Untold,
         };
         if let Some(record) = record {
             entry.counts = Some(whole.cost.work() as f64 / (record.cost.work() as f64).max(1.0));
@@ -98,7 +98,7 @@ impl Asked<'_> {
 
     fn idly(&self, effect: Effect, entry: &mut Entry) -> Option<()> {
         let idle = try_idly(self.solver, self.scene, &self.resolution, effect, PATIENCE).ok()??;
-        entry.worth = if idle.same { Worth::Inert } else { Worth::NotInert };
+        entry.worth = if idle.same { EffectResult::Inert } else { EffectResult::NotInert };
         (entry.counts, entry.time) = (Some(idle.counts), idle.time);
         entry.tried.push(self.solver.name());
         Some(())
@@ -140,12 +140,12 @@ mod tests {
         [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
         [output]\nevery = 0.01\n[probes]\ndisc = { grain = 'disc' }\n";
 
-    fn worth(effect: Effect, matters: f64) -> Worth {
+    fn worth(effect: Effect, matters: f64) -> EffectResult {
         let source = SceneSource::from_text("rolls", Path::new(""), ROLLS);
         let scene = source.scene(&|_| Err("this scene reads no file".to_owned())).unwrap();
         let solver = Dem::new(Convention::DEFAULT);
         let resolution = Resolution::CriticalFraction(0.1);
-        let asked = Asked { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };
+        let asked = StudyInput { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };
         let whole = asked.whole().unwrap();
         asked.entry(&whole, effect).unwrap().worth
     }
@@ -153,9 +153,9 @@ mod tests {
     /// Without friction the disc slides half as far again and does not turn.
     #[test]
     fn what_a_scene_needs_is_told_from_what_it_does_not() {
-        assert_eq!(worth(Effect::Friction, 0.01), Worth::Needed);
-        assert_eq!(worth(Effect::Cohesion, 0.01), Worth::Inert);
+        assert_eq!(worth(Effect::Friction, 0.01), EffectResult::Needed);
+        assert_eq!(worth(Effect::Cohesion, 0.01), EffectResult::Inert);
         // With a very large limit, no effect is needed.
-        assert_eq!(worth(Effect::Friction, 1e3), Worth::NotWorthSimulating);
+        assert_eq!(worth(Effect::Friction, 1e3), EffectResult::NotWorthSimulating);
     }
 }

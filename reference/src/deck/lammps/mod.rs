@@ -13,7 +13,7 @@ use crate::deck::logged::{Sums, logged};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
 use crate::deck::program::Peer;
 use crate::deck::{
-    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_pairs,
+    COLUMNS, CONTACTS, DeckFiles, END, END_CONTACTS, SAMPLES, Stepping, asks_for_contacts_at, asks_for_pairs,
     asks_for_wall, heading, thermo,
 };
 use crate::observer::Names;
@@ -36,12 +36,12 @@ impl Peer for Lammps {
         "lmp"
     }
 
-    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
         files(scene, stepping)
     }
 }
 
-fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     passing::refuse(scene)?;
     one_inertia(scene, inertia_factor(scene))?;
     if let Some(what) = scene.round_wall().filter(|_| scene.laws.iter().flatten().any(|law| law.is_hertz())) {
@@ -56,7 +56,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let printed = thermo(&commands, &logged, stepping);
     let names = names(scene);
     let input = input(scene, stepping, &printed, &names)?;
-    Ok(Written { files: vec![("in.lammps".to_owned(), input), ("data.grains".to_owned(), data)], logged, names })
+    Ok(DeckFiles { files: vec![("in.lammps".to_owned(), input), ("data.grains".to_owned(), data)], logged, names })
 }
 
 /// Returns the names of the columns with the forces that probes request. In `fix wall/gran … contacts`, the force

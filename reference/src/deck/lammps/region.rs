@@ -12,7 +12,7 @@ use crate::deck::Stepping;
 use crate::deck::outline::AXES;
 
 /// Region before its rotation, and its rotation at the start of the run.
-struct Placed {
+struct PlacedRegion {
     shape: String,
     /// Point on the axis of rotation at the start (m).
     centre: Vector3<f64>,
@@ -24,7 +24,7 @@ struct Placed {
 /// added to the motion.
 pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[String; 3]) -> Result<String, String> {
     let motion = &wall.motion;
-    let Placed { shape, centre, rotation } = placed(wall)?;
+    let PlacedRegion { shape, centre, rotation } = placed(wall)?;
     let (mut lines, mut moves) = (String::new(), String::new());
     let moves_along = motion.phases.iter().any(|phase| phase.velocity != Vector3::zeros());
     if moves_along || !motion.functions.is_empty() || ways.iter().any(|way| !way.is_empty()) {
@@ -57,10 +57,10 @@ pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[Stri
     Ok(lines)
 }
 
-fn placed(wall: &Wall) -> Result<Placed, String> {
+fn placed(wall: &Wall) -> Result<PlacedRegion, String> {
     let motion = &wall.motion;
     match wall.shape {
-        WallShape::Plane { point: p, normal: n } => Ok(Placed {
+        WallShape::Plane { point: p, normal: n } => Ok(PlacedRegion {
             shape: format!("plane {:?} {:?} {:?} {:?} {:?} {:?} side in", p.x, p.y, p.z, n.x, n.y, n.z),
             centre: motion.centre,
             rotation: Vector3::zeros(),
@@ -74,7 +74,7 @@ fn placed(wall: &Wall) -> Result<Placed, String> {
             let shape = round(axis, radii).ok_or_else(|| {
                 format!("wall `{}` is round about an axis that is not x, y or z: LAMMPS has no other", wall.name)
             })?;
-            Ok(Placed { shape, centre: motion.centre, rotation: Vector3::zeros() })
+            Ok(PlacedRegion { shape, centre: motion.centre, rotation: Vector3::zeros() })
         }
         WallShape::Mesh(_) => Err(format!("wall `{}` is a mesh of triangles: no region of LAMMPS is one", wall.name)),
     }
@@ -95,12 +95,12 @@ fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
 }
 
 /// Returns a block along the axes and its rotation about the centre of rotation, which give the rectangle.
-fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Result<Placed, String> {
+fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Result<PlacedRegion, String> {
     let along_axes = |edge: Vector3<f64>| edge.iter().filter(|part| **part != 0.0).count() == 1;
     let spin = wall.motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
     let centre = if spin.is_some() { wall.motion.centre } else { corner };
     if along_axes(u) && along_axes(v) {
-        return Ok(Placed { shape: block(corner, corner + u + v), centre, rotation: Vector3::zeros() });
+        return Ok(PlacedRegion { shape: block(corner, corner + u + v), centre, rotation: Vector3::zeros() });
     }
     // The second edge of a segment is along z and stays there.
     let axes = if along_axes(v) && v.z != 0.0 {
@@ -122,7 +122,7 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     let flat = if along_axes(v) && v.z != 0.0 { 1 } else { 2 };
     high[flat] = low[flat];
     (low, high) = (low.inf(&high), low.sup(&high));
-    Ok(Placed { shape: block(low, high), centre, rotation })
+    Ok(PlacedRegion { shape: block(low, high), centre, rotation })
 }
 
 /// Returns a block between two corners. A grain outside touches its nearest point.

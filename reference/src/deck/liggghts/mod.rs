@@ -23,7 +23,7 @@ use crate::deck::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
 use crate::deck::program::Peer;
 use crate::deck::schedule::{Rates, changes, rates_from};
 use crate::deck::{
-    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, Stepping, Written, asks_for_contacts_at, asks_for_force,
+    COLUMNS, CONTACTS, DeckFiles, END, END_CONTACTS, SAMPLES, Stepping, asks_for_contacts_at, asks_for_force,
     asks_for_pairs, asks_for_wall, heading, thermo,
 };
 use crate::observer::Names;
@@ -53,12 +53,12 @@ impl Peer for Liggghts {
         "liggghts"
     }
 
-    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+    fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
         files(scene, stepping)
     }
 }
 
-fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
+fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     passing::refuse(scene)?;
     if let Some(what) = scene.round_wall() {
         return Err(format!("{what}: LIGGGHTS has cylinders without ends, and of a mesh flat triangles"));
@@ -102,7 +102,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<Written, String> {
     let input = input(scene, stepping, flat, &meshes, &printed, &names)?;
     let mut files = vec![("in.liggghts".to_owned(), input), ("data.grains".to_owned(), data)];
     files.extend(meshes.iter().map(|mesh| (format!("wall-{}.stl", mesh.number), stl(&mesh.triangles))));
-    Ok(Written { files, logged, names })
+    Ok(DeckFiles { files, logged, names })
 }
 
 /// Returns the names of the columns with the forces that probes request. Meshes do not write forces per grain.

@@ -1,7 +1,7 @@
 //! Dumps of LAMMPS and LIGGGHTS.
 
 use crate::read::dump::DumpReader;
-use crate::read::format::{Format, Holds, Moments, ToldBy};
+use crate::read::format::{FileContent, Format, FormatCriterion, Moments};
 use crate::read::line_reader::LineReader;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
@@ -11,9 +11,9 @@ use std::path::Path;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a dump",
-    told_by: ToldBy::Line("ITEM:"),
+    told_by: FormatCriterion::Line("ITEM:"),
     numbering: Numbering::Steps,
-    holds: |path| Ok(Holds::Course(first_step(path))),
+    holds: |path| Ok(FileContent::Course(first_step(path))),
     open: |path, most_rows| Ok(Box::new(DumpReader::open(path)?.at_most(most_rows))),
 };
 

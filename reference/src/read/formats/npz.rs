@@ -1,21 +1,21 @@
 //! Arrays of NumPy.
 
-use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
+use crate::read::format::{FileContent, Format, FormatCriterion, IndexedSnapshots, check_grains};
 use crate::read::npz::{MARK, read_course};
 use crate::read::snapshot::Numbering;
 
 pub(crate) static FORMAT: Format = Format {
     words: "arrays of NumPy's",
     // Other archives are refused when they are read as text.
-    told_by: ToldBy::Beginning(|beginning| {
+    told_by: FormatCriterion::Beginning(|beginning| {
         beginning.bytes.starts_with(MARK)
             && beginning.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
     }),
     numbering: Numbering::Steps,
-    holds: |_| Ok(Holds::Course(None)),
+    holds: |_| Ok(FileContent::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;
         check_grains(course.name(), course.grains(), most_rows)?;
-        Ok(ByPlace::boxed(path, move |place| Ok(course.snapshot(place))))
+        Ok(IndexedSnapshots::boxed(path, move |place| Ok(course.snapshot(place))))
     },
 };

@@ -1,17 +1,17 @@
 //! VTK points in HDF5 files.
 
-use crate::read::format::{ByPlace, Format, Holds, ToldBy, check_grains};
+use crate::read::format::{FileContent, Format, FormatCriterion, IndexedSnapshots, check_grains};
 use crate::read::snapshot::Numbering;
 use crate::read::vtk;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a file of VTK's",
-    told_by: ToldBy::Beginning(|beginning| beginning.bytes.starts_with(vtk::MARK)),
+    told_by: FormatCriterion::Beginning(|beginning| beginning.bytes.starts_with(vtk::MARK)),
     numbering: Numbering::Files,
-    holds: |path| Ok(if vtk::has_steps(path)? { Holds::Course(None) } else { Holds::Moment }),
+    holds: |path| Ok(if vtk::has_steps(path)? { FileContent::Course(None) } else { FileContent::Moment }),
     open: |path, most_rows| {
         let moments = vtk::read_moments(path)?;
         check_grains(moments.name(), moments.grains(), most_rows)?;
-        Ok(ByPlace::boxed(path, move |place| moments.snapshot(place)))
+        Ok(IndexedSnapshots::boxed(path, move |place| moments.snapshot(place)))
     },
 };

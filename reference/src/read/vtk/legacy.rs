@@ -15,7 +15,7 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
 
 /// Entities that the arrays of a section belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Of {
+enum ArrayEntities {
     /// Whole data set.
     All,
     Points,
@@ -49,13 +49,13 @@ impl<'b> Reader<'b> {
 
     fn body(&mut self) -> Result<Points, ReadError> {
         let (mut positions, mut arrays, mut time) = (None, Vec::new(), None);
-        let (mut entities_of, mut cells) = (Of::All, 0);
+        let (mut entities_of, mut cells) = (ArrayEntities::All, 0);
         let mut points = 0;
         while let Some(words) = self.bytes.next_words() {
             let here = self.bytes;
             self.words();
             let wrong = |expected: &str| here.error(expected);
-            let entities = if entities_of == Of::Cells { cells } else { points };
+            let entities = if entities_of == ArrayEntities::Cells { cells } else { points };
             match words[..] {
                 ["DATASET", "POLYDATA" | "UNSTRUCTURED_GRID"] => {}
                 ["DATASET", ..] => return Err(wrong("`DATASET POLYDATA` or `DATASET UNSTRUCTURED_GRID`")),
@@ -71,12 +71,12 @@ impl<'b> Reader<'b> {
                     self.array("types", "int", 1, number(count, &here)?, &here)?;
                 }
                 ["POINT_DATA", count] => {
-                    entities_of = Of::Points;
+                    entities_of = ArrayEntities::Points;
                     if number(count, &here)? != points {
                         return Err(wrong(&format!("`POINT_DATA {points}`, for there are so many points")));
                     }
                 }
-                ["CELL_DATA", count] => (entities_of, cells) = (Of::Cells, number(count, &here)?),
+                ["CELL_DATA", count] => (entities_of, cells) = (ArrayEntities::Cells, number(count, &here)?),
                 ["SCALARS", name, kind, ref rest @ ..] => {
                     let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
                     if matches!(self.bytes.next_words().as_deref(), Some(["LOOKUP_TABLE", _])) {
@@ -119,7 +119,9 @@ impl<'b> Reader<'b> {
                         self.words();
                         let (components, tuples) = (number(components, &here)?, number(tuples, &here)?);
                         let array = self.array(name, kind, components, tuples, &here)?;
-                        if entities_of == Of::All && ["time", "timevalue"].contains(&name.to_lowercase().as_str()) {
+                        if entities_of == ArrayEntities::All
+                            && ["time", "timevalue"].contains(&name.to_lowercase().as_str())
+                        {
                             time = array.numbers.first().copied();
                         }
                         keep(&mut arrays, entities_of, array);
@@ -177,8 +179,8 @@ impl<'b> Reader<'b> {
 }
 
 /// Stores an array if it belongs to points.
-fn keep(arrays: &mut Vec<Array>, entities_of: Of, array: Array) {
-    if entities_of == Of::Points {
+fn keep(arrays: &mut Vec<Array>, entities_of: ArrayEntities, array: Array) {
+    if entities_of == ArrayEntities::Points {
         arrays.push(array);
     }
 }

@@ -15,7 +15,7 @@ pub(crate) use collection::read_collection;
 pub(crate) use hdf::{MARK, has_steps, read_moments};
 pub(crate) use points::{component, is_id};
 
-use super::decoding::{Decoded, decoded};
+use super::decoding::{InputContent, decoded};
 use super::read_error::ReadError;
 use super::snapshot::DumpSnapshot;
 use bytes::Bytes;
@@ -75,8 +75,8 @@ fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.to_string_lossy();
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
     let reader = match decoded(BufReader::new(file)).map_err(|error| ReadError::reading(&name, 1, error))? {
-        Decoded::Text(reader) => reader,
-        Decoded::Unreadable(found) => return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found)),
+        InputContent::Text(reader) => reader,
+        InputContent::Unreadable(found) => return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found)),
     };
     let mut bytes = Vec::new();
     reader.take(MOST + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(&name, 1, error))?;

@@ -35,13 +35,13 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
 
 /// Data after the XML part.
 #[derive(Clone, Copy)]
-struct Appended<'b> {
+struct AppendedData<'b> {
     /// Bytes after the underscore.
     data: &'b [u8],
     is_text: bool,
 }
 
-fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<Appended<'b>, ReadError> {
+fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<AppendedData<'b>, ReadError> {
     let all = &bytes.all()[cut..];
     let fault = |expected: &str, found: &str| bytes.error_at(cut, expected, found);
     let head = memchr::memchr(b'>', all).ok_or_else(|| fault("`<AppendedData …>`", "the end of the file"))?;
@@ -49,11 +49,11 @@ fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<Appended<'b>, ReadError
     let start = memchr::memchr(b'_', &all[head..]).ok_or_else(|| fault("`_` before the data", "none"))?;
     let end = memchr::memmem::rfind(all, b"</AppendedData>");
     let end = end.ok_or_else(|| bytes.error_at(usize::MAX, "`</AppendedData>`", "the end of the file"))?;
-    Ok(Appended { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
+    Ok(AppendedData { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
 }
 
 /// Attributes of an array from its tag.
-struct Announced {
+struct ArrayTag {
     name: String,
     kind: Option<Number>,
     kind_word: String,
@@ -65,7 +65,7 @@ struct Announced {
 
 struct File<'b> {
     bytes: Bytes<'b>,
-    appended: Option<Appended<'b>>,
+    appended: Option<AppendedData<'b>>,
     is_big: bool,
     /// True if lengths have eight bytes.
     wide: bool,
@@ -77,7 +77,7 @@ impl File<'_> {
         let all = self.bytes.all();
         let mut reader = Reader::from_reader(all);
         let mut path: Vec<Vec<u8>> = Vec::new();
-        let mut array: Option<(Announced, String)> = None;
+        let mut array: Option<(ArrayTag, String)> = None;
         let (mut positions, mut arrays, mut time): (Option<Array>, Vec<Array>, Option<f64>) = (None, Vec::new(), None);
         let mut pieces = 0_usize;
         loop {
@@ -141,7 +141,7 @@ impl File<'_> {
     fn open(
         &mut self,
         tag: &BytesStart<'_>,
-        array: &mut Option<(Announced, String)>,
+        array: &mut Option<(ArrayTag, String)>,
         at: usize,
     ) -> Result<(), ReadError> {
         let value = |key: &str| {
@@ -169,7 +169,7 @@ impl File<'_> {
                         .map_err(|_| self.bytes.error_at(at, format!("a whole number in `{key}`"), quoted(&text))),
                 };
                 let kind_word = value("type").unwrap_or_default();
-                let announced = Announced {
+                let announced = ArrayTag {
                     name: value("Name").unwrap_or_default(),
                     kind: Number::of_xml(&kind_word),
                     kind_word,
@@ -190,7 +190,7 @@ impl File<'_> {
         &self,
         parent: &[u8],
         pieces: usize,
-        array: Option<(Announced, String)>,
+        array: Option<(ArrayTag, String)>,
         positions: &mut Option<Array>,
         arrays: &mut Vec<Array>,
         time: &mut Option<f64>,
@@ -234,8 +234,8 @@ impl File<'_> {
         Ok(())
     }
 
-    fn numbers(&self, announced: &Announced, text: &str) -> Result<Array, ReadError> {
-        let Announced { name, components, at, .. } = announced;
+    fn numbers(&self, announced: &ArrayTag, text: &str) -> Result<Array, ReadError> {
+        let ArrayTag { name, components, at, .. } = announced;
         let fault = |expected: &str, found: String| {
             self.bytes.error_at(*at, format!("{expected} in the array {}", quoted(name)), found)
         };

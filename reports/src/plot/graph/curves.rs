@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use grainbench_harness::figure::Stroke;
 use maud::{Markup, html};
 
-use super::{Look, Place, px};
+use super::{CurveStyle, Place, px};
 use crate::plot::palette::{self, Marker};
 
 /// Number of points above which a curve is thinned to the resolution of the drawing.
@@ -34,7 +34,7 @@ fn path(places: &[Place]) -> String {
 }
 
 /// Draws a curve from its pieces.
-pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup {
+pub(super) fn draw(stroke: Stroke, look: &CurveStyle, pieces: &[Vec<Place>]) -> Markup {
     let all = || pieces.iter().flatten().copied();
     let joined = matches!(stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
     let line: String = if joined {
@@ -65,19 +65,19 @@ pub(super) fn draw(stroke: Stroke, look: &Look, pieces: &[Vec<Place>]) -> Markup
 }
 
 /// Draws pale bars; each pair of places gives the two ends of a bar.
-fn bars(ends: &[Place], look: &Look) -> Markup {
+fn bars(ends: &[Place], look: &CurveStyle) -> Markup {
     let bars: String = ends.chunks_exact(2).map(path).collect();
     html! { path transform="scale(.1)" d=(bars) fill="none" stroke=(look.colour) stroke-opacity=".3" stroke-width="50" {} }
 }
 
 /// Draws crosses for failed runs.
-fn crosses(places: impl Iterator<Item = Place>, look: &Look) -> Markup {
+fn crosses(places: impl Iterator<Item = Place>, look: &CurveStyle) -> Markup {
     let crosses: String = places.map(|(x, y)| format!("M{} {}l8 8m0 -8l-8 8", px(x - 4.0), px(y - 4.0))).collect();
     html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }
 }
 
 /// Draws markers: filled for measured points, hollow if they only distinguish lines.
-fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
+fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, radius: f64) -> Markup {
     let corners = look.marker.corners();
     if corners.is_empty() {
         return dots(places, look, filled, radius);
@@ -98,7 +98,7 @@ fn marks(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius:
 }
 
 /// Draws round markers as lines of zero length with round ends, which need the fewest characters.
-fn dots(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: f64) -> Markup {
+fn dots(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, radius: f64) -> Markup {
     let dots: String = places.map(|(x, y)| format!("M{} {}h0", px(x), px(y))).collect();
     html! {
         @if !dots.is_empty() {
@@ -111,7 +111,7 @@ fn dots(places: impl Iterator<Item = Place>, look: &Look, filled: bool, radius: 
 }
 
 /// Draws the sample of a curve in a legend, between two places.
-pub(super) fn sample(stroke: Stroke, look: &Look, from: Place, to: Place) -> Markup {
+pub(super) fn sample(stroke: Stroke, look: &CurveStyle, from: Place, to: Place) -> Markup {
     let middle = (0.5 * (from.0 + to.0), from.1);
     html! {
         @match stroke {

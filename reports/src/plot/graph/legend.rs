@@ -3,7 +3,7 @@
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 use maud::{Markup, html};
 
-use super::{LEGEND_LINE, LEGEND_SAMPLE, Look, Panel, TICK, curves, px};
+use super::{CurveStyle, LEGEND_LINE, LEGEND_SAMPLE, Panel, TICK, curves, px};
 use crate::plot::wrap;
 
 /// Returns the labels broken into lines; empty if all labels are empty.
@@ -21,7 +21,7 @@ fn is_told(curve: &Curve) -> bool {
 }
 
 /// Draws the legend to the right of a panel.
-pub(super) fn draw(graph: &Graph, looks: &[Look], legend: &[Vec<String>], panel: &Panel) -> Markup {
+pub(super) fn draw(graph: &Graph, looks: &[CurveStyle], legend: &[Vec<String>], panel: &Panel) -> Markup {
     let labelled: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
     let left = panel.frame.right + 18.0;
     let entries = tops(graph, legend, panel, &labelled);

@@ -30,7 +30,7 @@ type Place = (f64, f64);
 
 /// Style of a curve.
 #[derive(Clone, Copy)]
-struct Look {
+struct CurveStyle {
     colour: &'static str,
     marker: Marker,
     dash: Option<(u32, u32)>,
@@ -114,7 +114,7 @@ impl Form {
 #[must_use]
 pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
     let labelled = graph.curves.iter().zip(looks(&graph.curves)).filter(|(curve, _)| !curve.label.is_empty());
-    let sample = |(curve, look): (&'_ Curve, Look)| {
+    let sample = |(curve, look): (&'_ Curve, CurveStyle)| {
         html! {
             svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
                 (curves::sample(curve.stroke, &look, (2.0, 6.0), (24.0, 6.0)))
@@ -214,27 +214,31 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
 }
 
 /// Returns the style of each curve. Computed curves have the colours of their solvers, dashed curves cycle through shades.
-fn looks(curves: &[Curve]) -> Vec<Look> {
+fn looks(curves: &[Curve]) -> Vec<CurveStyle> {
     let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
     let mut coloured = palette::places(&labels).into_iter();
     let mut dashed = 0;
-    let mut before = Look { colour: palette::colour(0), marker: palette::marker(0), dash: None };
+    let mut before = CurveStyle { colour: palette::colour(0), marker: palette::marker(0), dash: None };
     curves
         .iter()
         .map(|curve| {
             match curve.stroke {
                 Stroke::Beside | Stroke::Failed => return before,
-                Stroke::Bars => return Look { colour: palette::FAINT, ..before },
+                Stroke::Bars => return CurveStyle { colour: palette::FAINT, ..before },
                 _ => {}
             }
             if curve.stroke == Stroke::Dashed {
                 let here = dashed;
                 dashed += 1;
-                Look { colour: palette::shade(here), marker: palette::marker(here), dash: Some(palette::dash(here)) }
+                CurveStyle {
+                    colour: palette::shade(here),
+                    marker: palette::marker(here),
+                    dash: Some(palette::dash(here)),
+                }
             } else {
                 let here = coloured.next().unwrap_or_default();
-                before = Look { colour: palette::colour(here), marker: palette::marker(here), dash: None };
+                before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None };
                 before
             }
         })

@@ -1,16 +1,16 @@
 //! Contact between a grain and a wall, prepared for the chain of stages.
 
-use super::chain::{Answer, Evaluation, Turning, stages};
+use super::chain::{Answer, BodyRotations, Evaluation, stages};
 use super::normal::Normal;
 use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{MEMORY, Memory, Middle, Touch, Turn, stiffness_ratio};
+use super::{ContactInput, ContactRotation, MEMORY, Memory, MidStepNormal, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 
 /// Grain in contact with a wall. The wall is a body of infinite mass with prescribed motion.
-pub(crate) struct AtWall<'a, S: Geometry> {
+pub(crate) struct WallContact<'a, S: Geometry> {
     /// Law between the materials of grain and wall.
     pub(crate) law: &'a Constants<f64>,
     /// Unit normal e from the grain to the wall.
@@ -31,7 +31,7 @@ pub(crate) struct AtWall<'a, S: Geometry> {
     pub(crate) inertia: f64,
 }
 
-impl<S: Geometry> AtWall<'_, S> {
+impl<S: Geometry> WallContact<'_, S> {
     /// Returns the forces and moments at the contact.
     #[inline(always)]
     pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
@@ -45,14 +45,17 @@ impl<S: Geometry> AtWall<'_, S> {
         let velocity_normal = if is_mid_step { middle.normal } else { self.normal };
         let chord = if is_mid_step { middle.chord } else { 1.0 };
         let turns = T::TURNED && S::DIMENSION == 3;
-        let touch = Touch {
+        let touch = ContactInput {
             law: self.law,
             between: self.normal,
             inverse_distance: 1.0,
             normal: self.normal,
             overlap,
             velocity_normal,
-            turn: self.spin.filter(|_| turns).map(|spin| Turn::new(middle.normal, spin + self.wall_spin, elapsed)),
+            turn: self
+                .spin
+                .filter(|_| turns)
+                .map(|spin| ContactRotation::new(middle.normal, spin + self.wall_spin, elapsed)),
             stiffness_ratio: if N::CURVED && T::ACTIVE {
                 stiffness_ratio(1.0 / overlap, self.velocity.dot(middle.normal), elapsed)
             } else {
@@ -64,7 +67,7 @@ impl<S: Geometry> AtWall<'_, S> {
         };
         let arms = [self.radius - overlap * options.arm_reduction, 0.0];
         let rolling = if R::ACTIVE && options.rolls_by_surface { arms[0] / self.distance } else { 1.0 };
-        let turning = self.spin.map(|spin| Turning {
+        let turning = self.spin.map(|spin| BodyRotations {
             surface: spin * (arms[0] * chord),
             relative: spin * rolling - self.wall_spin * options.wall_spin,
             inertia: self.inertia + touch.effective_mass * self.radius * self.radius,
@@ -76,14 +79,14 @@ impl<S: Geometry> AtWall<'_, S> {
     /// a new contact, it is the present normal. This also holds for a contact that continues on another face, more than
     /// a quarter turn away.
     #[inline(always)]
-    fn middle(&self, memory: &mut Memory<f64>) -> Middle<S, f64> {
+    fn middle(&self, memory: &mut Memory<f64>) -> MidStepNormal<S, f64> {
         let remembered = &mut memory[MEMORY - 3..];
         let before = S::Vectors::<f64>::read(remembered);
         self.normal.write(remembered);
         if before.dot(self.normal) > 0.0 {
-            Middle::of_normals(before, self.normal)
+            MidStepNormal::of_normals(before, self.normal)
         } else {
-            Middle::end(self.normal, self.distance)
+            MidStepNormal::end(self.normal, self.distance)
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{MEMORY, Memory, Options, Touch};
+use super::{ContactInput, MEMORY, Memory, Options};
 use crate::geometry::Geometry;
 use grainbench_lanes::Number;
 
@@ -27,7 +27,7 @@ impl Layout {
 }
 
 /// Rotation of two bodies at their contact.
-pub(crate) struct Turning<S: Geometry, X: Number> {
+pub(crate) struct BodyRotations<S: Geometry, X: Number> {
     /// Sum ω₁a₁ + ω₂a₂ with angular velocities ω and lever arms a: the slip velocity due to rotation (m/s).
     pub(crate) surface: S::Spins<X>,
     /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or the rolling velocity of the
@@ -76,9 +76,9 @@ pub(crate) struct Evaluation<'a> {
 /// do not rotate.
 #[inline(always)]
 pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X: Number>(
-    touch: &Touch<'_, S, X>,
+    touch: &ContactInput<'_, S, X>,
     arms: [X; 2],
-    turning: Option<Turning<S, X>>,
+    turning: Option<BodyRotations<S, X>>,
     evaluation: Evaluation<'_>,
     memory: &mut Memory<X>,
 ) -> Answer<S, X> {

@@ -26,7 +26,7 @@ pub(crate) type Memory<X> = [X; MEMORY];
 
 /// Contact between two bodies as input of the stages, or several such contacts at a time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch<'a, S: Geometry, X: Number> {
+pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
     /// Law between the two materials.
     pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m). At a wall, the unit vector `e` from the centre to the wall.
@@ -41,7 +41,7 @@ pub(crate) struct Touch<'a, S: Geometry, X: Number> {
     /// Normal along which velocities are decomposed: in the middle of the step, or `normal`.
     pub(crate) velocity_normal: S::Vectors<X>,
     /// Rotation of the contact over the step; `None` if a convention projects the history.
-    pub(crate) turn: Option<Turn<S, X>>,
+    pub(crate) turn: Option<ContactRotation<S, X>>,
     /// Ratio of the tangential stiffness at the start of the step to that at its end.
     pub(crate) stiffness_ratio: X,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
@@ -54,14 +54,14 @@ pub(crate) struct Touch<'a, S: Geometry, X: Number> {
 
 /// Rotation of a contact over a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn<S: Geometry, X: Number> {
+pub(crate) struct ContactRotation<S: Geometry, X: Number> {
     /// Unit normal in the middle of the step.
     pub(crate) middle: S::Vectors<X>,
     /// Tangent of half the rotation angle about the normal.
     pub(crate) half_twist: X,
 }
 
-impl<S: Geometry, X: Number> Turn<S, X> {
+impl<S: Geometry, X: Number> ContactRotation<S, X> {
     /// Returns the rotation of a contact in a step of `elapsed` (s), from its middle normal and the sum of the spins of
     /// both bodies (rad/s). About the normal, the contact rotates with the mean of both spins.
     #[inline(always)]
@@ -72,7 +72,7 @@ impl<S: Geometry, X: Number> Turn<S, X> {
 
 /// Normal of a contact in the middle of a step in which it rotates by an angle θ.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Middle<S: Geometry, X: Number> {
+pub(crate) struct MidStepNormal<S: Geometry, X: Number> {
     /// Unit normal in the middle of the step.
     pub(crate) normal: S::Vectors<X>,
     /// Ratio of chord to arc, sin(θ/2)/(θ/2). Centres move along chords and surfaces rotate along arcs, so velocities
@@ -80,7 +80,7 @@ pub(crate) struct Middle<S: Geometry, X: Number> {
     pub(crate) chord: X,
 }
 
-impl<S: Geometry, X: Number> Middle<S, X> {
+impl<S: Geometry, X: Number> MidStepNormal<S, X> {
     /// Returns the normal at the end of the step, for conventions that use it and for new contacts.
     #[inline(always)]
     pub(crate) fn end(normal: S::Vectors<X>, like: X) -> Self {

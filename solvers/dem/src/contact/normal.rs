@@ -1,6 +1,6 @@
 //! First stage: the normal force, and the stiffness that the other stages need.
 
-use super::{Options, Touch};
+use super::{ContactInput, Options};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
@@ -22,19 +22,19 @@ pub(crate) trait Normal: Copy + Send + Sync + 'static {
     const CURVED: bool;
 
     /// Returns the normal force.
-    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X>;
+    fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, options: &Options) -> NormalForce<X>;
     /// Returns the stiffness k_s of the tangential spring (N/m).
-    fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
+    fn tangential_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
     /// Returns the secant stiffness F/δ of the normal spring (N/m).
-    fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
+    fn secant_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
     /// Returns the energy in the normal spring (J).
-    fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X;
+    fn energy<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
 }
 
 /// Returns the force of spring and dashpot together.
 #[inline(always)]
 fn damped<S: Geometry, X: Number>(
-    touch: &Touch<'_, S, X>,
+    touch: &ContactInput<'_, S, X>,
     options: &Options,
     spring: X,
     viscosity: X,
@@ -61,14 +61,14 @@ pub(crate) struct Spring;
 macro_rules! linear_stiffness {
     () => {
         #[inline(always)]
-        fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn tangential_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             touch.law.springs[1]
         }
         #[inline(always)]
-        fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn secant_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             touch.law.springs[0]
         }
-        fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn energy<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             touch.law.springs[0] * 0.5 * touch.overlap * touch.overlap
         }
     };
@@ -79,7 +79,7 @@ impl Normal for Spring {
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, _options: &Options) -> NormalForce<X> {
+    fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, _options: &Options) -> NormalForce<X> {
         let spring = touch.law.springs[0] * touch.overlap;
         NormalForce { total: spring, for_cap: spring }
     }
@@ -99,7 +99,7 @@ impl Normal for SpringDashpot {
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X> {
+    fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, options: &Options) -> NormalForce<X> {
         let law = touch.law;
         let spring = law.springs[0] * touch.overlap;
         let viscosity = law.stiffness_damping * law.springs[0] + law.normal_damping * touch.effective_mass;
@@ -113,14 +113,14 @@ impl Normal for SpringDashpot {
 macro_rules! hertz_stiffness {
     () => {
         #[inline(always)]
-        fn tangential_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn tangential_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             touch.law.springs[1] * 8.0 * (touch.effective_radius * touch.overlap).sqrt()
         }
         #[inline(always)]
-        fn secant_stiffness<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn secant_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             touch.law.springs[0] * (4.0 / 3.0) * (touch.effective_radius * touch.overlap).sqrt()
         }
-        fn energy<S: Geometry, X: Number>(touch: &Touch<'_, S, X>) -> X {
+        fn energy<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
             Self::secant_stiffness(touch) * 0.4 * touch.overlap * touch.overlap
         }
     };
@@ -135,7 +135,7 @@ impl Normal for Hertz {
     const CURVED: bool = true;
 
     #[inline(always)]
-    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, _options: &Options) -> NormalForce<X> {
+    fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, _options: &Options) -> NormalForce<X> {
         let spring = Self::secant_stiffness(touch) * touch.overlap;
         NormalForce { total: spring, for_cap: spring }
     }
@@ -153,7 +153,7 @@ impl Normal for HertzDashpot {
     const CURVED: bool = true;
 
     #[inline(always)]
-    fn force<S: Geometry, X: Number>(touch: &Touch<'_, S, X>, options: &Options) -> NormalForce<X> {
+    fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, options: &Options) -> NormalForce<X> {
         let law = touch.law;
         let secant = Self::secant_stiffness(touch);
         let tangent = secant * 1.5;

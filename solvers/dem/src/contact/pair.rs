@@ -1,10 +1,10 @@
 //! Contact between two grains, prepared for the chain of stages.
 
-use super::chain::{Answer, Evaluation, Turning, stages};
+use super::chain::{Answer, BodyRotations, Evaluation, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{Memory, Middle, Touch, Turn, stiffness_ratio};
+use super::{ContactInput, ContactRotation, Memory, MidStepNormal, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
@@ -51,20 +51,20 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         let turns = T::TURNED && S::DIMENSION == 3;
         let changes = N::CURVED && T::ACTIVE && (T::TURNED || evaluation.record);
         let middle = if is_mid_step || turns || changes {
-            Middle::<S, X>::of_centres(normal, inverse_distance, velocity, elapsed)
+            MidStepNormal::<S, X>::of_centres(normal, inverse_distance, velocity, elapsed)
         } else {
-            Middle::end(normal, distance)
+            MidStepNormal::end(normal, distance)
         };
         // One division for the effective radius and the ratio of stiffnesses.
         let inverse = if changes { distance.like(1.0) / (self.reach * overlap) } else { zero };
-        let touch = Touch {
+        let touch = ContactInput {
             law: self.law,
             between,
             inverse_distance,
             normal,
             overlap,
             velocity_normal: if is_mid_step { middle.normal } else { normal },
-            turn: self.spins.filter(|_| turns).map(|[a, b]| Turn::new(middle.normal, a + b, elapsed)),
+            turn: self.spins.filter(|_| turns).map(|[a, b]| ContactRotation::new(middle.normal, a + b, elapsed)),
             stiffness_ratio: if changes {
                 stiffness_ratio(inverse * self.reach, velocity.dot(middle.normal), elapsed)
             } else {
@@ -86,7 +86,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
                 let inertia = if R::ACTIVE { harmonic(self.about_contact(0) + self.about_contact(1)) } else { zero };
                 let surface = a * arms[0] + b * arms[1];
                 let surface = if is_mid_step { surface * middle.chord } else { surface };
-                Some(Turning { surface, relative: a - b, inertia })
+                Some(BodyRotations { surface, relative: a - b, inertia })
             }
             None => None,
         };

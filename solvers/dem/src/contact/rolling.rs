@@ -1,6 +1,6 @@
 //! Third stage: the moment against rolling, and its contact history.
 
-use super::Touch;
+use super::ContactInput;
 use super::normal::{Normal, NormalForce};
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
@@ -16,7 +16,7 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     /// (rad/s), the time since the last evaluation (s), and the moment of inertia of the pair about the contact (kg
     /// m²).
     fn moment<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         rate: S::Spins<X>,
         elapsed: f64,
@@ -24,7 +24,7 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
         memory: &mut [X],
     ) -> S::Spins<X>;
     /// Returns the energy in the rolling spring (J).
-    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, memory: &[X]) -> X;
+    fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, memory: &[X]) -> X;
 }
 
 /// No rolling resistance: no history and no moment.
@@ -37,7 +37,7 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
 
     #[inline(always)]
     fn moment<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         _normal: NormalForce<X>,
         _rate: S::Spins<X>,
         _elapsed: f64,
@@ -46,7 +46,7 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
     ) -> S::Spins<X> {
         S::as_spin([touch.overlap.like(0.0); 3])
     }
-    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, _memory: &[X]) -> X {
+    fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, _memory: &[X]) -> X {
         touch.overlap.like(0.0)
     }
 }
@@ -70,7 +70,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
 
     #[inline(always)]
     fn moment<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         rate: S::Spins<X>,
         elapsed: f64,
@@ -100,7 +100,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         S::Spins::<X>::choose(resists, angle, none).write(memory);
         S::Spins::<X>::choose(resists, S::Spins::<X>::choose(yields, spring, spring - dashpot), none)
     }
-    fn energy<N: Normal, X: Number>(touch: &Touch<'_, S, X>, memory: &[X]) -> X {
+    fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, memory: &[X]) -> X {
         let angle = S::Spins::<X>::read(memory);
         rolling_stiffness::<S, N, X>(touch) * 0.5 * angle.dot(angle)
     }
@@ -108,7 +108,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
 
 /// Returns k_r = 2.25 k_n μ_r² R_eff² (N m/rad), with the secant stiffness if k_n is not constant.
 #[inline(always)]
-fn rolling_stiffness<S: Geometry, N: Normal, X: Number>(touch: &Touch<'_, S, X>) -> X {
+fn rolling_stiffness<S: Geometry, N: Normal, X: Number>(touch: &ContactInput<'_, S, X>) -> X {
     let arm = touch.law.rolling_friction * touch.effective_radius;
     N::secant_stiffness(touch) * 2.25 * arm * arm
 }

@@ -1,11 +1,11 @@
 //! Second stage: the tangential force, a spring and a dashpot with the Coulomb limit.
 //!
 //! The contact history is the displacement s of the tangential spring (m). It grows by the slip velocity times the time
-//! step, and rotates with the contact ([`Carrying`]). The Coulomb limit reduces it ([`Cap`]).
+//! step, and rotates with the contact ([`SpringTransport`]). The Coulomb limit reduces it ([`Cap`]).
 
 use super::chain::Evaluation;
 use super::normal::{Normal, NormalForce};
-use super::{Memory, Touch};
+use super::{ContactInput, Memory};
 use crate::geometry::{Components, Geometry, Linear};
 use grainbench_lanes::Number;
 use grainbench_scene::space::{Plane, Solid};
@@ -36,7 +36,7 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
 
     /// Returns the tangential force, from the slip velocity (m/s).
     fn respond<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         slip: S::Tangents<X>,
         evaluation: Evaluation<'_>,
@@ -52,7 +52,7 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// spring, ½ (k₀ s₀ + k s')·ṡ Δt, minus the energy after it. The loss beyond the frictional work is released
     /// energy.
     fn lost<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         slip: S::Tangents<X>,
         elapsed: f64,
         before: &Memory<X>,
@@ -76,7 +76,7 @@ impl<S: Geometry> Tangential<S> for Frictionless {
 
     #[inline(always)]
     fn respond<N: Normal, X: Number>(
-        _touch: &Touch<'_, S, X>,
+        _touch: &ContactInput<'_, S, X>,
         _normal: NormalForce<X>,
         slip: S::Tangents<X>,
         _evaluation: Evaluation<'_>,
@@ -86,7 +86,7 @@ impl<S: Geometry> Tangential<S> for Frictionless {
         Shear { force: slip * squared.like(0.0), slipping: squared.below(squared) }
     }
     fn lost<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         _slip: S::Tangents<X>,
         _elapsed: f64,
         _before: &Memory<X>,
@@ -206,7 +206,7 @@ impl<X: Number> Bound<X> {
 }
 
 /// Transport of the tangential spring displacement at a rotating contact.
-pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
+pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'static {
     /// True if the displacement rotates with the contact.
     const TURNED: bool;
     /// Number of history values of the displacement.
@@ -214,7 +214,7 @@ pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
     /// Factor of these values when the first and second grain are exchanged.
     const EXCHANGED: f64;
     /// Returns the stored displacement (m) after the rotation of the contact.
-    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, S, X>) -> S::Tangents<X>;
+    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, S, X>) -> S::Tangents<X>;
     /// Returns the stored displacement (m) of a contact with `normal`.
     fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
     /// Stores the displacement (m) of a contact with `normal`.
@@ -228,14 +228,14 @@ pub(crate) trait Carrying<S: Geometry>: Copy + Debug + Send + Sync + 'static {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
-impl Carrying<Plane> for Turned {
+impl SpringTransport<Plane> for Turned {
     const TURNED: bool = true;
     const NUMBERS: usize = 1;
     const EXCHANGED: f64 = 1.0;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, Plane, X>) -> Components<X, 1> {
-        <Self as Carrying<Plane>>::held(memory, touch.normal)
+    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, Plane, X>) -> Components<X, 1> {
+        <Self as SpringTransport<Plane>>::held(memory, touch.normal)
     }
     #[inline(always)]
     fn held<X: Number>(memory: &Memory<X>, _normal: Components<X, 2>) -> Components<X, 1> {
@@ -250,14 +250,14 @@ impl Carrying<Plane> for Turned {
     }
 }
 
-impl Carrying<Solid> for Turned {
+impl SpringTransport<Solid> for Turned {
     const TURNED: bool = true;
     const NUMBERS: usize = 3;
     const EXCHANGED: f64 = -1.0;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, Solid, X>) -> Components<X, 3> {
-        let stretch = <Self as Carrying<Solid>>::held(memory, touch.normal);
+    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, Solid, X>) -> Components<X, 3> {
+        let stretch = <Self as SpringTransport<Solid>>::held(memory, touch.normal);
         let Some(turn) = touch.turn else { return stretch };
         Solid::turned(stretch, turn.middle, touch.normal, turn.half_twist)
     }
@@ -280,14 +280,14 @@ impl Carrying<Solid> for Turned {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected;
 
-impl<S: Geometry> Carrying<S> for Projected {
+impl<S: Geometry> SpringTransport<S> for Projected {
     const TURNED: bool = false;
     const NUMBERS: usize = <S::Vectors<f64> as Linear<f64>>::COUNT;
     const EXCHANGED: f64 = -1.0;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &Touch<'_, S, X>) -> S::Tangents<X> {
-        <Self as Carrying<S>>::held(memory, touch.normal)
+    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, S, X>) -> S::Tangents<X> {
+        <Self as SpringTransport<S>>::held(memory, touch.normal)
     }
     #[inline(always)]
     fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
@@ -308,7 +308,7 @@ impl<S: Geometry> Carrying<S> for Projected {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coulomb<H>(PhantomData<H>);
 
-impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
+impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
     const ACTIVE: bool = true;
     const TURNED: bool = H::TURNED;
     const MAY_BE_MID_STEP: bool = H::TURNED;
@@ -317,7 +317,7 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
 
     #[inline(always)]
     fn respond<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         slip: S::Tangents<X>,
         evaluation: Evaluation<'_>,
@@ -338,7 +338,7 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
         shear
     }
     fn lost<N: Normal, X: Number>(
-        touch: &Touch<'_, S, X>,
+        touch: &ContactInput<'_, S, X>,
         slip: S::Tangents<X>,
         elapsed: f64,
         before: &Memory<X>,
@@ -365,9 +365,9 @@ impl<S: Geometry, H: Carrying<S>> Tangential<S> for Coulomb<H> {
 /// Returns the displacement (m) at a contact that has rotated and whose stiffness has changed since it was stored. If
 /// the displacement rotates with the contact, its force is kept while the stiffness grows.
 #[inline(always)]
-fn carried<S: Geometry, H: Carrying<S>, N: Normal, X: Number>(
+fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
     memory: &Memory<X>,
-    touch: &Touch<'_, S, X>,
+    touch: &ContactInput<'_, S, X>,
 ) -> S::Tangents<X> {
     let stretch = H::carried(memory, touch);
     if !(H::TURNED && N::CURVED) {
@@ -425,10 +425,10 @@ mod tests {
     /// Contacts with and without a dashpot in one register: each gives the same result as it would alone.
     #[test]
     fn contacts_side_by_side_are_limited_as_alone() {
-        use grainbench_lanes::{Plain, Wide};
+        use grainbench_lanes::{ScalarBackend, SimdPack};
         let stretches = [0.2, 0.0, 0.01, -0.3];
         let (viscosities, limits) = ([3.0, 0.0, 3.0, 0.0], [5.0, 5.0, 50.0, 5.0]);
-        let wide = |values: [f64; 4]| Wide::four(Plain::<4>, values);
+        let wide = |values: [f64; 4]| SimdPack::four(ScalarBackend::<4>, values);
         for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
             let bound = Bound { stiffness: wide([100.0; 4]), viscosity: Some(wide(viscosities)), limit: wide(limits) };
             let mut stretch = Components([wide(stretches)]);

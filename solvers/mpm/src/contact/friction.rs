@@ -4,8 +4,8 @@
 //! |F_s| ≤ μ k g. Here s is the tangential spring displacement (m), g the depth (m) and k the stiffness of the
 //! tracer's springs (N/m).
 
-use super::Other;
-use crate::off::Off;
+use super::ContactPartner;
+use crate::off::AbsentEffect;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -96,15 +96,15 @@ pub(crate) trait Tangential<S: Space> {
     /// True if tangential forces exist.
     const ACTIVE: bool;
     /// Computes the tangential response of a tracer that penetrates `other`.
-    fn respond(&mut self, tracer: usize, other: Other, overlap: &Overlap<S>) -> Shear<S>;
+    fn respond(&mut self, tracer: usize, other: ContactPartner, overlap: &Overlap<S>) -> Shear<S>;
 }
 
-impl<S: Space> Tangential<S> for Off {
+impl<S: Space> Tangential<S> for AbsentEffect {
     const ACTIVE: bool = false;
 
     /// Returns no force; surfaces slip wherever they move along each other.
     #[inline(always)]
-    fn respond(&mut self, _tracer: usize, _other: Other, overlap: &Overlap<S>) -> Shear<S> {
+    fn respond(&mut self, _tracer: usize, _other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
         let along = overlap.along(overlap.slip);
         let slipping = overlap.stiffness * S::dot(along, along).sqrt() > 0.0;
         Shear { force: S::ORIGIN, stretch: [S::ORIGIN; 2], slipping }
@@ -119,7 +119,7 @@ const AT_ONCE: usize = 4;
 #[serde(bound = "")]
 struct Spring<S: Space> {
     /// Contact partner.
-    other: Other,
+    other: ContactPartner,
     /// Number of the evaluation at which it was last in contact.
     stamp: u64,
     /// Tangential spring displacement (m).
@@ -136,13 +136,13 @@ pub(crate) struct Coulomb<S: Space> {
 
 impl<S: Space> Coulomb<S> {
     fn new(tracers: usize) -> Self {
-        let none = Spring { other: Other::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
+        let none = Spring { other: ContactPartner::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
         Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
     }
 
     /// Returns the tangential spring displacement of a tracer and contact partner, and marks the spring as in contact.
     #[inline(always)]
-    fn stretch(&mut self, tracer: usize, other: Other) -> &mut S::Vector {
+    fn stretch(&mut self, tracer: usize, other: ContactPartner) -> &mut S::Vector {
         let (now, springs) = (self.now, &mut self.of[tracer]);
         let same = springs.iter().position(|spring| spring.other == other);
         let oldest = || (1..AT_ONCE).fold(0, |a, b| if springs[b].stamp < springs[a].stamp { b } else { a });
@@ -160,7 +160,7 @@ impl<S: Space> Tangential<S> for &mut Coulomb<S> {
     const ACTIVE: bool = true;
 
     #[inline(always)]
-    fn respond(&mut self, tracer: usize, other: Other, overlap: &Overlap<S>) -> Shear<S> {
+    fn respond(&mut self, tracer: usize, other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
         let stretch = self.stretch(tracer, other);
         let shear = Shear::new(*stretch, overlap);
         *stretch = shear.stretch[1];
@@ -221,7 +221,7 @@ mod tests {
         let Friction::Present(springs) = friction else { return f64::NAN };
         let (normal, slip) = (Vector2::y(), Vector2::new(slip, 0.0));
         let overlap = Overlap { depth: 0.01, normal, stiffness: 200.0, slip, friction: coefficient };
-        Tangential::respond(&mut &mut *springs, 0, Other::Wall(0), &overlap).force.x
+        Tangential::respond(&mut &mut *springs, 0, ContactPartner::Wall(0), &overlap).force.x
     }
 
     /// A spring keeps its displacement only during contact: after a hop it starts at zero again.

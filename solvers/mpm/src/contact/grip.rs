@@ -29,7 +29,7 @@ pub(crate) fn bear<S: Space>(nodes: &[Node<S>], cell_mass: f64, most: &mut [f64]
 
 /// Interpolation at a point on the surface of a body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Grip<S: Space> {
+pub(crate) struct SurfaceShapeFunction<S: Space> {
     stencil: Stencil<f64>,
     /// Sum of the weights.
     total: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Grip<S: Space> {
     pub(crate) velocity: S::Vector,
 }
 
-impl<S: Space> Grip<S> {
+impl<S: Space> SurfaceShapeFunction<S> {
     /// Creates the interpolation at `position`, or returns `None` if there is no mass nearby. Nodes hold momenta.
     #[inline(always)]
     pub(crate) fn new<B: Basis>(

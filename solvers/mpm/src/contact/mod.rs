@@ -13,17 +13,17 @@ use serde::{Deserialize, Serialize};
 
 /// Contact partner of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) enum Other {
+pub(crate) enum ContactPartner {
     Body(u32),
     Wall(u16),
 }
 
 /// A contact point between a body and another body or a wall, in the last step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch<S: Space> {
+pub(crate) struct ContactPoint<S: Space> {
     /// Index of the body.
     pub(crate) body: u32,
-    pub(crate) other: Other,
+    pub(crate) other: ContactPartner,
     /// Contact point (m).
     pub(crate) point: S::Vector,
     /// Normal force on the body (N), directed into it.

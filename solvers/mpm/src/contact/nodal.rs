@@ -14,8 +14,8 @@
 //! At a wall the normal of the wall is used. The normals of two bodies are not opposite in general, and momentum is
 //! conserved only as far as they are.
 
-use super::shared::{Field, Shared};
-use super::{FrictionTable, Other};
+use super::shared::{Field, SharedNodes};
+use super::{ContactPartner, FrictionTable};
 use crate::bodies::Body;
 use crate::driven::Group;
 use crate::grid::Lattice;
@@ -39,7 +39,7 @@ pub(crate) struct Rules<'a> {
 }
 
 /// Bodies with prescribed motion, which receive the reactions as forces over the step: walls and driven bodies.
-pub(crate) struct Felt<'a, S: Space, A> {
+pub(crate) struct ReactionReceivers<'a, S: Space, A> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
     /// The energy budget, or its absence.
@@ -50,8 +50,8 @@ pub(crate) struct Felt<'a, S: Space, A> {
 pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
-    shared: &mut Shared<S>,
-    felt: &mut Felt<'_, S, A>,
+    shared: &mut SharedNodes<S>,
+    felt: &mut ReactionReceivers<'_, S, A>,
     field: &mut F,
 ) {
     match rules.contact {
@@ -64,11 +64,11 @@ pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
 fn apply<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
-    shared: &Shared<S>,
-    felt: &mut Felt<'_, S, A>,
+    shared: &SharedNodes<S>,
+    felt: &mut ReactionReceivers<'_, S, A>,
     field: &mut F,
 ) {
-    let Felt { walls, driven, ledger } = felt;
+    let ReactionReceivers { walls, driven, ledger } = felt;
     for group in shared.groups() {
         let members = &shared.members[group.members.clone()];
         let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
@@ -176,12 +176,12 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
 fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
-    shared: &mut Shared<S>,
-    felt: &mut Felt<'_, S, A>,
+    shared: &mut SharedNodes<S>,
+    felt: &mut ReactionReceivers<'_, S, A>,
     field: &mut F,
 ) {
-    let Felt { walls, driven, ledger } = felt;
-    let Shared { meetings, faces, .. } = shared;
+    let ReactionReceivers { walls, driven, ledger } = felt;
+    let SharedNodes { meetings, faces, .. } = shared;
     for node in meetings.chunk_by_mut(|a, b| a.key == b.key) {
         let single = node.len() == 1;
         node.iter_mut().for_each(|meeting| meeting.impulse = S::ORIGIN);
@@ -191,11 +191,11 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 let (one, normal) = (meeting.slots[0], meeting.normal);
                 let body = &bodies[meeting.body as usize];
                 let (velocity, inverse, material, traction) = match meeting.other {
-                    Other::Wall(wall) => {
+                    ContactPartner::Wall(wall) => {
                         let wall = &walls[usize::from(wall)];
                         (wall.velocity(meeting.position), 0.0, wall.material, S::NO_GRADIENT)
                     }
-                    Other::Body(other) => {
+                    ContactPartner::Body(other) => {
                         let (two, other) = (meeting.slots[1], &bodies[other as usize]);
                         (field.velocity(two), 1.0 / meeting.masses[1], other.material, faces[two].stress)
                     }
@@ -222,7 +222,7 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 let change = impulse - before;
                 meeting.impulse = impulse;
                 field.set(one, field.velocity(one) - change * (1.0 / meeting.masses[0]));
-                if let Other::Body(_) = meeting.other {
+                if let ContactPartner::Body(_) = meeting.other {
                     let two = meeting.slots[1];
                     field.set(two, field.velocity(two) + change * inverse);
                 }
@@ -230,8 +230,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                     let force = change * (1.0 / rules.time_step);
                     if let Some(tally) = ledger.tally() {
                         let slip = match meeting.other {
-                            Other::Body(_) => field.before(one) - field.before(meeting.slots[1]),
-                            Other::Wall(_) => {
+                            ContactPartner::Body(_) => field.before(one) - field.before(meeting.slots[1]),
+                            ContactPartner::Wall(_) => {
                                 tally.walls -= S::dot(change, velocity);
                                 field.before(one) - velocity
                             }
@@ -242,8 +242,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                         driven[usize::from(mover)].force -= force;
                     }
                     match meeting.other {
-                        Other::Wall(wall) => walls[usize::from(wall)].force += force,
-                        Other::Body(other) => {
+                        ContactPartner::Wall(wall) => walls[usize::from(wall)].force += force,
+                        ContactPartner::Body(other) => {
                             if let Some(mover) = bodies[other as usize].driven {
                                 driven[usize::from(mover)].force += force;
                             }
@@ -265,9 +265,9 @@ const SWEEPS: usize = 12;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::shared::{Face, Meeting, Stepped};
+    use crate::contact::shared::{Face, NodalContact, SteppedVelocities};
     use crate::grid::Node;
-    use crate::off::Off;
+    use crate::off::AbsentEffect;
     use crate::options::Setting;
     use crate::trial::prepared;
     use grainbench_scene::space::Plane;
@@ -284,14 +284,14 @@ mod tests {
             discs[0], discs[1], discs[2]
         );
         let (simulation, _) = prepared::<Plane>(Setting::classic(Contact::Gap), &text, 2.0, 2);
-        let mut shared = Shared::<Plane>::new();
+        let mut shared = SharedNodes::<Plane>::new();
         shared.faces = vec![Face { normal: Vector2::zeros(), stress: nalgebra::Matrix2::zeros() }; 3];
         let masses = [1.0, 2.0, 3.0];
         shared.meetings = [0_usize, 1]
-            .map(|one| Meeting {
+            .map(|one| NodalContact {
                 key: 7,
                 body: one as u32,
-                other: Other::Body(one as u32 + 1),
+                other: ContactPartner::Body(one as u32 + 1),
                 position: Vector2::zeros(),
                 slots: [one, one + 1],
                 masses: [masses[one], masses[one + 1]],
@@ -304,8 +304,8 @@ mod tests {
         let friction = FrictionTable::from_scene(&simulation.scene);
         let lattice = &simulation.grid.lattice;
         let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
-        let mut felt = Felt { walls: &mut [], driven: &mut [], ledger: Off };
-        meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut Stepped(&mut nodes));
+        let mut felt = ReactionReceivers { walls: &mut [], driven: &mut [], ledger: AbsentEffect };
+        meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut SteppedVelocities(&mut nodes));
         [0, 1, 2].map(|at| nodes[at].velocity)
     }
 

@@ -4,9 +4,9 @@
 //! linear momentum is conserved to rounding and torques are consistent.
 
 use super::friction::{Friction, Overlap, Tangential};
-use super::grip::Grip;
-use super::search::{Found, Gone};
-use super::{FrictionTable, Other, Touch};
+use super::grip::SurfaceShapeFunction;
+use super::search::{PenetratingPoint, SearchResults};
+use super::{ContactPartner, ContactPoint, FrictionTable};
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node};
@@ -23,7 +23,7 @@ pub(crate) struct Springs<S: Space> {
     /// Tangential springs, or their absence.
     pub(crate) friction: Friction<S>,
     /// Penetrating tracers found by each subrange of pairs.
-    pub(crate) found: Vec<Found<S>>,
+    pub(crate) found: Vec<SearchResults<S>>,
     /// Number of tracers in contact since the evaluation began.
     pub(crate) touched: u64,
 }
@@ -52,11 +52,11 @@ pub(crate) struct Rules<'a> {
 }
 
 /// Outputs of the springs in a step.
-pub(crate) struct Told<'a, S: Space, A> {
+pub(crate) struct SpringOutputs<'a, S: Space, A> {
     /// The energy budget, or its absence.
     pub(crate) ledger: A,
     /// Contact points, if requested.
-    pub(crate) touches: Option<&'a mut Vec<Touch<S>>>,
+    pub(crate) touches: Option<&'a mut Vec<ContactPoint<S>>>,
     /// Number of tracers in contact.
     pub(crate) touched: &'a mut u64,
 }
@@ -65,14 +65,14 @@ pub(crate) struct Told<'a, S: Space, A> {
 pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
-    pub(crate) found: &'a [Found<S>],
+    pub(crate) found: &'a [SearchResults<S>],
     pub(crate) tracers: &'a Tracers<S>,
     pub(crate) friction: F,
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) nodes: &'a mut [Node<S>],
     /// Weight limit of each node at a surface.
     pub(crate) most: &'a [f64],
-    pub(crate) told: Told<'a, S, A>,
+    pub(crate) told: SpringOutputs<'a, S, A>,
     pub(crate) basis: PhantomData<B>,
 }
 
@@ -93,7 +93,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         let Self { rules, bodies, tracers, friction, walls, nodes, most, told: outputs, .. } = self;
         let cell = rules.lattice.shortest(S::DIMENSION);
         for (number, wall) in walls.iter_mut().enumerate() {
-            let other = Other::Wall(number as u16);
+            let other = ContactPartner::Wall(number as u16);
             for (place, body) in bodies.iter().enumerate() {
                 if lowest::<S>(body, wall) > 0.0 {
                     continue;
@@ -106,7 +106,9 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                     if depth <= 0.0 {
                         continue;
                     }
-                    let Some(grip) = Grip::<S>::new::<B>(rules.lattice, &body.part, position, nodes, most) else {
+                    let Some(grip) =
+                        SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &body.part, position, nodes, most)
+                    else {
                         continue;
                     };
                     let overlap = Overlap {
@@ -133,10 +135,10 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
 
     /// Applies the spring at a tracer of the first body that penetrates the surface of the second.
     #[inline(always)]
-    fn between(&mut self, Gone { pair, tracer, overlap, there, grips: [one, two] }: &Gone<S>) {
+    fn between(&mut self, PenetratingPoint { pair, tracer, overlap, there, grips: [one, two] }: &PenetratingPoint<S>) {
         let Self { bodies, friction, nodes, most, told: outputs, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
-        let place = Place { body: pair.first, other: Other::Body(pair.second), point: *there };
+        let place = Place { body: pair.first, other: ContactPartner::Body(pair.second), point: *there };
         let force = outputs.force(friction, *tracer, overlap, place);
         one.push::<B>(&first.part, force, nodes, most);
         two.push::<B>(&second.part, -force, nodes, most);
@@ -149,12 +151,12 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
 /// Contact point of a tracer.
 struct Place<S: Space> {
     body: u32,
-    other: Other,
+    other: ContactPartner,
     /// Contact point (m).
     point: S::Vector,
 }
 
-impl<S: Space, A: Ledger> Told<'_, S, A> {
+impl<S: Space, A: Ledger> SpringOutputs<'_, S, A> {
     /// Returns the force (N) on a tracer, the normal force k g and friction, and records the requested outputs.
     #[inline(always)]
     fn force<F: Tangential<S>>(
@@ -177,7 +179,7 @@ impl<S: Space, A: Ledger> Told<'_, S, A> {
         if let Some(touches) = self.touches.as_mut() {
             let energy = shear.energy_ahead(overlap);
             let (shear, slipping) = (shear.force, shear.slipping);
-            touches.push(Touch { body, other, point, push, shear, depth, slipping, energy });
+            touches.push(ContactPoint { body, other, point, push, shear, depth, slipping, energy });
         }
         if F::ACTIVE { push + shear.force } else { push }
     }

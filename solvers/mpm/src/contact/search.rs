@@ -1,13 +1,13 @@
 //! Search for tracers that penetrate the surface of another body, with the interpolation of both bodies there.
 
 use super::friction::Overlap;
-use super::grip::Grip;
+use super::grip::SurfaceShapeFunction;
 use super::pairs::Pair;
 use super::penalty::Rules;
 use crate::basis::Basis;
 use crate::bodies::Body;
 use crate::grid::Node;
-use crate::surface::{Near, Tracers};
+use crate::surface::{NearSurface, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
@@ -20,7 +20,7 @@ const DEEPEST: f64 = 0.8;
 
 /// A tracer of the first body of a pair that penetrates the surface of the second.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gone<S: Space> {
+pub(crate) struct PenetratingPoint<S: Space> {
     /// Pair of bodies; the tracer belongs to the first.
     pub(crate) pair: Pair<S>,
     pub(crate) tracer: usize,
@@ -29,19 +29,19 @@ pub(crate) struct Gone<S: Space> {
     /// Contact point near the first body (m).
     pub(crate) there: S::Vector,
     /// Interpolation of both bodies at the contact point.
-    pub(crate) grips: [Grip<S>; 2],
+    pub(crate) grips: [SurfaceShapeFunction<S>; 2],
 }
 
 /// Results and scratch memory of a subrange of pairs.
 #[derive(Clone, Debug)]
-pub(crate) struct Found<S: Space> {
+pub(crate) struct SearchResults<S: Space> {
     /// Penetrating tracers in the order of the pairs.
-    pub(crate) gone: Vec<Gone<S>>,
+    pub(crate) gone: Vec<PenetratingPoint<S>>,
     /// Chunks of the other surface near the current tracers.
     near: Vec<usize>,
 }
 
-impl<S: Space> Found<S> {
+impl<S: Space> SearchResults<S> {
     /// Returns an empty result.
     pub(crate) const fn new() -> Self {
         Self { gone: Vec::new(), near: Vec::new() }
@@ -50,7 +50,7 @@ impl<S: Space> Found<S> {
 
 /// Surroundings of tracers.
 #[derive(Clone, Copy)]
-pub(crate) struct Around<'a, S: Space, B> {
+pub(crate) struct TracerSurroundings<'a, S: Space, B> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
     pub(crate) tracers: &'a Tracers<S>,
@@ -62,16 +62,16 @@ pub(crate) struct Around<'a, S: Space, B> {
 
 /// Tests the tracers of both bodies of some pairs against the surface of the other body.
 pub(crate) struct Search<'a, S: Space, B> {
-    pub(crate) around: Around<'a, S, B>,
+    pub(crate) around: TracerSurroundings<'a, S, B>,
     pub(crate) pairs: &'a [Pair<S>],
-    pub(crate) found: &'a mut Found<S>,
+    pub(crate) found: &'a mut SearchResults<S>,
 }
 
 impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, _: L) {
-        let Self { around, pairs, found: Found { gone, near } } = self;
-        let Around { rules, bodies, tracers, .. } = around;
+        let Self { around, pairs, found: SearchResults { gone, near } } = self;
+        let TracerSurroundings { rules, bodies, tracers, .. } = around;
         let cell = rules.lattice.shortest(S::DIMENSION);
         gone.clear();
         let reach = DEEPEST * cell;
@@ -102,11 +102,11 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
     }
 }
 
-impl<S: Space, B: Basis> Around<'_, S, B> {
+impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
     /// Returns the contact of a tracer of the first body that penetrates the surface `near` of the second, or `None` if
     /// no force acts there.
     #[inline(always)]
-    fn gone(&self, pair: Pair<S>, tracer: usize, near: Near<S>) -> Option<Gone<S>> {
+    fn gone(&self, pair: Pair<S>, tracer: usize, near: NearSurface<S>) -> Option<PenetratingPoint<S>> {
         let Self { rules, bodies, tracers, nodes, most, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
         let friction = rules.friction.between(first.material, second.material)?;
@@ -120,12 +120,12 @@ impl<S: Space, B: Basis> Around<'_, S, B> {
         let normal = out * (1.0 / S::dot(out, out).sqrt());
         let middle = tracers.position[tracer] - pair.shift + near.normal * (0.5 * depth);
         let there = middle + pair.shift;
-        let one = Grip::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most)?;
-        let two = Grip::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most)?;
+        let one = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most)?;
+        let two = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most)?;
         let stiffness = per_area * S::dot(area, area).sqrt();
         let slip = (one.velocity - two.velocity) * rules.time_step;
         let overlap = Overlap { depth, normal, stiffness, slip, friction };
-        Some(Gone { pair, tracer, overlap, there, grips: [one, two] })
+        Some(PenetratingPoint { pair, tracer, overlap, there, grips: [one, two] })
     }
 }
 

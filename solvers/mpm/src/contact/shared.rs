@@ -1,6 +1,6 @@
 //! Nodes that are shared by several bodies, or by a body and a wall.
 
-use super::Other;
+use super::ContactPartner;
 use super::pairs::Pair;
 use crate::basis::{Basis, Linear, Quadratic};
 use crate::bodies::Body;
@@ -22,9 +22,9 @@ pub(crate) trait Field<S: Space> {
 }
 
 /// Velocities after the step; `change` of the nodes still holds the velocities before it.
-pub(crate) struct Stepped<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
+pub(crate) struct SteppedVelocities<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
 
-impl<S: Space> Field<S> for Stepped<'_, S> {
+impl<S: Space> Field<S> for SteppedVelocities<'_, S> {
     const COUNTS: bool = true;
     #[inline(always)]
     fn velocity(&self, slot: usize) -> S::Vector {
@@ -41,9 +41,9 @@ impl<S: Space> Field<S> for Stepped<'_, S> {
 }
 
 /// Projected velocities.
-pub(crate) struct Projected<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
+pub(crate) struct ProjectedVelocities<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
 
-impl<S: Space> Field<S> for Projected<'_, S> {
+impl<S: Space> Field<S> for ProjectedVelocities<'_, S> {
     const COUNTS: bool = false;
     #[inline(always)]
     fn velocity(&self, slot: usize) -> S::Vector {
@@ -79,10 +79,10 @@ pub(crate) struct Face<S: Space> {
 
 /// Contact of a body with another body or a wall at a node.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Meeting<S: Space> {
+pub(crate) struct NodalContact<S: Space> {
     pub(crate) key: u64,
     pub(crate) body: u32,
-    pub(crate) other: Other,
+    pub(crate) other: ContactPartner,
     /// Position of the node (m).
     pub(crate) position: S::Vector,
     /// Slots of the node in the body's field and in the other body's field.
@@ -104,11 +104,11 @@ pub(crate) struct Group<S: Space> {
 
 /// All shared nodes of a step.
 #[derive(Clone, Debug)]
-pub(crate) struct Shared<S: Space> {
+pub(crate) struct SharedNodes<S: Space> {
     pub(crate) members: Vec<Member>,
     groups: Vec<(Range<usize>, Option<usize>, S::Vector)>,
     pub(crate) faces: Vec<Face<S>>,
-    pub(crate) meetings: Vec<Meeting<S>>,
+    pub(crate) meetings: Vec<NodalContact<S>>,
     densities: Vec<f64>,
     /// For each body, true if it shares a node.
     touching: Vec<bool>,
@@ -121,7 +121,7 @@ fn key(node: [i32; 3]) -> u64 {
     part(2) << 42 | part(1) << 21 | part(0)
 }
 
-impl<S: Space> Shared<S> {
+impl<S: Space> SharedNodes<S> {
     pub(crate) const fn new() -> Self {
         Self {
             members: Vec::new(),
@@ -216,7 +216,7 @@ impl<S: Space> Shared<S> {
         }
         for meeting in &self.meetings {
             self.touching[meeting.body as usize] = true;
-            if let Other::Body(other) = meeting.other {
+            if let ContactPartner::Body(other) = meeting.other {
                 self.touching[other as usize] = true;
             }
         }
@@ -299,9 +299,9 @@ impl<S: Space> Shared<S> {
                 for at in body.tracers.clone() {
                     let position = tracers.position[at];
                     if wall.height(position) <= 0.0 {
-                        let other = Other::Wall(number as u16);
+                        let other = ContactPartner::Wall(number as u16);
                         let normal = -wall.normal;
-                        let met = Met { body: place, other, position, normal, shift: S::ORIGIN };
+                        let met = SurfaceContact { body: place, other, position, normal, shift: S::ORIGIN };
                         self.meet(lattice, bodies, &met, nodes);
                     }
                 }
@@ -325,7 +325,13 @@ impl<S: Space> Shared<S> {
                     let (position, shift) =
                         if swap { (position - pair.shift, -pair.shift) } else { (position, pair.shift) };
                     let normal = if swap { -out } else { out };
-                    let met = Met { body: body as usize, other: Other::Body(other), position, normal, shift };
+                    let met = SurfaceContact {
+                        body: body as usize,
+                        other: ContactPartner::Body(other),
+                        position,
+                        normal,
+                        shift,
+                    };
                     self.meet(lattice, bodies, &met, nodes);
                 }
             }
@@ -345,8 +351,8 @@ impl<S: Space> Shared<S> {
     }
 
     /// Adds a contact at every node around a contact point where both bodies have mass.
-    fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &Met<S>, nodes: &[Node<S>]) {
-        let &Met { body, other, position, normal, shift } = met;
+    fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &SurfaceContact<S>, nodes: &[Node<S>]) {
+        let &SurfaceContact { body, other, position, normal, shift } = met;
         let window = bodies[body].part.window;
         let stencil = Stencil::new::<S, Linear>(lattice, position, [0.0; 3]);
         if !window.holds(S::DIMENSION, stencil.base(), Linear::WIDTH as i32) {
@@ -362,8 +368,8 @@ impl<S: Space> Shared<S> {
             };
             let mass = mass_of(body, node.slot);
             let (slots, masses) = match other {
-                Other::Wall(_) => ([node.slot; 2], [mass, f64::INFINITY]),
-                Other::Body(other) => {
+                ContactPartner::Wall(_) => ([node.slot; 2], [mass, f64::INFINITY]),
+                ContactPartner::Body(other) => {
                     let window = bodies[other as usize].part.window;
                     let there = [0, 1, 2].map(|axis| {
                         let away = if axis < S::DIMENSION { S::component(shift, axis) } else { 0.0 };
@@ -378,7 +384,7 @@ impl<S: Space> Shared<S> {
             };
             // A node with zero weight, because the contact point is on a grid line, gets no normal from it.
             if node.weight > 0.0 && masses[0] > 0.0 && masses[1] > 0.0 {
-                self.meetings.push(Meeting {
+                self.meetings.push(NodalContact {
                     key: key(lattice.wrapped(place)),
                     body: body as u32,
                     other,
@@ -394,9 +400,9 @@ impl<S: Space> Shared<S> {
 }
 
 /// Contact point between the surface of a body and another body or a wall.
-struct Met<S: Space> {
+struct SurfaceContact<S: Space> {
     body: usize,
-    other: Other,
+    other: ContactPartner,
     /// Position (m).
     position: S::Vector,
     /// Outward unit normal of the body.

@@ -2,7 +2,7 @@
 //! stress.
 
 use super::{Law, State, VolumeRatio, symmetric_root};
-use crate::off::Off;
+use crate::off::AbsentEffect;
 use grainbench_lanes::logarithm::ln;
 use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::space::{Solid, Space};
@@ -71,7 +71,7 @@ impl NeoHookean {
 }
 
 impl Law for NeoHookean {
-    type PlasticStrain = Off;
+    type PlasticStrain = AbsentEffect;
     const LOGARITHM: bool = true;
 
     #[inline(always)]
@@ -81,7 +81,7 @@ impl Law for NeoHookean {
         volume: VolumeRatio,
         deformation: S::Matrix,
         _stress: S::Symmetric,
-        _plastic_strain: &mut Off,
+        _plastic_strain: &mut AbsentEffect,
     ) -> S::Symmetric {
         self.stress::<S>(deformation, volume)
     }
@@ -145,7 +145,7 @@ pub struct KelvinVoigt {
 }
 
 impl Law for KelvinVoigt {
-    type PlasticStrain = Off;
+    type PlasticStrain = AbsentEffect;
     const LOGARITHM: bool = true;
     const VISCOUS: bool = true;
 
@@ -156,7 +156,7 @@ impl Law for KelvinVoigt {
         volume: VolumeRatio,
         deformation: S::Matrix,
         _stress: S::Symmetric,
-        _plastic_strain: &mut Off,
+        _plastic_strain: &mut AbsentEffect,
     ) -> S::Symmetric {
         let strain = S::symmetric_part(S::at_midpoint(increment));
         let mean = (self.bulk_viscosity - 2.0 / 3.0 * self.shear_viscosity) * S::trace(strain);
@@ -216,7 +216,7 @@ impl Hypoelastic {
 }
 
 impl Law for Hypoelastic {
-    type PlasticStrain = Off;
+    type PlasticStrain = AbsentEffect;
 
     const TRIES: bool = true;
 
@@ -227,7 +227,7 @@ impl Law for Hypoelastic {
         _volume: VolumeRatio,
         _deformation: S::Matrix,
         stress: S::Symmetric,
-        _plastic_strain: &mut Off,
+        _plastic_strain: &mut AbsentEffect,
     ) -> S::Symmetric {
         self.stress::<S>(increment, stress)
     }

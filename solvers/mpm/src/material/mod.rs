@@ -49,7 +49,7 @@ impl VolumeRatio {
 
 /// A constitutive law.
 pub trait Law: Copy + Send + Sync + 'static {
-    /// Plastic strain that the law reads and changes: [`crate::off::Off`] for laws without yielding.
+    /// Plastic strain that the law reads and changes: [`crate::off::AbsentEffect`] for laws without yielding.
     type PlasticStrain: PlasticStrain;
     /// True if the stress depends on the logarithm of the volume ratio.
     const LOGARITHM: bool = false;

@@ -1,6 +1,6 @@
 //! Plastic strain of a material point, or its absence.
 
-use crate::off::Off;
+use crate::off::AbsentEffect;
 use std::ops::Range;
 
 /// Equivalent plastic strain ε_p of a material point, or its absence.
@@ -34,7 +34,7 @@ impl PlasticStrain for f64 {
     }
 }
 
-impl PlasticStrain for Off {
+impl PlasticStrain for AbsentEffect {
     #[inline(always)]
     fn those_of(_list: &mut [f64], _range: Range<usize>) -> &mut [f64] {
         &mut []

@@ -14,7 +14,7 @@ mod tree;
 
 pub use build::{Reading, Surface};
 pub use flaw::Flaw;
-pub use touch::Touched;
+pub use touch::SphereContact;
 
 use crate::motion::{Displacement, Motion};
 use nalgebra::{Rotation3, Vector3};

@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Contact of a sphere, in the coordinates of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touched {
+pub struct SphereContact {
     /// Patch, ridge or corner.
     pub group: u32,
     /// Contact point (m).
@@ -29,12 +29,12 @@ pub struct Touched {
 
 impl Surface {
     /// Finds the contacts of a sphere with nearby triangles: at most one for each patch, ridge and corner.
-    pub fn touched(&self, centre: Vector3<f64>, radius: f64, near: &[u32], found: &mut Vec<Touched>) {
+    pub fn touched(&self, centre: Vector3<f64>, radius: f64, near: &[u32], found: &mut Vec<SphereContact>) {
         found.clear();
         for &face in near {
             let Some(touched) = self.candidate(centre, radius, face as usize) else { continue };
             // A point on the border of two parts is one contact, although both may report it due to rounding.
-            let same = |other: &Touched| {
+            let same = |other: &SphereContact| {
                 other.group == touched.group || (other.point - touched.point).norm() <= 10.0 * ROUNDING * radius
             };
             match found.iter_mut().find(|other| same(other)) {
@@ -52,14 +52,18 @@ impl Surface {
     }
 
     /// Returns the nearest point of a triangle, if the sphere is in contact there.
-    fn candidate(&self, centre: Vector3<f64>, radius: f64, face: usize) -> Option<Touched> {
+    fn candidate(&self, centre: Vector3<f64>, radius: f64, face: usize) -> Option<SphereContact> {
         let triangle = &self.triangles[face];
         let (point, part) = nearest(centre, triangle);
         if part == Part::Face {
             let height = (centre - triangle[0]).dot(&self.normals[face]);
             let (direction, distance) = (self.normals[face] * -height.signum(), height.abs());
-            let touched =
-                Touched { group: self.groups.of_face[face], point: centre + direction * distance, direction, distance };
+            let touched = SphereContact {
+                group: self.groups.of_face[face],
+                point: centre + direction * distance,
+                direction,
+                distance,
+            };
             return (distance < radius).then_some(touched);
         }
         let to = point - centre;
@@ -81,7 +85,7 @@ impl Surface {
             }
             Part::Face => return None,
         };
-        is_least.then_some(Touched { group, point, direction, distance })
+        is_least.then_some(SphereContact { group, point, direction, distance })
     }
 }
 
@@ -101,7 +105,7 @@ mod tests {
         Surface::new(&facets, Reading { unit: 1.0, merge: 0.0, open, inward: false }).unwrap()
     }
 
-    fn touched(surface: &Surface, centre: [f64; 3], radius: f64) -> Vec<Touched> {
+    fn touched(surface: &Surface, centre: [f64; 3], radius: f64) -> Vec<SphereContact> {
         let (mut near, mut found) = (Vec::new(), Vec::new());
         surface.near(centre.into(), radius, &mut near);
         surface.touched(centre.into(), radius, &near, &mut found);

@@ -6,7 +6,7 @@ use crate::error::SceneError;
 use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec, SpacingSpec};
 use crate::generate::{self, NoRoom};
 use crate::memory;
-use crate::overlap::{self, Deepest};
+use crate::overlap::{self, DeepestOverlap};
 use crate::packing;
 use crate::scene::{Domain, Grain, Wall};
 use crate::stays::{Entry, Stays};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const BYTES_OF_A_GRAIN: f64 = 1e3;
 
 /// Grains with their initial state.
-pub(super) struct Placed {
+pub(super) struct PlacedGrains {
     pub(super) grains: Vec<Grain>,
     pub(super) groups: Groups,
     /// Grains inserted later.
@@ -28,7 +28,7 @@ pub(super) struct Placed {
 }
 
 impl Resolver<'_> {
-    pub(super) fn grains(&self, shape: GrainShape, domain: Option<&Domain>) -> Result<Placed, SceneError> {
+    pub(super) fn grains(&self, shape: GrainShape, domain: Option<&Domain>) -> Result<PlacedGrains, SceneError> {
         let mut grains = Vec::new();
         let (mut entries, mut springs) = (Vec::new(), None);
         let mut groups = IndexMap::new();
@@ -39,7 +39,7 @@ impl Resolver<'_> {
             groups.insert(name.clone(), start..grains.len());
         }
         entries.sort_by(|a: &Entry, b: &Entry| a.time.total_cmp(&b.time));
-        Ok(Placed { grains, groups, entries, springs: springs.map(Arc::new) })
+        Ok(PlacedGrains { grains, groups, entries, springs: springs.map(Arc::new) })
     }
 
     fn group(
@@ -328,7 +328,7 @@ impl Resolver<'_> {
         let Some(deepest) = found.filter(|deepest| deepest.ratio() > bound) else { return Ok(()) };
         let group_of =
             |grain: usize| groups.iter().find(|(_, range)| range.contains(&grain)).map_or("", |(name, _)| name);
-        let (Deepest::Grains(grain, ..) | Deepest::GrainWall(grain, ..)) = deepest;
+        let (DeepestOverlap::Grains(grain, ..) | DeepestOverlap::GrainWall(grain, ..)) = deepest;
         let found = deepest.words(walls);
         let key = format!("grains.{}", group_of(grain));
         let expected = format!("initial overlaps of at most {bound} of the smaller radius");

@@ -9,7 +9,7 @@ use crate::manufactured::Manufactured;
 use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
 use crate::stays::Stays;
-use grains::Placed;
+use grains::PlacedGrains;
 use indexmap::IndexMap;
 use nalgebra::Vector3;
 use probes::Names;
@@ -85,7 +85,7 @@ impl Resolver<'_> {
                 check.positive(&format!("materials.{name}.density"), density, "density (kg/m³)")?;
             }
         }
-        let Placed { mut grains, groups, entries, springs } = self.grains(grain_shape, domain.as_ref())?;
+        let PlacedGrains { mut grains, groups, entries, springs } = self.grains(grain_shape, domain.as_ref())?;
         let stays = Stays { entries, removal: self.removal()? };
         self.refuse_lost_pours(&stays, &grains, &groups)?;
         if let Some(domain) = &domain {

@@ -3,7 +3,7 @@
 use super::{Groups, Resolver};
 use crate::error::SceneError;
 use crate::file::{GrainsSpec, PouredSpec};
-use crate::pouring::{Pour, Unpourable, poured};
+use crate::pouring::{Pour, PouringError, poured};
 use crate::scene::{Block, Domain, Driven, Grain};
 use crate::stays::{Entry, Removal, Stays};
 use nalgebra::Vector3;
@@ -45,14 +45,14 @@ impl Resolver<'_> {
         };
         poured(&pour, domain, check.dimension).map_err(|reason| {
             let expected = match reason {
-                Unpourable::NoRoom => "room in the box for each grain when it comes",
-                Unpourable::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
+                PouringError::NoRoom => "room in the box for each grain when it comes",
+                PouringError::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
             };
             // Tries a half, a quarter, … of the rate, until grains fall away in time.
             let slower = (1..=10).map(|halvings| pour.rate / f64::from(1 << halvings));
             let fits = |rate: &f64| poured(&Pour { rate: *rate, ..pour }, domain, check.dimension).is_ok();
             let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is"));
-            let help = help.filter(|_| reason == Unpourable::NoRoom);
+            let help = help.filter(|_| reason == PouringError::NoRoom);
             check.source.error(&key("rate"), expected, &format!("{} 1/s", spec.rate), help)
         })
     }

@@ -12,12 +12,12 @@ use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::WriteError;
-use grainbench_reports::study::stability::{Hard, Hardness};
+use grainbench_reports::study::stability::{HardCaseResult, Hardness};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Ahead, Resolution, RunError, Solver, Unstable, Watch};
+use grainbench_scene::solver::{Resolution, RunError, RunOutline, Solver, UnstableStepWatch, Watch};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -106,7 +106,7 @@ pub fn verdict(
     case: &HardCase,
     (solvers, solver): (&dyn Solvers, &str),
     cache: &ResultCache,
-) -> Result<(Hard, bool), WriteError> {
+) -> Result<(HardCaseResult, bool), WriteError> {
     let name = name_of(program, case, solver);
     if let Some(row) = cache.take(&name) {
         return Ok((row, true));
@@ -118,8 +118,8 @@ pub fn verdict(
 
 /// Runs a case with a solver at its default step, and at smaller steps if it fails.
 #[must_use]
-pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> Hard {
-    let mut row = Hard {
+pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResult {
+    let mut row = HardCaseResult {
         case: case.name.clone(),
         must: case.must.to_owned(),
         solver: name.to_owned(),
@@ -185,11 +185,11 @@ fn resolution(solver: &str, part: f64) -> Resolution {
 
 fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
     let resolution = resolution(&solver.name(), part);
-    let mut halfway = Halfway::default();
+    let mut halfway = HalfwayCheckpoint::default();
     let run = if case.goes_on {
         solver.run(scene, &resolution, &mut halfway)
     } else {
-        solver.run(scene, &resolution, &mut Unstable)
+        solver.run(scene, &resolution, &mut UnstableStepWatch)
     };
     match run {
         Ok(record) => {
@@ -210,13 +210,13 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
 
 /// Observer that keeps the checkpoint at half of the steps.
 #[derive(Default)]
-struct Halfway {
+struct HalfwayCheckpoint {
     steps: u64,
     checkpoint: Option<Checkpoint>,
 }
 
-impl Watch for Halfway {
-    fn begin(&mut self, ahead: Ahead) {
+impl Watch for HalfwayCheckpoint {
+    fn begin(&mut self, ahead: RunOutline) {
         self.steps = ahead.steps;
     }
 
@@ -241,13 +241,13 @@ fn continues(
     scene: &Scene,
     solver: &dyn Solver,
     resolution: &Resolution,
-    (whole, halfway): (&Record, Halfway),
+    (whole, halfway): (&Record, HalfwayCheckpoint),
 ) -> Result<(), Stop> {
     let Some(checkpoint) = halfway.checkpoint else {
         let reason = "it leaves no checkpoints to continue from".to_owned();
         return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
     };
-    let continued = solver.restart(scene, resolution, &checkpoint, &mut Unstable).map_err(Stop::Cannot)?;
+    let continued = solver.restart(scene, resolution, &checkpoint, &mut UnstableStepWatch).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
         return Err(Stop::Failed(Failure::Wrong(format!("{differ} grains end otherwise when the run is continued"))));
