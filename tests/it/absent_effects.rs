@@ -1,0 +1,128 @@
+//! An absent effect costs almost nothing. It is not part of the selected kernel, as the kernel's type shows. The
+//! instructions of the kernel for undamped, frictionless discs are compared with those of a hand-written loop without
+//! any other effect. Valgrind counts them if it is installed. Counts do not depend on the load of the machine, and no
+//! test measures time.
+
+#[path = "../../benches/minimal/mod.rs"]
+mod minimal;
+
+use grainbench::cases::registry;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::scene::effect::Effect;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::source::SceneSource;
+use minimal::Minimal;
+use std::path::Path;
+use std::process::Command;
+
+/// Environment variable with the loop and the number of steps for a process under valgrind.
+const TASK: &str = "GRAINBENCH_COUNTED_LOOP";
+const SIDE: u32 = 24;
+const STEP: f64 = 0.05;
+/// Largest ratio of the kernel's instructions to those of the hand-written loop.
+const ALLOWED: f64 = 1.02;
+/// Smallest ratio of instructions of dense shear with friction that has no effect to those without friction.
+const FRICTION: f64 = 1.3;
+
+/// Returns a square lattice of overlapping discs that starts to expand at its rim, without rebuilding the neighbour
+/// list.
+fn lattice() -> Scene {
+    let text = format!(
+        "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\
+         contacts.all = {{ between = ['disc', 'disc'], normal_stiffness = 1.0 }}\n\
+         grains.disc = {{ material = 'disc', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], \
+         count = [{SIDE}, {SIDE}] }} }}\n"
+    );
+    let source = SceneSource::from_text("lattice", Path::new(""), &text);
+    source.scene(&|_| Err("no data files here".to_owned())).unwrap()
+}
+
+/// Returns dense shear of ten thousand discs without friction.
+fn dense_shear() -> Scene {
+    let mut scene = registry::by_name("plane-shear").unwrap().variant("plain").unwrap();
+    scene.change_laws(|law| (law.friction, law.tangential_damping) = (0.0, 0.0));
+    scene
+}
+
+/// Body of the process under valgrind. It does nothing as an ordinary test.
+#[test]
+fn counted_loop() {
+    let Ok(task) = std::env::var(TASK) else { return };
+    let (name, steps) = task.split_once(' ').unwrap();
+    let steps: u64 = steps.parse().unwrap();
+    if name == "by-hand" {
+        let place =
+            |grain: &grainbench::scene::scene::Grain| ([grain.position.x, grain.position.y], grain.radius, grain.mass);
+        let discs: Vec<_> = lattice().grains.iter().map(place).collect();
+        let mut minimal = Minimal::new(&discs, 1.0, 0.2);
+        (0..steps).for_each(|_| minimal.step(STEP));
+        assert!(minimal.touching >= steps * u64::from(SIDE * SIDE) && minimal.farthest < 0.01);
+        return;
+    }
+    let (mut scene, step) = if name.starts_with("dense") { (dense_shear(), 1e-4) } else { (lattice(), STEP) };
+    if name.ends_with("with-idle-friction") {
+        assert!(Effect::Friction.switch_on_idly(&mut scene));
+    }
+    let mut simulation = Dem::new(Convention::DEFAULT).start(&scene, step).unwrap();
+    simulation.advance(steps).unwrap();
+    assert_eq!(simulation.counts().neighbour_builds, 1);
+}
+
+/// Counts the instructions of a number of steps.
+fn instructions(name: &str, steps: u64) -> Option<f64> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", "absent_effects::counted_loop", "--test-threads=1"])
+        .env(TASK, format!("{name} {steps}"))
+        .output()
+        .ok()?;
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stdout));
+    let line = text.lines().find(|line| line.contains("Collected :")).expect("callgrind says how many it counted");
+    line.split(':').nth(1)?.trim().parse().ok()
+}
+
+/// Returns the instructions per step: the difference between many and few steps, so that the set-up cancels. `None` if
+/// valgrind is absent, which is an error in CI.
+fn a_step(name: &str, [few, many]: [u64; 2]) -> Option<f64> {
+    let counted = instructions(name, many).zip(instructions(name, few));
+    assert!(counted.is_some() || std::env::var_os("CI").is_none(), "valgrind is not installed: nothing was counted");
+    let (many_steps, few_steps) = counted?;
+    Some((many_steps - few_steps) / (many - few) as f64)
+}
+
+#[test]
+fn what_is_absent_costs_next_to_nothing() {
+    const STEPS: [u64; 2] = [10, 60];
+    let (Some(by_hand), Some(kernel)) = (a_step("by-hand", STEPS), a_step("kernel", STEPS)) else { return };
+    let idle = a_step("with-idle-friction", STEPS).unwrap();
+    println!("instructions a step: by hand {by_hand}, kernel {kernel}, friction that does nothing {idle}");
+    assert!(kernel <= ALLOWED * by_hand, "the kernel takes {kernel} instructions a step, a loop by hand {by_hand}");
+    // Control: if an effect is compiled in, the count shows it.
+    assert!(idle > 1.1 * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
+}
+
+/// A step of dense shear without friction takes fewer instructions than with friction that has no effect.
+#[test]
+fn dense_shear_without_friction_takes_fewer_instructions() {
+    const STEPS: [u64; 2] = [2, 12];
+    let Some(kernel) = a_step("dense", STEPS) else { return };
+    let idle = a_step("dense-with-idle-friction", STEPS).unwrap();
+    println!("instructions a step of dense shear: {kernel}, with friction that does nothing {idle}");
+    assert!(idle >= FRICTION * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
+}
+
+/// The selected kernel has a friction stage if and only if the scene has friction, even if it has no effect.
+#[test]
+fn what_is_absent_is_no_part_of_the_kernel() {
+    let kernel = |scene: &Scene| Dem::new(Convention::DEFAULT).start(scene, 1e-4).unwrap().layout();
+    for mut scene in [lattice(), dense_shear()] {
+        let without = kernel(&scene);
+        assert!(without.contains("Frictionless") && !without.contains("Coulomb"), "{without}");
+        assert!(Effect::Friction.switch_on_idly(&mut scene));
+        let with = kernel(&scene);
+        assert!(with.contains("Coulomb") && !with.contains("Frictionless"), "{with}");
+    }
+}

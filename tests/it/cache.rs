@@ -1,0 +1,166 @@
+//! The cache of finished runs: a result from it equals the result of a run, and it returns no other results.
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Runs of half a second in total, with points and with grains.
+const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
+
+/// Returns the program with a separate cache.
+fn program(directory: &Path, out: &str) -> Command {
+    let mut command = crate::common::program();
+    command.env("GRAINBENCH_CACHE", directory.join("cache")).current_dir(directory).args(RUN).args(["--out", out]);
+    // Runs of external solvers are not cached, and their start takes time.
+    command.envs([("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")]);
+    command.stdin(Stdio::null());
+    command
+}
+
+/// Returns the exit code and the number of runs from the cache, from the report and its page.
+fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u64) {
+    let code = command.stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
+    let results = fs::read_to_string(directory.join(out).join("results.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let options = results["provenance"]["options"].as_array().unwrap();
+    let count_text = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
+    let page = fs::read_to_string(directory.join(out).join("index.html")).unwrap();
+    assert_eq!(page.contains("runs taken from the cache"), count_text.is_some(), "the page tells it too");
+    (code, count_text.map_or(0, |(number, _)| number.parse().unwrap()))
+}
+
+fn rows(directory: &Path, out: &str) -> String {
+    fs::read_to_string(directory.join(out).join("rows.csv")).unwrap()
+}
+
+fn entries(directory: &Path) -> Vec<PathBuf> {
+    let mut all: Vec<PathBuf> =
+        fs::read_dir(directory.join("cache")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn what_was_finished_is_taken_and_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    // A run that was too short for the cache may take longer the next time.
+    let kept = entries(here).len() as u64;
+    let (code, again) = taken(&mut program(here, "second"), here, "second");
+    assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
+    assert_eq!(again, kept, "each is taken once");
+    assert!(again > 5, "{again}");
+    // With `--no-cache`, or without a cache, no run comes from it.
+    assert_eq!(taken(program(here, "fresh").arg("--no-cache"), here, "fresh"), (Some(0), 0));
+    assert_eq!(taken(program(here, "off").env("GRAINBENCH_CACHE", "off"), here, "off"), (Some(0), 0));
+    assert_eq!(rows(here, "fresh"), rows(here, "off"));
+    // Runs of another processor path do not come from the cache. The results have the same bits.
+    let portable = taken(program(here, "portable").env("GRAINBENCH_PROCESSOR", "portable"), here, "portable");
+    assert_eq!((portable, rows(here, "portable")), ((Some(0), 0), rows(here, "first")));
+}
+
+/// A folder that every user can write is not trusted, and a CI job has no cache unless a folder is named.
+#[cfg(unix)]
+#[test]
+fn a_folder_of_everybody_is_not_used() {
+    use std::os::unix::fs::PermissionsExt;
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    let mode = |mode| fs::set_permissions(here.join("cache"), fs::Permissions::from_mode(mode)).unwrap();
+    mode(0o777);
+    let answer = program(here, "open").output().unwrap();
+    let message = String::from_utf8_lossy(&answer.stderr).into_owned();
+    assert!(answer.status.success() && message.contains("not used") && message.contains("mode 777"), "{message}");
+    assert_eq!(taken(&mut program(here, "open"), here, "open"), (Some(0), 0));
+    mode(0o775);
+    assert!(taken(&mut program(here, "group"), here, "group").1 > 5);
+    let results = fs::read_to_string(here.join("group/results.json")).unwrap();
+    assert!(results.contains("owned by user") && results.contains("writable by group"), "{results}");
+    let in_ci = |out: &str| {
+        let mut command = program(here, out);
+        command.env_remove("GRAINBENCH_CACHE").envs([("CI", "true"), ("XDG_CACHE_HOME", here.to_str().unwrap())]);
+        taken(&mut command, here, out)
+    };
+    assert_eq!((in_ci("once"), in_ci("twice")), ((Some(0), 0), (Some(0), 0)));
+    assert!(!here.join("grainbench").exists());
+}
+
+#[test]
+fn what_is_damaged_foreign_or_older_is_done_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(taken(&mut program(here, "first"), here, "first").1, 0);
+    let whole: Vec<(PathBuf, Vec<u8>)> =
+        entries(here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+    let count = whole.len() as u64;
+    let spoil = |how: &dyn Fn(usize, &[u8]) -> Vec<u8>| {
+        entries(here).iter().for_each(|path| fs::remove_file(path).unwrap());
+        for (at, (path, bytes)) in whole.iter().enumerate() {
+            fs::write(path, how(at, bytes)).unwrap();
+        }
+        let found = taken(&mut program(here, "spoiled"), here, "spoiled");
+        assert_eq!(rows(here, "spoiled"), rows(here, "first"));
+        found
+    };
+    let flipped = |at: usize, bytes: &[u8]| {
+        let mut bytes = bytes.to_vec();
+        let place = bytes.len() - 1 - at * 37 % (bytes.len() / 2);
+        bytes[place] ^= 1;
+        bytes
+    };
+    let older = |_: usize, bytes: &[u8]| [b"grainbench record 0\n", &bytes["grainbench record 1\n".len()..]].concat();
+    assert_eq!(spoil(&flipped), (Some(0), 0), "a bit is wrong");
+    assert_eq!(spoil(&|_, bytes| bytes[..bytes.len() / 2].to_vec()), (Some(0), 0), "cut off");
+    assert_eq!(spoil(&|_, _| Vec::new()), (Some(0), 0), "empty");
+    assert_eq!(spoil(&|_, _| b"{\"a\": 1}".to_vec()), (Some(0), 0), "another kind of file");
+    assert_eq!(spoil(&older), (Some(0), 0), "an older format");
+    let of_next = |at: usize, _: &[u8]| whole[(at + 1) % whole.len()].1.clone();
+    assert_eq!(spoil(&of_next), (Some(0), 0), "the run of another name");
+    // The repeated runs are cached again.
+    let (code, again) = taken(&mut program(here, "last"), here, "last");
+    assert!(code == Some(0) && 2 * again > count, "{again} of {count}");
+}
+
+#[test]
+fn two_at_once_share_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let start = |out: &str| program(here, out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    for mut child in [start("one"), start("two")] {
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+    }
+    assert_eq!(rows(here, "one"), rows(here, "two"));
+    let kept = entries(here).len() as u64;
+    assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
+}
+
+/// Ctrl-C at ten times: finished runs are kept, and at the end nothing is missing.
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interrupted_run_goes_on_from_what_was_finished() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let begun = Instant::now();
+    assert_eq!(taken(program(here, "whole").env("GRAINBENCH_CACHE", "off"), here, "whole"), (Some(0), 0));
+    let long = begun.elapsed();
+    let mut last = 0;
+    for moment in 0..10 {
+        let child = program(here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(20).max(long.mul_f64(f64::from(moment) / 10.0)));
+        // The process may have ended already.
+        Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
+        let ended = child.wait_with_output().unwrap();
+        let message = String::from_utf8(ended.stderr).unwrap();
+        // Before its handler is installed, a signal ends the process as any program.
+        let is_announced = message.contains("the next run goes on from the runs that were");
+        assert!(ended.status.code() != Some(1) || is_announced, "{message}");
+        let now = if here.join("cache").exists() { entries(here).len() } else { 0 };
+        assert!(now >= last, "finished runs are lost: {now} after {last}");
+        last = now;
+    }
+    let (code, again) = taken(&mut program(here, "end"), here, "end");
+    assert_eq!((code, rows(here, "end")), (Some(0), rows(here, "whole")));
+    assert!(last > 0 && again >= last as u64, "{again} of {last}");
+}

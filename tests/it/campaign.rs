@@ -1,0 +1,659 @@
+//! Plans as a user has them. The report of a plan equals the report of its command. After a kill, a truncated file or a
+//! full disk, no result is lost and no task is done twice. Invalid plans are rejected.
+
+mod edits;
+
+use crate::common::{Answer, files, grainbench};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+
+/// Sweep of two factors by two solvers, with a claim of the case and a quantity of its own.
+const SWEEP: &str = "title = 'Slopes'
+scene = 'incline-disc/60deg-mu.3'
+[factors]
+mu = { key = 'contacts.plane.friction', values = [0.2, 0.5, 0.9] }
+theta = { key = 'gravity.slope_deg', from = 20.0, to = 60.0, count = 5 }
+[set]
+duration = 0.3
+[[gates]]
+quantity = 'displacement at the end'
+allowed = 0.01
+[[record]]
+quantity = 'velocity over g t'
+unit = '1'
+value = 'grain.vx / (9.8 * 0.3)'
+[[solvers]]
+solver = 'dem'
+levels = ['dt=.1', 'dt=.05']
+[[solvers]]
+solver = 'rigid'
+levels = ['substeps=8']
+";
+/// Line of the sweep's own quantity before its value.
+const RECORD: &str = "unit = '1'\n";
+/// Number of points of the sweep.
+const POINTS: usize = 45;
+
+fn ok(answer: &Answer) -> &Answer {
+    assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+    answer
+}
+
+/// Returns a folder with the planned sweep.
+fn planned() -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
+    ok(&grainbench(directory.path(), &["plan", "sweep.toml", "--out", "p"]));
+    directory
+}
+
+/// Returns the rows of a table without times.
+fn rows(file: &Path) -> Vec<String> {
+    let text = fs::read_to_string(file).unwrap();
+    let mut table = text.lines();
+    let head = table.next().unwrap();
+    let times = head.split(',').position(|name| name == "wall_seconds").unwrap();
+    // In these tables, the times are the last column.
+    assert_eq!(times + 1, head.split(',').count());
+    table.map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect()
+}
+
+fn json(file: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+}
+
+/// Returns the output of `status` as JSON.
+fn status(directory: &Path, plan: &str) -> Value {
+    serde_json::from_str(&ok(&grainbench(directory, &["status", plan, "--json"])).out).unwrap()
+}
+
+/// Returns the ids of all lines of all results.
+fn done(plan: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(plan.join("results")).unwrap() {
+        let text = String::from_utf8_lossy(&fs::read(entry.unwrap().path()).unwrap()).into_owned();
+        let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole).to_owned();
+        found.extend(whole.lines().skip(1).filter_map(|line| Some(line.split_once(' ')?.0.to_owned())));
+    }
+    found
+}
+
+/// Removes the keys of times from a report.
+fn without_times(mut value: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                for key in ["provenance", "seconds", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"] {
+                    map.remove(key);
+                }
+                if let Some(Value::Array(repetitions)) = map.get("repetitions") {
+                    let count = repetitions.len();
+                    map.insert("repetitions".to_owned(), count.into());
+                }
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(list) => list.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut value);
+    value
+}
+
+/// The report of a plan equals the report of its command: results, controls, figures, counts of runs, points and
+/// limits.
+#[test]
+fn a_collected_plan_is_the_report_of_its_command() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for (command, chunks, file) in [
+        (&["run", "squash", "collision"][..], 3, "report.json"),
+        (&["stability", "two-discs", "mass-ratio-1e6", "--solver=dem", "--solver=mpm"], 2, "study.json"),
+        (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
+    ] {
+        let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
+        ok(&grainbench(here, &[&["plan"], command, &["--out", "p"]].concat()));
+        for chunk in 1..=chunks {
+            ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/{chunks}")]));
+        }
+        let collected = grainbench(here, &["collect", "p", "--out", "collected"]);
+        assert_eq!(collected.code, direct.code, "{}", collected.err);
+        let [direct, collected] = ["direct", "collected"].map(|out| without_times(json(&here.join(out).join(file))));
+        assert_eq!(collected, direct, "{command:?}");
+        for folder in ["p", "direct", "collected"] {
+            fs::remove_dir_all(here.join(folder)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn counts_want_no_times_and_are_those_of_the_command() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let plan =
+        ok(&grainbench(here, &["plan", "cost", "collision", "--solver=dem", "--counts", "--json", "--out", "p"]))
+            .out
+            .clone();
+    assert_eq!(serde_json::from_str::<Value>(&plan).unwrap()["timed"], false);
+    ok(&grainbench(here, &["work", "p", "--jobs", "2"]));
+    ok(&grainbench(here, &["collect", "p", "--out", "collected"]));
+    ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--out", "direct"]));
+    let counts = |out: &str| -> Vec<Value> {
+        let points = json(&here.join(out).join("results.json"))["points"].as_array().unwrap().clone();
+        points.iter().map(|point| serde_json::json!([point["resolution"], point["error"], point["counts"]])).collect()
+    };
+    assert_eq!(counts("collected"), counts("direct"));
+    assert!(!counts("direct").is_empty());
+}
+
+#[test]
+fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
+    let directory = planned();
+    let here = directory.path();
+    let chunks: usize = (1..=4)
+        .map(|chunk| {
+            let words = ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/4"), "-j", "2"])).out.clone();
+            words.split_whitespace().next().unwrap().parse::<usize>().unwrap()
+        })
+        .sum();
+    assert_eq!(chunks, POINTS);
+    assert_eq!(done(&here.join("p")).len(), POINTS);
+    // Another division into shards finds all tasks finished.
+    assert!(ok(&grainbench(here, &["work", "p", "--chunk", "1/1"])).out.contains("45 were finished, 0 done now"));
+    ok(&grainbench(here, &["collect", "p"]));
+    fs::rename(here.join("p"), here.join("first")).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    let report = here.join("first/report");
+    assert_eq!(rows(&report.join("rows.csv")), rows(&here.join("p/report/rows.csv")));
+    assert_eq!(rows(&report.join("rows.csv")).len(), 2 * POINTS);
+    for name in ["index.html", "rows.parquet", "figures/map.svg", "figures/work.svg"] {
+        assert!(report.join(name).is_file(), "{name}");
+    }
+    // A disc rolls or slips as expected by both methods, because the springs of the case are stiff enough.
+    let results = json(&report.join("results.json"));
+    let verdicts = results["verdicts"].as_array().unwrap();
+    let count_of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
+    assert!(
+        count_of("pass") > 35 && count_of("pass") + count_of("fail") == POINTS,
+        "{} {}",
+        count_of("pass"),
+        count_of("fail")
+    );
+    // A quantity without an expectation is reported without a verdict. Without friction it is sin θ, at most 0.87.
+    let unjudged: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
+    assert!(unjudged.len() == POINTS && unjudged.iter().all(|row| row["value"].as_f64() < Some(0.87)));
+}
+
+/// A report of some of the tasks is red, also when it is written again.
+#[test]
+fn a_report_of_some_tasks_is_red_everywhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    ok(&grainbench(here, &["plan", "run", "collision", "--solver", "dem", "--out", "p", "--chunks", "4"]));
+    ok(&grainbench(here, &["work", "p", "--chunk", "1/4"]));
+    assert_eq!(grainbench(here, &["collect", "p"]).code, Some(1));
+    let again = grainbench(here, &["report", "p/report"]);
+    assert!(again.code == Some(1) && again.out.contains("✗ unfinished: "), "{}{}", again.out, again.err);
+    let read = |name: &str| fs::read_to_string(here.join("p/report").join(name)).unwrap();
+    assert!(read("badge.svg").contains("grainbench: unfinished<") && read("junit.xml").contains("errors=\"1\""));
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["report", "p/report"]));
+    assert!(read("badge.svg").contains("pass"));
+}
+
+/// The runs of a sweep use the cache: cached runs are not repeated, and new runs are cached.
+#[test]
+fn a_sweep_shares_the_cache_of_runs() {
+    let directory = planned();
+    let here = directory.path();
+    // Long enough to be cached.
+    fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
+    let work = |plan: &str, cache: &str| {
+        ok(&grainbench(here, &["plan", "sweep.toml", "--out", plan]));
+        let done = crate::common::program()
+            .env("GRAINBENCH_CACHE", here.join(cache))
+            .args(["work", plan])
+            .current_dir(here)
+            .output()
+            .unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        ok(&grainbench(here, &["collect", plan]));
+        fs::read_dir(here.join(cache)).unwrap().count()
+    };
+    let kept = work("p1", "cache");
+    assert!(kept >= 15, "{kept}");
+    assert!(work("p2", "cache") >= kept);
+    let times = |plan: &str| -> Vec<String> {
+        let text = fs::read_to_string(here.join(plan).join("report/rows.csv")).unwrap();
+        let slow = text.lines().filter(|line| line.contains("dt=0.0001"));
+        slow.map(|line| line.rsplit_once(',').unwrap().1.to_owned()).collect()
+    };
+    assert_eq!(times("p1"), times("p2"), "a run that is taken tells the time that it took when it was done");
+}
+
+/// A crash of a solver and an unsupported scene are results with a type, which the report shows.
+#[test]
+fn failures_keep_their_type() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let sweep =
+        SWEEP.replace("'incline-disc/60deg-mu.3'", "'nine-discs/kappa-1'").replace("[[record]]", "[[recorded]]");
+    let sweep = sweep.split("[factors]").next().unwrap().to_owned()
+        + "[[record]]\nquantity = 'velocity'\nunit = 'm/s'\nvalue = 'corner.vy'\n\
+           [[solvers]]\nsolver = 'dem'\nlevels = ['dt=.1', 'dt=40']\n\
+           [[solvers]]\nsolver = 'mpm'\nlevels = ['cells=4']\n";
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    let progress = status(here, "p");
+    assert_eq!((progress["tasks"].as_u64(), progress["failed"].as_u64()), (Some(3), Some(2)), "{progress}");
+    ok(&grainbench(here, &["collect", "p"]));
+    let results = json(&here.join("p/report/results.json"));
+    let ended: Vec<&str> =
+        results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
+    assert_eq!(ended, ["broken", "unsupported"], "{results}");
+    // A failed task counts as finished, unless it is requested again.
+    assert!(ok(&grainbench(here, &["work", "p"])).out.contains("3 were finished, 0 done now"));
+    assert!(ok(&grainbench(here, &["work", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed"));
+}
+
+/// Workers are killed after a random number of results and a short time, and lines are truncated. The remaining tasks
+/// are then done, and none twice.
+#[test]
+fn killed_workers_lose_nothing_and_do_nothing_twice() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    // Two hundred tasks of a few milliseconds.
+    let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "whole"]));
+    ok(&grainbench(here, &["work", "whole"]));
+    ok(&grainbench(here, &["collect", "whole"]));
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    let mut state = 7_u64;
+    let (mut killed, mut at_work) = (0, 0);
+    let results = || if here.join("p/results").is_dir() { done(&here.join("p")).len() } else { 0 };
+    for round in 0..40 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let start = |chunk: &str| {
+            let mut command = crate::common::program();
+            command.args(["work", "p", "--chunk", chunk]).current_dir(here);
+            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+        };
+        let before = results();
+        let mut workers = [start("1/2"), start("2/2")];
+        let enough = before + (state >> 40) as usize % 5;
+        while results() < enough && workers.iter_mut().any(|worker| worker.try_wait().unwrap().is_none()) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_micros((state >> 50) % 4000));
+        for mut worker in workers {
+            killed += usize::from(worker.try_wait().unwrap().is_none());
+            let _ = worker.kill();
+            worker.wait().unwrap();
+        }
+        at_work += usize::from(results() > before);
+        if round % 3 == 0 {
+            // Truncates the last line of one of the result files.
+            let cut = fs::read_dir(here.join("p/results")).unwrap().map(|entry| entry.unwrap().path()).max();
+            if let Some(path) = cut {
+                let bytes = fs::read(&path).unwrap();
+                fs::write(&path, &bytes[..bytes.len().saturating_sub(40)]).unwrap();
+            }
+        }
+    }
+    assert!(
+        killed > 10 && at_work > 10,
+        "{killed} and {at_work}: too many end before they are killed, or begin nothing"
+    );
+    ok(&grainbench(here, &["work", "p"]));
+    let ids = done(&here.join("p"));
+    assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
+    let progress = status(here, "p");
+    assert_eq!(
+        (progress["twice"].as_u64(), progress["waiting"].as_u64(), progress["running"].as_u64()),
+        (Some(0), Some(0), Some(0))
+    );
+    ok(&grainbench(here, &["collect", "p"]));
+    assert_eq!(rows(&here.join("p/report/rows.csv")), rows(&here.join("whole/report/rows.csv")));
+    assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
+}
+
+/// A full disk ends the run and keeps the finished results. The rest is done when there is space again.
+#[test]
+fn a_full_disk_loses_nothing() {
+    let directory = planned();
+    let here = directory.path();
+    // Files of this process are limited to four kilobytes: about ten results.
+    let full = std::process::Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
+        .env("GRAINBENCH_CACHE", "off")
+        .current_dir(here)
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&full.stderr).into_owned();
+    assert!(!full.status.success() && message.contains("cannot write"), "{message}");
+    let before = done(&here.join("p")).len();
+    assert!((1..POINTS).contains(&before), "{before}");
+    assert_eq!(status(here, "p")["damaged"], 0, "what the disk did not take whole is not there");
+    let rest = ok(&grainbench(here, &["work", "p"])).out.clone();
+    assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
+}
+
+/// A full disk keeps the earlier plan, and leaves nothing of a first one.
+#[test]
+fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
+    let directory = planned();
+    let here = directory.path();
+    // The head of the second plan is too long for the limit of a file: 512 bytes.
+    let plan = |out: &str, limit: &str| {
+        let script = format!("trap '' XFSZ; {limit} exec \"$0\" plan run belt --out {out}");
+        let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
+        let ended = std::process::Command::new("sh").args(command).current_dir(here).output().unwrap();
+        (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
+    };
+    let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
+    for out in ["p", "new"] {
+        let (code, said) = plan(out, "ulimit -f 1;");
+        assert!(code == Some(1) || code == Some(2), "{said}");
+        assert!(said.contains("cannot write"), "{said}");
+    }
+    assert_eq!(kept, ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap()));
+    assert!(!here.join("new").exists());
+    fs::create_dir_all(here.join("new/.grainbench-1@elsewhere-x")).unwrap();
+    for out in ["p", "new"] {
+        assert_eq!(plan(out, ""), (Some(0), String::new()), "{out}");
+        ok(&grainbench(here, &["status", out]));
+    }
+}
+
+/// Concurrent workers share a plan.
+#[test]
+fn two_at_once_do_each_task_once() {
+    let directory = planned();
+    let here = directory.path();
+    let start =
+        || crate::common::program().args(["work", "p"]).current_dir(here).stdout(Stdio::null()).spawn().unwrap();
+    for mut worker in [start(), start(), start()] {
+        assert_eq!(worker.wait().unwrap().code(), Some(0));
+    }
+    let ids = done(&here.join("p"));
+    assert_eq!((ids.len(), ids.iter().collect::<BTreeSet<_>>().len()), (POINTS, POINTS));
+}
+
+/// Rejects invalid plans, for each kind of error in a file.
+#[test]
+fn what_is_no_plan_is_refused() {
+    let directory = planned();
+    let here = directory.path();
+    let plan = here.join("p");
+    let whole: Vec<(PathBuf, Vec<u8>)> =
+        ["plan.toml", "tasks.jsonl"].map(|name| (plan.join(name), fs::read(plan.join(name)).unwrap())).into();
+    let refused = |what: &str| {
+        for command in [&["work", "p"][..], &["status", "p"], &["collect", "p"], &["work", "p", "--on", "slurm"]] {
+            let answer = grainbench(here, command);
+            assert_eq!(answer.code, Some(2), "{what}: {command:?}: {}{}", answer.out, answer.err);
+            assert!(answer.err.contains("expected") && !answer.err.contains("panicked"), "{what}: {}", answer.err);
+        }
+    };
+    for (path, bytes) in &whole {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let foreign: [&[u8]; 6] =
+            [b"", &bytes[..bytes.len() / 2], b"{\"a\": 1}\n", b"\xff\xfe\0", b"format = 1\n", &bytes[1..]];
+        for (at, text) in foreign.into_iter().enumerate() {
+            fs::write(path, text).unwrap();
+            refused(&format!("{name} {at}"));
+        }
+        fs::remove_file(path).unwrap();
+        refused(&format!("no {name}"));
+        fs::write(path, bytes).unwrap();
+    }
+    let head = String::from_utf8(whole[0].1.clone()).unwrap();
+    for (from, to) in [
+        ("format = 1", "format = 2"),
+        ("chunks = 1", "chunks = 0"),
+        ("lease_seconds = 60.0", "lease_seconds = nan"),
+        ("kind = \"sweep\"", "kind = \"sweet\""),
+    ] {
+        assert!(head.contains(from), "{from}");
+        fs::write(&whole[0].0, head.replace(from, to)).unwrap();
+        refused(to);
+    }
+    for (from, to, message) in [
+        ("sweep.toml\"]", "sweep.toml\", \"--nothing\"]", "arguments"),
+        ("program = \"", "program = \"0", "the program that planned"),
+    ] {
+        assert!(head.contains(from), "{from}");
+        fs::write(&whole[0].0, head.replace(from, to)).unwrap();
+        let answer = grainbench(here, &["work", "p"]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+    }
+    fs::write(&whole[0].0, head).unwrap();
+    // Foreign files among the results are ignored.
+    for (name, text) in
+        [("a.log", &b""[..]), ("b.log", b"hello\n"), ("c.log", b"grainbench-results 1 {}\n\xff\n"), ("d.txt", b"x")]
+    {
+        fs::write(plan.join("results").join(name), text).unwrap();
+    }
+    fs::write(plan.join("running/x.json"), "{").unwrap();
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    assert_eq!(status(here, "p")["damaged"], 2);
+    assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
+    // A plan is written only to an empty folder.
+    fs::create_dir(here.join("full")).unwrap();
+    fs::write(here.join("full/notes"), "").unwrap();
+    let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
+    assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
+    for chunk in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
+        assert_eq!(grainbench(here, &["work", "p", "--chunk", chunk]).code, Some(2), "{chunk}");
+    }
+}
+
+/// Rejects invalid sweeps and names the wrong key.
+#[test]
+fn what_is_no_sweep_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let mut messages = String::new();
+    for (from, to) in [
+        ("title = 'Slopes'\n", ""),
+        ("title", "titel"),
+        ("incline-disc/60deg-mu.3", "inclin-disc"),
+        ("incline-disc/60deg-mu.3", "incline-disc/61deg"),
+        ("incline-disc/60deg-mu.3", "nowhere.toml"),
+        ("contacts.plane.friction", "contacts.plane.frictoin"),
+        ("contacts.plane.friction", "gravity..x"),
+        ("values = [0.2, 0.5, 0.9]", "values = []"),
+        ("values = [0.2, 0.5, 0.9]", "values = [-1.0]"),
+        ("values = [0.2, 0.5, 0.9]", "values = ['much']"),
+        ("count = 5", "count = 5, spacing = 'logarithmic'"),
+        ("displacement at the end", "displacment at the end"),
+        ("allowed = 0.01", "allowed = -1"),
+        (RECORD, "unit = '1'\nequals = 'sin(theta'\nallowed = 1\n"),
+        (RECORD, "unit = '1'\nallowed = 1\n"),
+        (RECORD, "unit = '1'\nequals = 1\n"),
+        (RECORD, "unit = '1'\nequals = 1\nallowed = 1\nscale = 0\n"),
+        (RECORD, "unit = '1'\nequals = 1\nallowed = 1\nscale = '-1e9'\n"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = '1 +'"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = 'grian.vx / (9.8 * 0.3)'"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = '0.5'"),
+        ("value = 'grain.vx / (9.8 * 0.3)'", "value = 't * gravity.magnitude'"),
+        (RECORD, "unit = '1'\nequals = 'sin(thta * pi/180)'\nallowed = 1\n"),
+        ("'dt=.1', 'dt=.05'", "'fine'"),
+        ("'dt=.1', 'dt=.05'", "'dt=.1', 'dt=0.1'"),
+        ("'dt=.1', 'dt=.05'", "'cells=4'"),
+        ("'dt=.1', 'dt=.05'", ""),
+        ("solver = 'rigid'", "solver = 'rigit'"),
+        ("solver = 'rigid'", "solver = 'nowhere/SOLVER.toml'"),
+        ("[set]", "map = ['mu', 'tau']\n[set]"),
+        ("[set]", "repetitions = 3\n[set]"),
+        ("[set]", "line = { formula = 'mu', label = 'l' }\n[set]"),
+        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'theta', label = 'l' }\n[set]"),
+        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'mu +', label = 'l' }\n[set]"),
+        ("[set]", "[formulas]\nduration = 'tau * 2'\n[set]"),
+        ("[factors]", "design = 'random'\npoints = 0\n[factors]"),
+    ] {
+        assert!(SWEEP.contains(from), "{from}");
+        // TOML tables that would capture a line come after it.
+        let text = if ["map", "line", "repetitions"].iter().any(|key| to.starts_with(key)) {
+            format!("{}\n{SWEEP}", to.replace("\n[set]", ""))
+        } else {
+            SWEEP.replacen(from, to, 1)
+        };
+        fs::write(here.join("sweep.toml"), text).unwrap();
+        let answer = grainbench(here, &["plan", "sweep.toml", "--out", "p"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{to}: {}", answer.err);
+        messages += &format!("{}\n{}\n", to.trim(), answer.err);
+        assert!(!here.join("p").exists(), "{to}");
+    }
+    for text in ["", "\0", "title", "[", "title = 1"] {
+        fs::write(here.join("sweep.toml"), text).unwrap();
+        assert_eq!(grainbench(here, &["plan", "sweep.toml", "--out", "p"]).code, Some(2), "{text}");
+    }
+    insta::assert_snapshot!("campaign_sweep_refused", messages);
+}
+
+/// An external solver with a manifest takes part in a sweep at each point.
+#[test]
+fn a_program_by_its_manifest_takes_part() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let manifest = crate::common::root("examples/python/SOLVER.toml");
+    let sweep = SWEEP
+        .replace(
+            "solver = 'rigid'\nlevels = ['substeps=8']",
+            &format!("solver = '{}'\nlevels = ['dt=.01']", manifest.display()),
+        )
+        .replace("count = 5", "count = 2");
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p"]));
+    let rows = rows(&here.join("p/report/rows.csv"));
+    let theirs: Vec<&String> = rows.iter().filter(|row| row.contains(",one-grain,")).collect();
+    assert_eq!(theirs.len(), 12);
+    assert!(theirs.iter().filter(|row| row.contains("displacement")).all(|row| row.contains(",pass,")), "{theirs:?}");
+}
+
+#[test]
+fn a_trend_tells_which_rows_and_counts_changed() {
+    let directory = planned();
+    let here = directory.path();
+    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["collect", "p", "--out", "new"]));
+    // Results of an earlier commit, with a failed claim and a run of one step less.
+    let mut old = json(&here.join("new/results.json"));
+    old["verdicts"][0]["verdict"] = "fail".into();
+    let steps = old["points"][0]["steps"].as_u64().unwrap();
+    old["points"][0]["steps"] = (steps - 1).into();
+    fs::create_dir(here.join("old")).unwrap();
+    fs::write(here.join("old/results.json"), old.to_string()).unwrap();
+    ok(&grainbench(here, &["collect", "p", "--out", "new", "--against", "old", "--against", "new"]));
+    let page = fs::read_to_string(here.join("new/trend.html")).unwrap();
+    assert!(page.contains("The trend over 3 reports") && page.contains(&format!("{} → {steps}", steps - 1)), "{page}");
+    assert_eq!(page.matches("scope=\"row\"").count(), 1, "one row changed");
+    assert!(here.join("new/index.html").is_file() && here.join("new/figures/map.svg").is_file());
+    for (wrong, text) in [("missing", None), ("empty", Some("")), ("other", Some("[1]"))] {
+        if let Some(text) = text {
+            fs::write(here.join(wrong), text).unwrap();
+        }
+        assert_eq!(grainbench(here, &["collect", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
+    }
+}
+
+/// Replaces the programs of Slurm by shell scripts. Each writes its arguments to a file, and the file `broken` makes
+/// `squeue` fail.
+fn fake_slurm(directory: &Path) -> String {
+    let bin = directory.join("bin");
+    fs::create_dir(&bin).unwrap();
+    for (name, text) in [
+        ("sbatch", "echo \"$@\" >>\"$FAKE/sbatch.txt\"; cat \"$FAKE/number\" 2>/dev/null || echo 7"),
+        ("squeue", "test -e \"$FAKE/broken\" && exit 1; cat \"$FAKE/queue\" 2>/dev/null; true"),
+        ("scontrol", "echo 'Configuration data as of now'; echo 'MaxArraySize            = 4'"),
+    ] {
+        let file = bin.join(name);
+        fs::write(&file, format!("#!/bin/sh\n{text}\n")).unwrap();
+        std::process::Command::new("chmod").arg("+x").arg(&file).status().unwrap();
+    }
+    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
+}
+
+/// The array has at most the size that the site allows. A resubmission contains only missing shards that are neither
+/// queued nor running.
+#[test]
+fn slurm_is_asked_for_what_is_missing() {
+    let directory = planned();
+    let here = directory.path();
+    let path = fake_slurm(here);
+    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p", "--chunks", "9"]));
+    let ask = |words: &[&str]| {
+        let output = crate::common::program()
+            .args(words)
+            .env("PATH", &path)
+            .env("FAKE", here)
+            .current_dir(here)
+            .output()
+            .unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    };
+    let asked = || fs::read_to_string(here.join("sbatch.txt")).unwrap_or_default().lines().count();
+    let submit = ["work", "p", "--on", "slurm"];
+    for wrong in ["--array=1-2", "-a1", "--wrap=true"] {
+        assert_eq!(ask(&[&submit[..], &["--", wrong]].concat()).code, Some(2), "{wrong}");
+    }
+    fs::write(here.join("broken"), "").unwrap();
+    let answer = ask(&submit);
+    assert!(answer.code == Some(1) && answer.err.contains("squeue failed") && asked() == 0, "{}", answer.err);
+    fs::remove_file(here.join("broken")).unwrap();
+    let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
+    // Array indices are below MaxArraySize.
+    assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: chunks 1-3 of 3\n"), "{}", answer.err);
+    let submitted = fs::read_to_string(here.join("sbatch.txt")).unwrap();
+    assert!(
+        submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh"),
+        "{submitted}"
+    );
+    let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
+    assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
+    // A second submission needs `--resubmit`.
+    assert!(ask(&submit).code == Some(2) && asked() == 1);
+    let again = [&submit[..], &["--resubmit"]].concat();
+    fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
+    fs::write(here.join("number"), "8").unwrap();
+    assert_eq!(ask(&again).out, "job 8: chunks 1 of 3\n");
+    assert!(ask(&["status", "p"]).out.contains("queued    2 chunks"), "the job of another is not ours");
+    for chunk in ["1/3", "3/3"] {
+        ok(&ask(&["work", "p", "--chunk", chunk]));
+    }
+    fs::write(here.join("queue"), "").unwrap();
+    assert_eq!(ask(&again).out, "job 8: chunks 2 of 3\n");
+    fs::write(here.join("broken"), "").unwrap();
+    let before = asked();
+    assert!(ask(&again).code == Some(1) && asked() == before, "an unknown queue is no empty one");
+    assert!(ask(&["status", "p"]).out.contains("queued    not known: squeue failed"));
+    let status: Value = serde_json::from_str(&ask(&["status", "p", "--json"]).out).unwrap();
+    assert!(status["queued"].is_null() && status["waiting"].as_u64() > Some(0), "{status}");
+    fs::remove_file(here.join("broken")).unwrap();
+    ok(&ask(&["work", "p"]));
+    assert!(ask(&again).out.starts_with("nothing is missing"));
+    // A timing run has exclusive use of its node.
+    ok(&ask(&["plan", "cost", "collision", "--solver=dem", "--out", "c"]));
+    ok(&ask(&["work", "c", "--on", "slurm"]));
+    let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
+    assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
+    assert_eq!(ask(&["work", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
+    // A reply without a job number is an error.
+    fs::write(here.join("number"), "Submitted").unwrap();
+    ok(&ask(&["plan", "sweep.toml", "--out", "q"]));
+    let answer = ask(&["work", "q", "--on", "slurm"]);
+    assert!(answer.code == Some(1) && answer.err.contains("expected the number of a job"), "{}", answer.err);
+}

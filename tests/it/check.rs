@@ -1,0 +1,567 @@
+//! `check` and `compare` on output of the external solvers, and on output without a possible verdict.
+
+use crate::common::{Answer, files, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn data(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", name].iter().collect();
+    path.display().to_string()
+}
+
+/// Returns the exit code and the results of `check` on a stored dump.
+fn check(case: &str, dump: &str, more: &[&str]) -> (i32, Vec<Value>) {
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data(dump);
+    let answer = grainbench(directory.path(), &[&["check", case, "--dump", &dump, "--json"], more].concat());
+    assert_eq!(answer.err, "");
+    assert!(directory.path().join("grainbench-out/index.html").is_file());
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    (answer.code.unwrap(), results["verdicts"].as_array().unwrap().clone())
+}
+
+fn count(rows: &[Value], verdict: &str) -> usize {
+    rows.iter().filter(|row| row["verdict"] == verdict).count()
+}
+
+#[test]
+fn what_is_right_passes_by_exact_answers_and_by_our_solvers() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+    assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 3);
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-granular-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+}
+
+#[test]
+fn six_digits_in_odd_order_pass_with_a_wider_tolerance_that_says_so() {
+    let (code, full) = check("incline-disc/60deg-mu.9", "lammps-incline.dump.gz", &[]);
+    let (six_code, six) = check("incline-disc/60deg-mu.9", "lammps-incline-six-digits.dump.gz", &[]);
+    assert_eq!((code, six_code, count(&six, "pass"), six.len()), (0, 0, 9, 9));
+    for (full, six) in full.iter().zip(&six).filter(|(row, _)| row["evidence"] == "analytic") {
+        let allowed = |row: &Value| row["allowed"].as_f64().unwrap();
+        assert!(allowed(six) > allowed(full) && allowed(six) < 3e-5, "{six}");
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-incline-six-digits.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", &dump]);
+    assert!(answer.out.contains("for the digits printed, 6 at most"), "{}", answer.out);
+}
+
+#[test]
+fn half_the_friction_is_red() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "fail")), (1, 6));
+}
+
+/// Walls of a released LAMMPS, from its output alone: friction is wrong by parts in ten thousand, or NaN.
+#[test]
+fn a_released_defect_is_red() {
+    let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-incline.dump.gz", &[]);
+    assert_eq!((code, count(&rows, "fail")), (1, 6));
+    let analytic = rows.iter().filter(|row| row["evidence"] == "analytic");
+    assert!(analytic.into_iter().all(|row| row["verdict"] == "fail" && row["error"].as_f64().unwrap().abs() < 1e-3));
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-2025-undamped.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", &dump]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains(":14:51: expected a finite number in the column `fx`, found `-nan`"), "{}", answer.err);
+}
+
+/// The same defect for an oblique impact on the wall. The other walls of this LAMMPS are right.
+#[test]
+fn a_released_defect_is_red_in_an_oblique_impact_too() {
+    for (dump, code, red) in [
+        ("lammps-oblique.dump.gz", 0, 0),
+        ("lammps-2025-granular-oblique.dump.gz", 0, 0),
+        ("lammps-2025-oblique.dump.gz", 1, 6),
+    ] {
+        let (found, rows) = check("oblique-impact/damped", dump, &[]);
+        assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 11), "{dump}");
+        // Our solvers, and the stored runs of both external solvers. Exact solutions of damped impacts depend on the
+        // dashpot's convention.
+        let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
+        assert_eq!(stored.count(), 5, "{dump}");
+    }
+    // The velocity along the wall is 3.8878 m/s; LAMMPS itself has 3.1267 m/s.
+    let (_, rows) = check("oblique-impact/damped", "lammps-2025-oblique.dump.gz", &[]);
+    let of_stored = |row: &&Value| row["quantity"].as_str().unwrap().contains("stored samples");
+    let along =
+        rows.iter().filter(of_stored).find(|row| row["quantity"].as_str().unwrap().starts_with("grain.vx")).unwrap();
+    assert!((along["value"].as_f64().unwrap() - 3.8878).abs() < 1e-3, "{along}");
+    assert!(along["error"].as_f64().unwrap() > 0.19, "{along}");
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("lammps-2025-undamped-oblique.dump.gz");
+    let answer = grainbench(directory.path(), &["check", "oblique-impact/elastic", "--dump", &dump]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("expected a finite number in the column `x`, found `-nan`"), "{}", answer.err);
+}
+
+#[test]
+fn the_time_step_comes_from_the_log_or_is_asked_for() {
+    let log = data("liggghts-backspin.log");
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
+    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "2e-4"]);
+    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
+    // Another time step gives another motion.
+    let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "3e-4"]);
+    assert!(code == 1 && count(&rows, "fail") > 2);
+}
+
+/// A table with its own column names is compared too.
+#[test]
+fn a_table_is_judged_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut text = "time;way;speed\n".to_owned();
+    // A rigid disc on this slope: v = (2/3) g sin 60° t.
+    for step in 0..=100 {
+        let (t, a) = (f64::from(step) * 0.01, 2.0 / 3.0 * 9.8 * 60_f64.to_radians().sin());
+        text.push_str(&format!("{t};{:e};{:e}\n", 0.5 * a * t * t, a * t));
+    }
+    fs::write(directory.path().join("mine.csv"), text).unwrap();
+    let arguments = [
+        "check",
+        "incline-disc/60deg-mu.9",
+        "--dump",
+        "mine.csv",
+        "--map",
+        "x=way,vx=speed",
+        "--time-step",
+        "1e-4",
+        "--json",
+    ];
+    let answer = grainbench(directory.path(), &arguments);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap();
+    let row_of =
+        |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
+    // The rigid solution has the same mean motion as the scene's soft contact, but not its oscillation.
+    assert_eq!((&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
+    assert_eq!((rows.len(), answer.code), (5, Some(1)));
+}
+
+/// Column mapping for contact forces from a contact dump and from wall columns with foreign names.
+const CONTACTS: &str =
+    "id1=c_2[1],id2=c_2[2],force_x=c_1[3],force_y=c_1[4],bottom.force_x=f_wall3[2],bottom.force_y=f_wall3[3]";
+
+#[test]
+fn forces_at_contacts_are_judged_where_a_dump_tells_them() {
+    let judged = |name: &str, more: &[&str]| {
+        let contacts = data(&format!("{name}.contacts.gz"));
+        check("nine-discs/static-0", &format!("{name}.dump.gz"), &[&["--dump", &contacts], more].concat())
+    };
+    let forces = |rows: &[Value], verdict: &str| {
+        let of_forces = |row: &&Value| row["evidence"] == "analytic" && row["unit"] == "N";
+        rows.iter().filter(of_forces).filter(|row| row["verdict"] == verdict).count()
+    };
+    // Three snapshots show the end alone.
+    let (code, rows) = judged("lammps-nine-static", &["--map", CONTACTS, "--partial"]);
+    assert_eq!((code, forces(&rows, "pass"), count(&rows, "fail")), (0, 4, 0), "{rows:#?}");
+    let (code, rows) = judged("lammps-nine-static-stiffer", &["--map", CONTACTS]);
+    assert_eq!((code, forces(&rows, "fail")), (1, 4));
+    // A dump of grains alone has no forces.
+    let (_, rows) = check("nine-discs/static-0", "lammps-nine-static.dump.gz", &[]);
+    assert_eq!(forces(&rows, "no-reference"), 4, "{rows:#?}");
+}
+
+#[test]
+fn contacts_that_cannot_be_read_are_refused_with_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let (grains, contacts) = (data("lammps-nine-static.dump.gz"), data("lammps-nine-static.contacts.gz"));
+    let check = ["check", "nine-discs/static-0", "--dump", &grains, &contacts];
+    let without_names = refusal(directory.path(), &check);
+    assert!(without_names.contains("contacts.gz:9: expected columns `id1` and `id2` of contacts"), "{without_names}");
+    fs::write(
+        directory.path().join("early"),
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n\
+         ITEM: ENTRIES a b x y\n1 2 0 0\n",
+    )
+    .unwrap();
+    let names = "id1=a,id2=b,force_x=x,force_y=y";
+    let early = refusal(directory.path(), &[&check[..4], &["early", "--map", names]].concat());
+    assert!(early.contains("expected the contacts of step 500 in a dump of contacts, found grains alone"), "{early}");
+}
+
+/// Returns the message of an error that leaves no files.
+fn refusal(directory: &Path, arguments: &[&str]) -> String {
+    let before = files(directory);
+    let Answer { code, out, err } = grainbench(directory, arguments);
+    assert_eq!((code, out.as_str()), (Some(2), ""), "{err}");
+    assert_eq!(files(directory), before);
+    err
+}
+
+#[test]
+fn what_cannot_be_judged_is_refused_with_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
+    let snapshot = |head: &str, columns: &str, row: &str| {
+        format!(
+            "{head}ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\n\
+             ITEM: ATOMS {columns}\n{row}\n"
+        )
+    };
+    write("empty", "");
+    write("truncated", &snapshot("ITEM: TIME\n0\n", "id x y", "1 0 0.4995")[..120]);
+    write("no-y", &snapshot("ITEM: TIME\n0\n", "id x vx", "1 0 0"));
+    write("no-time", &snapshot("", "id x y", "1 0 0.4995"));
+    write("elsewhere", &snapshot("ITEM: TIME\n0\n", "id x y", "1 0.25 0.4995"));
+    write("units", &snapshot("ITEM: UNITS\nmetal\nITEM: TIME\n0\n", "id x y", "1 0 0.4995"));
+    write("si", &snapshot("ITEM: UNITS\nsi\nITEM: TIME\n0\n", "id x y", "1 0 0.4995"));
+    write("lj.log", "units lj\nStep Time\n0 0\n");
+    write("contacts", &snapshot("ITEM: TIME\n0\n", "c_1", "1").replace("ATOMS", "ENTRIES"));
+    write("other.csv", "a,b\n0,1\n");
+    let mut messages = String::new();
+    for arguments in [
+        &["incline-disc/60deg-mu.9", "--dump", "missing"][..],
+        &["incline-disc/60deg-mu.9", "--dump", "empty"],
+        &["incline-disc/60deg-mu.9", "--dump", "truncated"],
+        &["incline-disc/60deg-mu.9", "--dump", "no-y"],
+        &["incline-disc/60deg-mu.9", "--dump", "no-time"],
+        &["incline-disc/60deg-mu.9", "--dump", "elsewhere"],
+        &["incline-disc/60deg-mu.9", "--dump", "units"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--log", "lj.log"],
+        &["incline-disc/60deg-mu.9", "--dump", "contacts"],
+        &["incline-disc/60deg-mu.9", "--dump", "other.csv"],
+        &["incline-disc/60deg-mu.9", "--dump", "other.csv", "--map", "time=a"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "other.csv"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--map", "x"],
+        &["incline-disc/60deg-mu.9", "--dump", "si", "--time-step", "0"],
+        &["nine-discs/kappa-1", "--dump", "si"],
+        &["incline-disc", "--dump", "si"],
+    ] {
+        let message = refusal(directory.path(), &[&["check"][..], arguments].concat());
+        messages.push_str(&format!("{}\n    {}\n", arguments.join(" "), message.lines().next().unwrap_or_default()));
+    }
+    for arguments in [["si", "other.csv"], ["other.csv", "si"], ["si", "contacts"]] {
+        let message = refusal(directory.path(), &[&["compare"][..], &arguments].concat());
+        messages.push_str(&format!("compare {}\n    {}", arguments.join(" "), message));
+    }
+    insta::assert_snapshot!(messages);
+}
+
+#[test]
+fn two_outputs_against_each_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let compare = |a: &str, b: &str| grainbench(directory.path(), &["compare", &data(a), &data(b), "--json"]);
+    let rows = |answer: &Answer| -> Vec<Value> {
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        results["verdicts"].as_array().unwrap().clone()
+    };
+    // Scaled and rounded to six digits, it is the same motion.
+    let same = compare("lammps-incline.dump.gz", "lammps-incline-six-digits.dump.gz");
+    assert_eq!((same.code, count(&rows(&same), "pass"), count(&rows(&same), "fail")), (Some(0), 8, 0));
+    // Columns that only the first file has are listed.
+    let alone = |row: &Value| row["detail"].as_str().is_some_and(|words| words.starts_with("only "));
+    assert_eq!(rows(&same).iter().filter(|row| alone(row)).count(), rows(&same).len() - 8);
+    let other = compare("lammps-incline.dump.gz", "lammps-incline-half-friction.dump.gz");
+    assert_eq!(other.code, Some(1));
+    assert!(count(&rows(&other), "fail") >= 3);
+    assert!(directory.path().join("grainbench-out/index.html").is_file());
+}
+
+/// `check` reports a dump that contains only its first snapshots as incomplete.
+#[test]
+fn half_a_run_is_not_judged_as_the_whole() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut whole = String::new();
+    let file = fs::File::open(data("lammps-incline.dump.gz")).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut whole).unwrap();
+    let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
+    assert!(snapshots.len() > 90, "{}", snapshots.len());
+    let half = snapshots[..50].concat();
+    fs::write(directory.path().join("half"), half.trim_end_matches("ITEM: TIME\n")).unwrap();
+    let checked = |more: &[&str]| {
+        let arguments = [&["check", "incline-disc/60deg-mu.9", "--dump", "half", "--json"], more].concat();
+        let answer = grainbench(directory.path(), &arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    };
+    let (code, rows) = checked(&[]);
+    assert_eq!((code, &rows[0]["verdict"], count(&rows, "fail")), (Some(1), &"fail".into(), 1), "{rows:#?}");
+    assert_eq!(rows[0]["expected"]["at_least"], 1.0);
+    for row in &rows[1..] {
+        let (quantity, verdict) = (row["quantity"].as_str().unwrap(), &row["verdict"]);
+        if row["evidence"] == "analytic" {
+            assert_eq!(verdict, "no-reference", "{quantity}");
+        } else {
+            assert!(quantity.contains("samples to t = 0.4") && verdict == "pass", "{row}");
+        }
+    }
+    let (code, rows) = checked(&["--partial"]);
+    assert_eq!((code, &rows[0]["verdict"]), (Some(0), &"known".into()));
+    assert_eq!(checked(&["--partial", "--strict"]).0, Some(1));
+}
+
+/// The first and the last snapshot alone are no run; a tenth of the snapshots is.
+#[test]
+fn samples_far_apart_judge_no_course() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
+    let checked = |kept: &dyn Fn(usize) -> bool, more: &[&str]| {
+        // Each part ends with the first line of the next snapshot; the first part has no snapshot.
+        let kept: String = (1..snapshots.len()).filter(|at| kept(at - 1)).map(|at| snapshots[at]).collect();
+        let text = format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n"));
+        fs::write(directory.path().join("thinned"), text).unwrap();
+        let arguments = [&["check", "incline-disc/60deg-mu.9", "--dump", "thinned", "--json"], more].concat();
+        let answer = grainbench(directory.path(), &arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    };
+    let last = snapshots.len() - 2;
+    let is_end = move |at: usize| at == 0 || at == last;
+    let (code, rows) = checked(&is_end, &[]);
+    assert_eq!((code, count(&rows, "pass")), (Some(1), 4), "{rows:#?}");
+    // Values at the end are judged all the same, because no sample in between can change them.
+    assert!(rows[1..].iter().all(|row| (row["evidence"] == "analytic") == (row["verdict"] == "pass")), "{rows:#?}");
+    let detail = rows.iter().find(|row| row["verdict"] == "fail").unwrap()["detail"].as_str().unwrap();
+    assert!(detail.starts_with("no sample for 1 s from t = 0 s, above 0.1"), "{detail}");
+    let (code, rows) = checked(&is_end, &["--partial"]);
+    assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 5), "{rows:#?}");
+    let (code, rows) = checked(&|at| at % 10 == 0, &[]);
+    assert_eq!((code, count(&rows, "fail")), (Some(0), 0), "{rows:#?}");
+    // One hole of two tenths in a dense run.
+    let (code, rows) = checked(&|at| !(31..50).contains(&at), &[]);
+    assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
+}
+
+/// A sampling interval of the caller does not replace that of the case.
+#[test]
+fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("liggghts-backspin.dump.gz");
+    let snapshots: Vec<&str> = whole.split("ITEM: TIMESTEP\n").collect();
+    let ends = ["", snapshots[1], snapshots[snapshots.len() - 1]].join("ITEM: TIMESTEP\n");
+    fs::write(directory.path().join("ends"), ends).unwrap();
+    for more in [&[][..], &["--set", "output.every=1"]] {
+        let words = ["check", "backspin/sphere", "--dump", "ends", "--time-step", "2e-4", "--json"];
+        let answer = grainbench(directory.path(), &[&words[..], more].concat());
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let rows = results["verdicts"].as_array().unwrap().iter();
+        let details = rows.filter(|row| row["verdict"] == "fail").map(|row| row["detail"].as_str().unwrap_or_default());
+        let gaps = details.filter(|detail| detail.starts_with("no sample for")).count();
+        assert!(answer.code == Some(1) && gaps > 0, "{more:?}: {}", answer.out);
+    }
+}
+
+/// A sample between two steps has no counterpart in our runs. It is red, because it hides all other samples.
+#[test]
+fn a_time_between_two_steps_is_red() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let time = whole.split("ITEM: TIME\n").nth(50).unwrap().lines().next().unwrap();
+    for off in [1e-4, 3e-3] {
+        let moved = format!("ITEM: TIME\n{:?}\n", time.parse::<f64>().unwrap() + off * 0.01);
+        let text = whole.replacen(&format!("ITEM: TIME\n{time}\n"), &moved, 1);
+        fs::write(directory.path().join("off"), text).unwrap();
+        let checked = |more: &[&str]| {
+            let words = ["check", "incline-disc/60deg-mu.9", "--dump", "off", "--json"];
+            let answer = grainbench(directory.path(), &[&words[..], more].concat());
+            let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+            let mut rows = results["verdicts"].as_array().unwrap().clone();
+            rows.retain(|row| row["quantity"] == "comparison with our solvers");
+            (answer.code, rows)
+        };
+        let (code, rows) = checked(&[]);
+        assert_eq!((code, count(&rows, "fail")), (Some(1), 1), "{off}: {rows:#?}");
+        assert!(rows[0]["detail"].as_str().unwrap().contains("is no whole number of steps"), "{rows:#?}");
+        let (code, rows) = checked(&["--partial"]);
+        assert_eq!((code, count(&rows, "known")), (Some(0), 1), "{off}: {rows:#?}");
+    }
+}
+
+/// A dump of grains of another size or mass is of another scene, wherever the grains are.
+#[test]
+fn grains_of_another_radius_or_mass_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let row =
+        |radius: &str, mass: &str| whole.replace("\n1 1 0.5 2356.1944901923448 ", &format!("\n1 1 {radius} {mass} "));
+    for (radius, mass, reason) in [
+        (
+            "0.5005",
+            "2356.1944901923448",
+            "expected the radius of grain 1 of the scene, 0.5 m, found 0.5005 m in `radius`",
+        ),
+        ("0.5", "2356.2944901923448", "expected the mass of grain 1 of the scene, 2356.1944901923"),
+    ] {
+        fs::write(directory.path().join("other"), row(radius, mass)).unwrap();
+        let message = refusal(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "other"]);
+        assert!(message.contains(reason), "{message}");
+    }
+    // Six digits of the mass are its first six.
+    fs::write(directory.path().join("rounded"), row("0.5", "2356.19")).unwrap();
+    assert_eq!(grainbench(directory.path(), &["check", "incline-disc/60deg-mu.9", "--dump", "rounded"]).code, Some(0));
+}
+
+/// Three digits allow two starts of the variant; the nearer one has the exact answers.
+#[test]
+fn few_digits_take_no_other_start() {
+    let directory = tempfile::tempdir().unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    for digits in [3, 4] {
+        let word = |word: &str| match word.parse::<f64>() {
+            Ok(value) if word.contains('.') => format!("{value:.*e}", digits - 1),
+            _ => word.to_owned(),
+        };
+        let row = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ");
+        let line = |line: &str| if line.starts_with("1 1 ") { row(line) } else { line.to_owned() };
+        let text: String = whole.lines().map(|text| line(text) + "\n").collect();
+        fs::write(directory.path().join("rounded"), text).unwrap();
+        let words = ["check", "incline-disc/60deg-mu.9", "--dump", "rounded", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let rows = results["verdicts"].as_array().unwrap();
+        let exact = rows.iter().filter(|row| row["evidence"] == "analytic").count();
+        assert_eq!((exact, count(rows, "fail")), (3, 0), "{digits}: {rows:#?}");
+    }
+}
+
+/// A step or a time that is there twice with other numbers is an error in every reader.
+#[test]
+fn a_step_that_is_there_twice_with_other_numbers_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(directory.path().join(name), text).unwrap();
+    let whole = unpacked("lammps-incline.dump.gz");
+    let last = &whole[whole.rfind("ITEM: TIME\n").unwrap()..];
+    let moved = last.rsplit_once("ITEM: ATOMS").unwrap();
+    let row = moved.1.lines().nth(1).unwrap();
+    let other = last.replace(row, &row.replacen(" 5.", " 4.", 1).replacen(" 8.", " 7.", 1));
+    write("same", &format!("{whole}{last}"));
+    write("twice", &format!("{whole}{other}"));
+    write("end", &other);
+    assert_ne!(last, other);
+    let scene = "incline-disc/60deg-mu.9";
+    for arguments in [
+        &["check", scene, "--dump", "twice"][..],
+        &["check", scene, "--dump", &data("lammps-incline.dump.gz"), "end"],
+        &["compare", "same", "twice"],
+        &["fields", "twice", "--cell", "1"],
+    ] {
+        let message = refusal(directory.path(), arguments);
+        assert!(message.contains(" as before at step ") && message.contains("which is there twice"), "{message}");
+    }
+    assert_eq!(grainbench(directory.path(), &["check", scene, "--dump", "same"]).code, Some(0));
+    let once = "time,x\n0,1.0000\n1,2.0000\n2,2.5000\n";
+    write("once.csv", once);
+    write("again.csv", &format!("{once}2,2.5000\n"));
+    write("twice.csv", &format!("{once}2,3.5000\n"));
+    assert_eq!(grainbench(directory.path(), &["compare", "once.csv", "again.csv"]).code, Some(0));
+    let message = refusal(directory.path(), &["compare", "once.csv", "twice.csv"]);
+    assert!(message.contains("twice.csv:5: expected a time after 2.0, found 2.0"), "{message}");
+    write("steps.csv", "step,time,x\n0,0,1.0\n5,1,2.0\n5,2,2.5\n");
+    let message = refusal(directory.path(), &["compare", "steps.csv", "steps.csv"]);
+    assert!(message.contains("steps.csv:4: expected a step after 5, found 5"), "{message}");
+    let message = refusal(directory.path(), &["check", scene, "--dump", "steps.csv"]);
+    assert!(message.contains("expected a step after 5 in row 3, found 5"), "{message}");
+}
+
+/// The text of a packed file of the data.
+fn unpacked(name: &str) -> String {
+    let mut whole = String::new();
+    let file = fs::File::open(data(name)).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut whole).unwrap();
+    whole
+}
+
+/// A result with a tolerance as large as its value is amber, and a run without a verdict is not a success.
+#[test]
+fn what_cannot_be_told_is_amber() {
+    let directory = tempfile::tempdir().unwrap();
+    let checked = |text: &str| {
+        fs::write(directory.path().join("mine.csv"), text).unwrap();
+        let arguments = ["check", "collision/gamma-zeta.1", "--dump", "mine.csv", "--time-step", "1e-5", "--json"];
+        let answer = grainbench(directory.path(), &arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    };
+    let (code, rows) = checked("time,a.x\n0,-1\n0.03,-1\n0.06,-1\n");
+    assert_eq!((code, count(&rows[1..], "no-reference"), rows.len()), (Some(1), 2, 3), "{rows:#?}");
+    assert!(rows[1]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{}", rows[1]);
+    let (code, rows) = checked("time,contact.overlap\n0,0\n0.06,0\n");
+    assert_eq!((code, rows.len(), &rows[1]["verdict"]), (Some(1), 2, &"no-reference".into()), "{rows:#?}");
+}
+
+#[test]
+fn outputs_are_compared_in_time_where_their_steps_differ() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str, head: &str, step: f64, count: u32, shift: f64| {
+        let row = |k: u32| {
+            let t = f64::from(k) * step;
+            format!("{t:.12},{:.12},{}\n", (3.0 * t).sin() + shift, if shift > 0.0 { "0.04" } else { "0.0" })
+        };
+        let text: String = (0..=count).map(row).collect();
+        fs::write(directory.path().join(name), format!("{head}\n{text}")).unwrap();
+    };
+    write("a.csv", "time,x,f", 0.01, 100, 0.0);
+    write("b.csv", "time,x,f", 0.003, 334, 0.0);
+    write("off.csv", "time,x,f", 0.003, 334, 1e-3);
+    write("short.csv", "time,x,f", 0.01, 50, 0.0);
+    write("named.csv", "t,way,g", 0.003, 334, 0.0);
+    let compared = |arguments: &[&str]| {
+        let answer = grainbench(directory.path(), &[&["compare"][..], arguments, &["--json"]].concat());
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let rows = results["verdicts"].as_array().unwrap().clone();
+        (answer.code.unwrap(), rows)
+    };
+    let (code, rows) = compared(&["a.csv", "b.csv", "--tolerance", "1e-5"]);
+    assert_eq!((code, count(&rows, "pass")), (0, 4), "{rows:#?}");
+    // Linear interpolation between samples has an error of h² x''/8 = 9 h²/8; the shift is about 100 times as large.
+    assert!(rows[2]["allowed"].as_f64().unwrap() < 1.2 * (1e-5 + 9.0 * 0.003 * 0.003 / 8.0), "{}", rows[2]);
+    let (code, rows) = compared(&["a.csv", "off.csv", "--tolerance", "1e-5", "--columns", "x"]);
+    assert_eq!((code, count(&rows, "fail"), rows.len()), (1, 1, 3), "{rows:#?}");
+    // `0.0` in a file with more digits elsewhere is a whole number, not a number of one digit.
+    let (code, rows) = compared(&["a.csv", "off.csv", "--columns", "f"]);
+    assert_eq!((code, &rows[2]["verdict"]), (1, &"fail".into()), "{rows:#?}");
+    let (code, rows) = compared(&["a.csv", "short.csv"]);
+    assert_eq!((code, count(&rows[..2], "fail"), count(&rows[2..], "pass")), (1, 2, 2), "{rows:#?}");
+    let (code, rows) = compared(&["a.csv", "short.csv", "--partial"]);
+    assert_eq!((code, count(&rows[..2], "known")), (0, 2), "{rows:#?}");
+    assert_eq!(compared(&["a.csv", "named.csv", "--tolerance", "1e-5", "--map", "x=way,f=g,time=t"]).0, 0);
+    let refused = refusal(directory.path(), &["compare", "a.csv", "b.csv", "--columns", "y"]);
+    assert!(refused.contains("expected the column `y`, found `x f`"), "{refused}");
+}
+
+/// The digits of each row count: few digits cannot hide a difference in another row, and never hide a row.
+#[test]
+fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
+    let directory = tempfile::tempdir().unwrap();
+    let compared = |a: &str, b: &str, more: &[&str]| {
+        fs::write(directory.path().join("a.csv"), a).unwrap();
+        fs::write(directory.path().join("b.csv"), b).unwrap();
+        let answer = grainbench(directory.path(), &[&["compare", "a.csv", "b.csv", "--json"], more].concat());
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code.unwrap(), results["verdicts"].as_array().unwrap()[2..].to_vec())
+    };
+    let verdicts =
+        |rows: &[Value]| rows.iter().map(|row| row["verdict"].as_str().unwrap().to_owned()).collect::<Vec<_>>();
+    // Whole numbers are exact.
+    let (code, rows) = compared("step,n\n0,3\n1,3\n", "step,n\n0,3\n1,4\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
+    // The digits of the small value count for it, independent of those of the large value beside it.
+    let (code, rows) = compared("step,v\n0,1.2e6\n1,0.02\n", "step,v\n0,1.2e6\n1,3.5\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
+    // Digits with an uncertainty above 5 % of the scale are reported and do not count as a success.
+    let (code, rows) = compared("step,v\n0,0.1\n1,0.4\n", "step,v\n0,0.1\n1,0.44\n", &[]);
+    assert_eq!((code, verdicts(&rows)), (1, vec!["no-reference".to_owned()]), "{rows:#?}");
+    assert!(rows[0]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{rows:#?}");
+    // Columns that only one file has are listed. Grain types alone are no comparison.
+    let (code, rows) = compared("step,type,v\n0,1,2.5\n", "step,type,w\n0,1,2.5\n", &[]);
+    assert_eq!(
+        (code, verdicts(&rows)),
+        (1, ["pass", "no-reference", "no-reference"].map(str::to_owned).to_vec()),
+        "{rows:#?}"
+    );
+    assert_eq!(rows[1]["detail"], "only a.csv has it");
+    // Neither are sizes and masses, which no run changes.
+    let table = |name: &str| format!("step,n,radius,mass,{name}\n0,1,0.5,2,1\n1,1,0.5,2,3\n");
+    assert_eq!(compared(&table("v").replace(",n,", ",id,"), &table("w").replace(",n,", ",id,"), &[]).0, 1);
+    assert_eq!(compared(&table("v"), &table("w"), &[]).0, 0);
+    // An option that takes one value does not consume the next argument.
+    assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--time-step", "1e-5", "--partial"]).0, 0);
+}

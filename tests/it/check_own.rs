@@ -1,0 +1,609 @@
+//! `check` on runs with the user's own parameters: a scene that is not a case, a case with other parameters, VTK files,
+//! and a folder of many runs.
+
+use crate::common::grainbench;
+use grainbench::cases::registry::read_grains;
+use grainbench::scene::source::SceneSource;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Returns the folder of a LIGGGHTS run with a hand-written deck.
+fn slope() -> PathBuf {
+    [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "liggghts-slope"].iter().collect()
+}
+
+fn file(name: &str) -> String {
+    slope().join(name).display().to_string()
+}
+
+/// Returns the VTK files of the run with those of its box, as a shell pattern gives them.
+fn vtk() -> Vec<String> {
+    let mut files: Vec<String> = fs::read_dir(slope())
+        .unwrap()
+        .map(|entry| entry.unwrap().path().display().to_string())
+        .filter(|path| path.ends_with(".vtk"))
+        .collect();
+    files.sort();
+    files
+}
+
+/// Parameters of the run, as changes of the case of a sphere on a slope.
+const NUMBERS: [&str; 11] = [
+    "gravity={magnitude=9.81,slope_deg=30}",
+    "duration=.5",
+    "materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3}",
+    "materials.rock.bulk_modulus=",
+    "materials.rock.shear_modulus=",
+    "contacts.plane={law=\"hertz\",friction=.5,restitution=.5}",
+    "contacts.plane.normal_stiffness=",
+    "contacts.plane.tangential_stiffness=",
+    "contacts.plane.normal_damping=",
+    "contacts.plane.tangential_damping=",
+    "grains.sphere={radius=.005,position=[0,0,.005]}",
+];
+
+/// Returns the exit code and the results.
+fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &[&["check"], words, &["--json"]].concat());
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    (answer.code, results["verdicts"].as_array().unwrap().clone())
+}
+
+/// Returns exit code and results at the parameters of the run, with some of them changed.
+fn at_numbers(files: &[&str], others: &[&str]) -> (Option<i32>, Vec<Value>) {
+    let set = NUMBERS.iter().chain(others).flat_map(|set| ["--set", set]);
+    let words = [&["incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump"], files].concat();
+    judged(&words)
+}
+
+fn count(rows: &[Value], condition: impl Fn(&Value) -> bool) -> usize {
+    rows.iter().filter(|row| condition(row)).count()
+}
+
+/// A hand-written deck, from its dump and from its VTK files. The time step comes from the log beside them.
+#[test]
+fn a_scene_of_ones_own_is_compared_with_our_solvers() {
+    let dump = file("sphere.dump");
+    let vtk = vtk();
+    assert!(vtk.iter().any(|path| path.contains("boundingBox")) || vtk.len() == 11);
+    for files in [vec![dump.as_str()], vtk.iter().map(String::as_str).collect()] {
+        let scene = file("slope.toml");
+        let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
+        let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
+        // All found quantities are right. Changes that the output cannot reveal are amber.
+        let is_told = |row: &Value| row["verdict"] == "pass" || row["quantity"].as_str().unwrap().contains("reveals");
+        assert_eq!((code, count(&rows, is_told)), (Some(0), rows.len()), "{rows:#?}");
+        assert!(count(&rows, nearest) >= 9, "{rows:#?}");
+        assert_eq!(rows[0]["case"], "slope");
+    }
+}
+
+/// Exact solutions and their tolerances follow the parameters of the scene. Another slope or shape is red.
+#[test]
+fn exact_answers_follow_other_numbers() {
+    let dump = file("sphere.dump");
+    let is_exact = |row: &Value| row["evidence"] == "analytic";
+    for files in [vec![dump.as_str()], vtk().iter().map(String::as_str).collect()] {
+        let (code, rows) = at_numbers(&files, &[]);
+        assert_eq!((code, count(&rows, is_exact)), (Some(0), 3), "{rows:#?}");
+        // v = (5/7) g t sin θ at half a second. The tolerance is Hertz's overlap over the radius, plus the oscillation
+        // of the spring.
+        let velocity = rows.iter().find(|row| row["quantity"] == "velocity at the end").unwrap();
+        let expected = 5.0 / 7.0 * 9.81 * 0.5 * 0.5;
+        assert!((velocity["expected"].as_f64().unwrap() - expected).abs() < 1e-12 * expected, "{velocity}");
+        let overlap = (0.75 * 4.0 / 3.0 * std::f64::consts::PI * 0.005_f64.powi(3) * 2500.0 * 9.81 * 0.75_f64.sqrt()
+            / (5e6 / (2.0 * (1.0 - 0.09)) * 0.005_f64.sqrt()))
+        .powf(2.0 / 3.0);
+        let allowed = velocity["allowed"].as_f64().unwrap();
+        assert!(allowed > overlap / 0.005 && allowed < 1.3 * overlap / 0.005, "{allowed:e} {:e}", overlap / 0.005);
+    }
+    let wrong_radius = ["grains.sphere.radius=.0049", "grains.sphere.position=[0,0,.005]"];
+    let set = NUMBERS.iter().chain(&wrong_radius).flat_map(|set| ["--set", set]);
+    let words = [&["check", "incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump", &dump]].concat();
+    let answer = grainbench(tempfile::tempdir().unwrap().path(), &words);
+    assert!(answer.code == Some(2) && answer.err.contains("expected the radius of grain 1"), "{}", answer.err);
+    for wrong in ["gravity.slope_deg=30.5", "gravity.magnitude=9.7"] {
+        let set = [wrong, "grains.sphere.position=[0,0,.005]"];
+        let (code, rows) = at_numbers(&[&dump], &set);
+        let red = count(&rows, |row| is_exact(row) && row["verdict"] == "fail");
+        assert!(code == Some(1) && red >= 1, "{wrong}: {rows:#?}");
+    }
+}
+
+/// A folder with a subfolder for each case and variant is checked in one call. Other files in it are reported.
+#[test]
+fn a_folder_of_outputs_is_judged_together() {
+    let directory = tempfile::tempdir().unwrap();
+    let into = |place: &str, name: &str| {
+        let folder = directory.path().join("runs").join(place);
+        fs::create_dir_all(&folder).unwrap();
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/check").join(name);
+        fs::copy(from, folder.join(name)).unwrap();
+    };
+    into("incline-disc/60deg-mu.9", "lammps-incline.dump.gz");
+    into("backspin/sphere", "liggghts-backspin.dump.gz");
+    let log = "liggghts-backspin.log";
+    into("backspin/sphere", log);
+    let folder = directory.path().join("runs/backspin/sphere");
+    fs::rename(folder.join(log), folder.join("log.liggghts")).unwrap();
+    let runs = directory.path().join("runs").display().to_string();
+    let (code, rows) = judged(&["--all", &runs]);
+    let passes = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
+    assert!(code == Some(0) && passes("incline-disc") == 9 && passes("backspin") > 5, "{rows:#?}");
+    // The content of a file decides, not its name; what is not judged is red unless it is ignored by name.
+    let place = directory.path().join("runs/incline-disc/60deg-mu.9");
+    fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
+    for input in ["in.lammps", "data.grains"] {
+        fs::write(place.join(input), "units si\n").unwrap();
+    }
+    let (code, rows) = judged(&["--all", &runs]);
+    assert_eq!((code, count(&rows, |row| row["case"] == "incline-disc")), (Some(0), 9), "{rows:#?}");
+    fs::write(place.join("notes.txt"), "a run of yesterday\n").unwrap();
+    fs::write(directory.path().join("runs/stray.dump"), "").unwrap();
+    let (code, rows) = judged(&["--all", &runs]);
+    let files: Vec<&Value> = rows.iter().filter(|row| row["case"] == "files").map(|row| &row["quantity"]).collect();
+    let names = ["incline-disc/60deg-mu.9/notes.txt, not judged", "stray.dump, not judged"];
+    assert_eq!((code, &files[..]), (Some(1), &names.map(Value::from).iter().collect::<Vec<_>>()[..]), "{rows:#?}");
+    let (code, rows) = judged(&["--all", &runs, "--ignore", "notes.txt", "--ignore", "*.dump"]);
+    assert_eq!((code, count(&rows, |row| row["case"] == "files")), (Some(0), 0));
+    fs::remove_file(place.join("notes.txt")).unwrap();
+    fs::remove_file(directory.path().join("runs/stray.dump")).unwrap();
+    fs::rename(place.join("dump.grains"), place.join("lammps-incline.dump.gz")).unwrap();
+    into("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz");
+    fs::remove_file(directory.path().join("runs/incline-disc/60deg-mu.9/lammps-incline.dump.gz")).unwrap();
+    assert_eq!(judged(&["--all", &runs]).0, Some(1));
+    let refused = |folder: &Path, message: &str| {
+        let answer = grainbench(directory.path(), &["check", "--all", &folder.display().to_string()]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+    };
+    refused(&directory.path().join("nowhere"), "expected a folder that can be read");
+    // A folder of a case without output is red, also if only its log is there or if no case has its name.
+    let partly = directory.path().join("partly");
+    for place in ["incline-disc/60deg-mu.9", "oblique-impact", "backspin/sphere", "incline-dics", "nine-discs/kappa"] {
+        fs::create_dir_all(partly.join(place)).unwrap();
+    }
+    fs::write(partly.join("oblique-impact/log.lammps"), "timestep 1\n").unwrap();
+    fs::copy(folder.join("liggghts-backspin.dump.gz"), partly.join("backspin/sphere/dump.gz")).unwrap();
+    fs::copy(folder.join("log.liggghts"), partly.join("backspin/sphere/log.liggghts")).unwrap();
+    let (code, rows) = judged(&["--all", &partly.display().to_string()]);
+    let red = |name: &str, message: &str| {
+        let is_it = |row: &Value| row["quantity"] == format!("{name}, not judged") && row["verdict"] == "fail";
+        count(&rows, |row| is_it(row) && row["detail"].as_str().unwrap().contains(message)) == 1
+    };
+    assert!(code == Some(1) && count(&rows, |row| row["case"] == "files") == 4, "{rows:#?}");
+    assert!(red("incline-disc/60deg-mu.9", "found none") && red("oblique-impact", "found none"), "{rows:#?}");
+    assert!(red("incline-dics", "did you mean `incline-disc`?") && red("nine-discs/kappa", "`kappa`"), "{rows:#?}");
+    let ignored = ["incline-*", "oblique-impact", "nine-discs"].into_iter().flat_map(|name| ["--ignore", name]);
+    let words = [&["--all", partly.to_str().unwrap()], &ignored.collect::<Vec<_>>()[..]].concat();
+    assert_eq!(judged(&words).0, Some(0));
+    fs::create_dir(directory.path().join("empty")).unwrap();
+    refused(&directory.path().join("empty"), "expected outputs in `CASE` or `CASE/VARIANT` of it, found none");
+    into("backspinn", "liggghts-backspin.dump.gz");
+    refused(&directory.path().join("runs"), "did you mean `backspin`?");
+}
+
+/// Rejects files without the necessary data and gives the reason.
+#[test]
+fn files_that_do_not_tell_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let refused = |name: &str, bytes: &[u8], message: &str| {
+        let path = directory.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let answer = grainbench(
+            directory.path(),
+            &["check", &file("slope.toml"), "--time-step", "2e-6", "--dump", &path.display().to_string()],
+        );
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{name}: {}", answer.err);
+        assert_eq!(answer.err.lines().count(), 1);
+    };
+    let whole = fs::read(slope().join("sphere_0.vtk")).unwrap();
+    refused("sphere.vtk", &whole, "expected the step in the file's name, as in `dump_5000.vtk`, found `sphere`");
+    refused("cut_5.vtk", &whole[..whole.len() / 2], "cut_5.vtk:");
+    refused("empty_5.vtk", b"", "empty_5.vtk:1: expected a dump");
+    refused(
+        "other_5.vtk",
+        b"# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n",
+        "other_5.vtk:4: expected",
+    );
+    let points = |numbers: &str| {
+        format!(
+            "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData><Piece><Points>\
+             <DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">{numbers}</DataArray>\
+             </Points></Piece></PolyData></VTKFile>"
+        )
+    };
+    refused("entity_5.vtp", points("0 &x; 0 0").as_bytes(), "entity_5.vtp:1: expected one of the entities `&lt;`");
+    refused("named_5.vtp", points("0 &amp; 0 0").as_bytes(), "named_5.vtp:1: expected a number in the array");
+    // A letter by its number is a part of the number: two, and not three.
+    refused("letter_5.vtp", points("1&#50;3 0").as_bytes(), "expected a whole number of points of 3 numbers");
+    let list = |entries: &str| {
+        format!("<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection>{entries}</Collection></VTKFile>")
+    };
+    refused("list.pvd", list("").as_bytes(), "at least one file");
+    for path in [file("sphere_0.vtk"), "../sphere_0.vtk".to_owned(), "a/../../sphere_0.vtk".to_owned()] {
+        let entry = format!("<DataSet timestep=\"0\" file=\"{path}\"/>");
+        refused("list.pvd", list(&entry).as_bytes(), "list.pvd:1: expected a path inside the folder of the collection");
+    }
+    refused(
+        "list.pvd",
+        list("<DataSet timestep=\"0\" file=\"none.vtp\"/>").as_bytes(),
+        "list.pvd:1: expected the name of a file",
+    );
+    // One sphere and one plane allow 17 rows: 16 contacts of the grain, and one with the plane.
+    refused("many_5.vtp", points(&"0 ".repeat(54)).as_bytes(), "many_5.vtp:1: expected at most 17 grains");
+}
+
+/// Returns a file of the ball that bounces along a floor.
+fn of_ball(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "ball", name].iter().collect();
+    path.display().to_string()
+}
+
+/// Returns the exit code, the results and the messages of `check` on files of the ball.
+fn ball(files: &[&str], more: &[&str]) -> (Option<i32>, Vec<Value>, String) {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = of_ball(if files[0].starts_with("same-ids") { "two-balls.toml" } else { "ball.toml" });
+    let files: Vec<String> = files.iter().map(|file| of_ball(file)).collect();
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let words = [&["check", &scene, "--json", "--power", "off", "--dump"], &files[..], more].concat();
+    let answer = grainbench(directory.path(), &words);
+    let rows = serde_json::from_str(&answer.out).map(|results: Value| results["verdicts"].as_array().unwrap().clone());
+    (answer.code, rows.unwrap_or_default(), answer.err)
+}
+
+fn fails(rows: &[Value]) -> usize {
+    count(rows, |row| row["verdict"] == "fail")
+}
+
+/// Two runs of one log with their own time steps: by the log, by the times of the file, and by both.
+#[test]
+fn each_run_of_a_log_has_its_own_time_step() {
+    let log = of_ball("twosteps.log.gz");
+    for (file, more) in [
+        ("twosteps.dump.gz", &["--log", &log][..]),
+        ("twosteps-time.dump.gz", &["--log", &log]),
+        ("twosteps-time.dump.gz", &[]),
+    ] {
+        let (code, rows, err) = ball(&[file], more);
+        assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+        assert_eq!(rows[1]["resolution"], "dt=0.00001 s to 0.00002 s", "{}", rows[1]);
+    }
+    let (code, _, err) = ball(&["twosteps.dump.gz"], &["--log", &log, "--time-step", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected the time step of the files, 0.00001 s to 0.00002 s"), "{err}");
+    // The same number of steps with one time step throughout is another motion.
+    assert_eq!(ball(&["twosteps.dump.gz"], &["--time-step", "2e-5"]).0, Some(1));
+}
+
+#[test]
+fn a_run_that_starts_late_counts_from_its_first_sample() {
+    let (code, rows, err) = ball(&["late-start.dump.gz"], &["--time-step", "1e-5"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
+    // A first sample that is not the start of the scene is not taken for it.
+    let directory = tempfile::tempdir().unwrap();
+    let mut text = String::new();
+    let file = fs::File::open(of_ball("late-start.dump.gz")).unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(file), &mut text).unwrap();
+    let second = text.split_inclusive("ITEM: TIMESTEP\n").skip(2).collect::<String>();
+    fs::write(directory.path().join("later"), format!("ITEM: TIMESTEP\n{second}")).unwrap();
+    let answer =
+        grainbench(directory.path(), &["check", &of_ball("ball.toml"), "--dump", "later", "--time-step", "1e-5"]);
+    assert!(answer.code == Some(2) && answer.err.contains("in a first sample at step 3000000200"), "{}", answer.err);
+}
+
+/// A log of another run beside the dump is not taken for its clock.
+#[test]
+fn a_log_of_another_run_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let judged = |dump: &str, time_step: &str| {
+        fs::write(directory.path().join("log.lammps"), format!("timestep {time_step}\nStep KinEng\n0 0\n")).unwrap();
+        let words = ["check", &of_ball("ball.toml"), "--power", "off", "--dump", dump];
+        grainbench(directory.path(), &words)
+    };
+    fs::copy(of_ball("twosteps-time.dump.gz"), directory.path().join("dump.gz")).unwrap();
+    fs::write(directory.path().join("table.csv"), "step,time,ball.x\n0,0,0\n400,0.004,0.0008\n").unwrap();
+    for (file, steps) in [("dump.gz", "s from step 0 to step"), ("table.csv", "0.004 s from step 0 to step 400")] {
+        let answer = judged(file, "3e-5");
+        assert!(answer.code == Some(2) && answer.err.contains("log.lammps: expected "), "{}", answer.err);
+        assert!(answer.err.contains(steps) && answer.err.contains("it is of another run"), "{}", answer.err);
+    }
+    // A difference within the digits of printed times is none.
+    assert_ne!(judged("table.csv", "1.0001e-5").code, Some(2));
+}
+
+#[test]
+fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
+    let (code, _, err) = ball(&["cut-off.dump.gz"], &["--time-step", "1e-5"]);
+    assert!(code == Some(2) && err.contains("(--partial judges the whole frames in front of it)"), "{err}");
+    let (code, rows, _) = ball(&["cut-off.dump.gz"], &["--time-step", "1e-5", "--partial"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{rows:#?}");
+    assert_eq!(rows[0]["verdict"], "known");
+    assert!(rows[0]["detail"].as_str().unwrap().contains("cut-off.dump.gz:361: expected a step"), "{}", rows[0]);
+    let directory = tempfile::tempdir().unwrap();
+    let cut = of_ball("cut-off.dump.gz");
+    for words in [&["compare", &cut, &cut][..], &["fields", &cut, "--cell", "0.02", "--time-step", "1e-5"]] {
+        assert_eq!(grainbench(directory.path(), words).code, Some(2));
+        let answer = grainbench(directory.path(), &[words, &["--partial"]].concat());
+        assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+        assert!((answer.out + &answer.err).contains("cut-off.dump.gz:361: expected a step"));
+    }
+}
+
+/// In ParaView's tables, `TimeStep` is the number of a frame and `Time` is in seconds. One table per time contains no
+/// times.
+#[test]
+fn tables_of_grains_are_read_as_grains() {
+    let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--time-step", "1e-5"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    let series =
+        ["series/ball_0.csv", "series/ball_1.csv", "series/ball_2.csv", "series/ball_3.csv", "series/ball_4.csv"];
+    let (code, _, err) = ball(&series, &["--time-step", "1e-5"]);
+    assert!(code == Some(2) && err.contains("or --frame-interval, found numbers of frames only"), "{err}");
+    let (code, rows, err) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.002", "--partial"]);
+    assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
+    let (code, rows, _) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.003", "--partial"]);
+    assert!(code == Some(1) && fails(&rows) > 0);
+}
+
+#[test]
+fn an_id_that_occurs_twice_is_an_error() {
+    let (code, _, err) = ball(&["same-ids/zero_0.vtk", "same-ids/zero_200.vtk"], &["--time-step", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected an id that no row above has, found 0 once more"), "{err}");
+    let directory = tempfile::tempdir().unwrap();
+    for (ids, message) in
+        [("1,1", "found 1 once more"), ("-1,2", "expected a whole number from 0 in the column `id`, found -1")]
+    {
+        let [a, b] = [&ids[..ids.len() - 2], &ids[ids.len() - 1..]];
+        let text = format!("step,id,x,y,z\n0,{a},0,0,0\n0,{b},0.5,0,0\n");
+        fs::write(directory.path().join("grains.csv"), text).unwrap();
+        let answer = grainbench(directory.path(), &["compare", "grains.csv", "grains.csv"]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+    }
+}
+
+/// Rejects lengths in centimetres in each reader.
+#[test]
+fn other_units_are_refused() {
+    let (code, _, err) = ball(&["cgs.dump.gz"], &["--time-step", "1e-5"]);
+    assert!(code == Some(2) && err.contains("expected the units `si`"), "{err}");
+    let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
+    let answer = checked_flight(&lj, &[]);
+    assert!(answer.code == Some(2) && answer.err.contains("expected the units `si`"), "{}", answer.err);
+    assert_eq!(checked_flight(&lj.replace("\nlj\n", "\nsi\n"), &[]).code, Some(0));
+    let directory = tempfile::tempdir().unwrap();
+    let cgs = of_ball("cgs.dump.gz");
+    let answer = grainbench(directory.path(), &["fields", &cgs, "--cell", "1"]);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected the units `si` or `lj`, found `cgs`"),
+        "{}",
+        answer.err
+    );
+    let answer = grainbench(directory.path(), &["compare", &of_ball("twosteps-time.dump.gz"), &cgs]);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected the units `si` of the other file"),
+        "{}",
+        answer.err
+    );
+    assert_eq!(grainbench(directory.path(), &["compare", &cgs, &cgs]).code, Some(0));
+}
+
+/// Rejects a time step above the critical one, at which our own solvers are unstable and give no reference.
+#[test]
+fn a_time_step_above_the_critical_one_is_refused() {
+    let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("coarse.csv"), text).unwrap();
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", "2e-3", "--partial"];
+    let answer = grainbench(directory.path(), &words);
+    // 2√(m/k) with m = 4/3 π r³ ρ = 1.309 g and k = 10⁴ N/m.
+    assert!(
+        answer.code == Some(2) && answer.err.contains("= 7.236013e-4 s; found 0.002 s, 2.764 of it"),
+        "{}",
+        answer.err
+    );
+    assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
+    // The critical time step itself is refused too, as by `simulate`.
+    let scene = SceneSource::read(Path::new(&of_ball("ball.toml"))).unwrap().scene(&read_grains).unwrap();
+    let critical = format!("{:?}", scene.critical_time_step());
+    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", &critical, "--partial"];
+    let answer = grainbench(directory.path(), &words);
+    assert!(
+        answer.code == Some(2) && answer.err.contains("expected a time step below the critical one"),
+        "{}",
+        answer.err
+    );
+}
+
+/// The ball sticks to the floor during contact, so friction has almost no effect; its dashpot and spring have one.
+#[test]
+fn a_check_says_which_changes_the_output_would_reveal() {
+    let directory = tempfile::tempdir().unwrap();
+    let checked = |how: &str| {
+        let (scene, dump, log) = (of_ball("ball.toml"), of_ball("twosteps.dump.gz"), of_ball("twosteps.log.gz"));
+        let words = ["check", &scene, "--dump", &dump, "--log", &log, "--power", how, "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    };
+    for how in ["limited", "full"] {
+        let (code, rows) = checked(how);
+        let row_of =
+            |effect: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(effect)).unwrap();
+        assert_eq!(code, Some(0), "{rows:#?}");
+        assert_eq!(row_of("friction: ")["detail"], "friction: ±25\u{202f}% cannot be told from this output");
+        let damping = row_of("contact damping: ");
+        assert_eq!((&damping["verdict"], &damping["value"]), (&"pass".into(), &0.1.into()), "{damping}");
+        assert_eq!(row_of("stiffness: ")["verdict"], "pass");
+    }
+    assert_eq!(checked("off").1.len(), 10);
+}
+
+/// Three discs that fly apart, in a scene that has no probe of a grain.
+const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n\
+    domain = { low = [0.0, -2.0], high = [4.0, 2.0], periodic = [true, false] }\n\
+    materials.m = { density = 1.0 }\n\
+    contacts.m = { between = ['m', 'm'], normal_stiffness = 1e3, tangential_stiffness = 5e2, friction = 0.5 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.25, 0.5]\nvelocity = [0.5, 0.25]\nspin = 2.0\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [1.5, -0.25]\nvelocity = [-0.25, 1.0]\n\
+    [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [3.0, 1.0]\nvelocity = [0.0, -0.5]\nspin = -1.0\n\
+    [output]\nevery = 0.01\n[probes]\nall = { system = true }\n";
+
+/// A row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
+type Row = [f64; 9];
+/// Change of the three rows of a sample.
+type Change<'a> = &'a dyn Fn(u32, &mut [Row; 3]);
+
+/// Returns a dump of the three discs with steps of 1 ms from step `from` on. `change` changes the rows of a snapshot.
+fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
+    let mut text = String::new();
+    for sample in 0..=10 {
+        let time = f64::from(sample) * 0.01;
+        let row = |x: f64, y: f64, vx: f64, vy: f64, spin: f64| {
+            [x + vx * time, y + vy * time, 0.0, vx, vy, 0.0, 0.0, 0.0, spin]
+        };
+        let mut rows =
+            [row(0.25, 0.5, 0.5, 0.25, 2.0), row(1.5, -0.25, -0.25, 1.0, 0.0), row(3.0, 1.0, 0.0, -0.5, -1.0)];
+        change(sample, &mut rows);
+        text.push_str(&format!(
+            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp ff pp\n0 4\n-2 2\n-0.5 0.5\n\
+             ITEM: ATOMS id x y z vx vy vz omegax omegay omegaz\n",
+            from + 10 * sample
+        ));
+        for (grain, row) in rows.iter().enumerate() {
+            let numbers: Vec<String> = row.iter().map(|number| format!("{number:?}")).collect();
+            text.push_str(&format!("{} {}\n", grain + 1, numbers.join(" ")));
+        }
+    }
+    text
+}
+
+/// Checks a dump of the three discs. Returns the answer.
+fn checked_flight(dump: &str, more: &[&str]) -> crate::common::Answer {
+    checked_scene(FLIGHT, dump, more)
+}
+
+fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> crate::common::Answer {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("flight.toml"), scene).unwrap();
+    fs::write(directory.path().join("flight.dump"), dump).unwrap();
+    let words = ["check", "flight.toml", "--dump", "flight.dump", "--time-step", "1e-3", "--power", "off"];
+    grainbench(directory.path(), &[&words[..], more].concat())
+}
+
+/// The first sample shows the start of all grains, with or without probes.
+#[test]
+fn every_grain_starts_as_in_the_scene() {
+    let right: [(u32, Change<'_>); 3] = [
+        (0, &|_, _| {}),
+        // A run that starts late, and a grain outside its periodic axis.
+        (700, &|_, _| {}),
+        (0, &|_, rows| rows[1][0] += 4.0),
+    ];
+    for (from, change) in right {
+        let answer = checked_flight(&flight(from, change), &[]);
+        assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+    }
+    let wrong: [(Change<'_>, &str); 6] = [
+        (&|_, rows| rows.iter_mut().for_each(|row| row.swap(0, 1)), "x of grain 1 = 0.25 m; found 0.5 m"),
+        (&|_, rows| rows.iter_mut().for_each(|row| row.swap(3, 4)), "vx of grain 1 = 0.5 m/s; found 0.25 m/s"),
+        (&|_, rows| rows[2][1] += 1e-6, "y of grain 3 = 1.0 m; found 1.000001 m"),
+        (&|_, rows| rows[2][8] = 0.0, "omegaz of grain 3 = -1.0 rad/s; found 0.0 rad/s"),
+        (&|_, rows| rows.iter_mut().for_each(|row| *row = [0.0; 9]), "x of grain 1 = 0.25 m; found 0.0 m"),
+        (&|_, rows| rows.swap(0, 1), "x of grain 1 = 0.25 m; found 1.5 m"),
+    ];
+    for (change, message) in wrong {
+        for (from, more) in [(0, &[][..]), (0, &["--partial"]), (700, &[])] {
+            let answer = checked_flight(&flight(from, change), more);
+            assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
+        }
+    }
+    // Six digits are enough for numbers that have no more.
+    let six =
+        flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
+    assert_eq!(checked_flight(&six, &[]).code, Some(0));
+}
+
+/// Grains of a scene in the plane stay in it.
+#[test]
+fn motion_out_of_the_plane_is_refused() {
+    let wrong: [(Change<'_>, &str); 4] = [
+        (
+            &|sample, rows| rows[1][2] = 1e-3 * f64::from(sample),
+            "grain 2 in the plane of the scene, `z` 0.0, found 0.001",
+        ),
+        (&|_, rows| rows[2][5] = 3.0, "grain 3 in the plane of the scene, `vz` 0.0, found 3.0"),
+        (&|sample, rows| rows[0][6] = f64::from(sample), "`omegax` 0.0, found 1.0"),
+        (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` 0.0, found 1.0"),
+    ];
+    for (change, message) in wrong {
+        let answer = checked_flight(&flight(0, change), &[]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
+    }
+    // The plane may lie anywhere, and a rounding does not leave it.
+    let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
+    assert_eq!(checked_flight(&right, &[]).code, Some(0));
+}
+
+/// The interval of the scene file says how far apart samples may be, and no option replaces it.
+#[test]
+fn no_option_allows_samples_far_apart() {
+    let whole = flight(0, &|_, _| {});
+    let mut samples = whole.split_inclusive("ITEM: TIMESTEP\n");
+    let head = samples.next().unwrap();
+    let ends = [samples.next().unwrap(), samples.last().unwrap()].concat();
+    let ends = format!("{head}{ends}");
+    let set = ["--set", "output.every=1"];
+    assert_eq!(checked_flight(&ends, &[]).code, Some(1));
+    assert_eq!(checked_flight(&ends, &set).code, Some(1));
+    let own = FLIGHT.replace("every = 0.01", "every = 0.1");
+    assert_eq!(checked_scene(&own, &ends, &[]).code, Some(0));
+    assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
+}
+
+/// A sample at a time of no step is missing, and is not left out of the comparison without a word.
+#[test]
+fn a_sample_between_steps_is_missing() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "title = 't'\ndimension = 2\nduration = 0.04\n[materials.m]\ndensity = 1000.0\n\
+         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n[grains.a]\nmaterial = 'm'\nradius = 0.1\n\
+         position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
+    fs::write(directory.path().join("s.toml"), scene).unwrap();
+    let judged = |time: &str| {
+        // The interval of 20 samples is 2000 steps. The sample after one step makes our run sample each step.
+        let row = |step: u32, time: &str| format!("{step},{time},{:.6},1.000000\n", f64::from(step) * 1e-6);
+        let other = |step: u32| row(step, &format!("{:.6}", f64::from(step) * 1e-6));
+        let rows: String =
+            (0..=20)
+                .map(|at| {
+                    if at == 10 { row(20_000, time) } else { other(2000 * at) + &other(1).repeat(usize::from(at == 0)) }
+                })
+                .collect();
+        let table = format!("step,time,a.x,a.vx\n{rows}");
+        fs::write(directory.path().join("t.csv"), table).unwrap();
+        let words = ["check", "s.toml", "--dump", "t.csv", "--dt", "1e-6", "--power", "off", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let results: Value =
+            serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+        let rows = results["verdicts"].as_array().unwrap().clone();
+        rows.into_iter().find(|row| row["quantity"].as_str().unwrap().starts_with("a.x, worst of")).unwrap()
+    };
+    assert_eq!(judged("0.020000")["verdict"], "pass");
+    let row = judged("0.02000002");
+    assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are missing"), "{row}");
+}
+
+/// A file equals itself, however few digits it has.
+#[test]
+fn a_file_is_equal_to_itself() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("a.csv"), "time,x,q\n0.0,0.0,0.0\n1.0,2.0,0.3\n2.0,7.0,0.1\n").unwrap();
+    let answer = grainbench(directory.path(), &["compare", "a.csv", "a.csv", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let rows = results["verdicts"].as_array().unwrap();
+    assert!(rows.iter().all(|row| row["verdict"] == "pass"), "{rows:#?}");
+    fs::write(directory.path().join("b.csv"), "time,x,q\n0.0,0.0,0.00\n1.0,2.0,0.30\n2.0,7.0,0.10\n").unwrap();
+    let answer = grainbench(directory.path(), &["compare", "a.csv", "b.csv", "--json"]);
+    assert!(answer.out.contains("cannot tell"), "the second file has more digits: {}", answer.out);
+}

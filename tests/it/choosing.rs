@@ -1,0 +1,246 @@
+//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`,
+//! `--against`.
+
+use crate::common::{Answer, files, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+const CASE: &str = "oblique-impact";
+const FAST: [&str; 4] = ["--solver", "dem:lammps", "--solver", "dem:liggghts"];
+
+fn run(directory: &Path, arguments: &[&str]) -> Answer {
+    grainbench(directory, &[&["run"], arguments, &FAST, &["--quiet"]].concat())
+}
+
+fn results(directory: &Path, out: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(directory.join(out).join("results.json")).unwrap()).unwrap()
+}
+
+fn rows<'a>(results: &'a Value, key: &str) -> Vec<&'a str> {
+    results["verdicts"].as_array().unwrap().iter().map(|row| row[key].as_str().unwrap()).collect()
+}
+
+/// Writes an earlier report with a change in it.
+fn changed(directory: &Path, change: impl FnOnce(&mut Value)) {
+    let mut earlier = results(directory, "grainbench-out");
+    change(&mut earlier);
+    fs::create_dir_all(directory.join("old")).unwrap();
+    fs::write(directory.join("old/results.json"), earlier.to_string()).unwrap();
+}
+
+#[test]
+fn rows_are_chosen_by_what_they_are() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(
+        run(here, &["oblique-imp*", "--filter", "quantity=SPIN", "--filter", "evidence=analytic"]).code,
+        Some(0)
+    );
+    let found = results(here, "grainbench-out");
+    assert!(!rows(&found, "quantity").is_empty());
+    assert!(rows(&found, "quantity").iter().all(|quantity| quantity.contains("spin")), "{found}");
+    assert!(rows(&found, "evidence").iter().all(|evidence| *evidence == "analytic"));
+    assert!(rows(&found, "case").iter().all(|case| *case == CASE));
+    let none = run(here, &[CASE, "--filter", "quantity=nothing of the kind"]);
+    assert_eq!(
+        (none.code, none.err.trim()),
+        (Some(2), "error: expected at least one gate that the filters mean, found none")
+    );
+}
+
+/// The outcome of a claim is known only after its run. A filter on the outcome hides no failure from the exit code.
+#[test]
+fn rows_are_shown_by_how_they_end_and_judged_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let all = run(here, &[CASE]);
+    assert_eq!(all.code, Some(0), "{}", all.err);
+    let count = rows(&results(here, "grainbench-out"), "verdict").len();
+    let passes = run(here, &[CASE, "--filter", "outcome=pass"]);
+    assert_eq!((passes.code, &passes.out), (all.code, &all.out), "all of them pass");
+    assert_eq!(rows(&results(here, "grainbench-out"), "verdict").len(), count);
+    let failed = run(here, &[CASE, "--filter", "outcome=fail"]);
+    // The filter changes the view, and no count.
+    assert_eq!((failed.code, &failed.out), (all.code, &all.out));
+    assert_eq!(rows(&results(here, "grainbench-out"), "verdict").len(), count);
+    let page = fs::read_to_string(here.join("grainbench-out/index.html")).unwrap();
+    assert!(page.contains(&format!("This page shows 0 of {count} results.")), "the page says that it is a part");
+    let badge = fs::read_to_string(here.join("grainbench-out/badge.svg")).unwrap();
+    assert!(badge.contains(&format!("{count} of {count} pass")), "{badge}");
+}
+
+#[test]
+fn an_earlier_report_is_compared_with() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(run(here, &[CASE]).code, Some(0));
+    let against = || {
+        let answer = run(here, &[CASE, "--against", "old"]);
+        assert_eq!(answer.code, Some(0));
+        answer.err
+    };
+    changed(here, |_| ());
+    assert_eq!(against(), "changed: nothing: every row and every control ended as it did, with the same value\n");
+    changed(here, |old| old["verdicts"][0]["verdict"] = "fail".into());
+    assert!(against().starts_with("changed: was fail, is pass: oblique-impact"), "{}", against());
+    changed(here, |old| drop(old["verdicts"].as_array_mut().unwrap().remove(0)));
+    assert!(against().starts_with("changed: new, is pass: oblique-impact"), "{}", against());
+    changed(here, |old| old["verdicts"][0]["value"] = 7.5.into());
+    assert!(against().starts_with("changed: 1 of "), "{}", against());
+    changed(here, |old| old["verdicts"][0]["quantity"] = "what nobody asks any more".into());
+    let lines = against();
+    assert!(lines.contains("changed: new, is pass") && lines.contains("changed: not judged now, was pass"), "{lines}");
+}
+
+#[test]
+fn what_failed_is_run_again_alone() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(run(here, &[CASE]).code, Some(0));
+    let again = || run(here, &["--retry-failed", "--out", "old"]);
+    changed(here, |_| ());
+    let none = again();
+    assert_eq!(
+        (none.code, none.err.trim()),
+        (Some(2), "error: expected at least one gate that failed there, found none")
+    );
+    changed(here, |old| old["verdicts"][3]["verdict"] = "fail".into());
+    let wanted = results(here, "grainbench-out")["verdicts"][3].clone();
+    assert_eq!(again().code, Some(0));
+    let found = results(here, "old");
+    for key in ["variant", "solver", "quantity", "resolution"] {
+        assert!(rows(&found, key).iter().all(|word| wanted[key] == **word), "{key}: {found}");
+    }
+    changed(here, |old| old["controls"][0]["turned_red"] = false.into());
+    let wanted = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
+    assert_eq!(again().code, Some(0));
+    assert!(rows(&results(here, "old"), "quantity").iter().all(|quantity| wanted == **quantity));
+}
+
+/// Results that an interrupted run did not reach are run with the failed ones.
+#[test]
+fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    assert_eq!(run(here, &[CASE]).code, Some(0));
+    let quantities =
+        |from: &str| -> Vec<String> { rows(&results(here, from), "quantity").into_iter().map(str::to_owned).collect() };
+    let all = quantities("grainbench-out");
+    let interrupt = |old: &mut Value| {
+        old["provenance"]["options"].as_array_mut().unwrap().push("interrupted: 1 checks left out".into());
+    };
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["verdicts"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
+    assert!(!quantities("old").is_empty() && quantities("old").iter().all(|quantity| *quantity == all[0]));
+    // A control that was left out is run with its claim.
+    let control = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["controls"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
+    let again = quantities("old");
+    assert!(!again.is_empty() && again.iter().all(|quantity| control == **quantity), "{again:?}");
+    // Without names, the cases of the interrupted run are repeated, and not the whole registry.
+    changed(here, |old| {
+        interrupt(old);
+        drop(old["controls"].as_array_mut().unwrap().remove(0));
+    });
+    assert_eq!(run(here, &["--rerun-failed", "--out", "old"]).code, Some(0));
+    assert_eq!(quantities("old"), again);
+}
+
+/// A wrong report for the comparison is an error before any run and any output.
+#[test]
+fn what_is_no_report_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for (name, text) in [("empty", ""), ("other.json", "[1, 2]"), ("cut.json", "{\"verdicts\": [{\"case\": \"squa")] {
+        fs::write(here.join(name), text).unwrap();
+    }
+    let before = files(here);
+    for name in ["empty", "other.json", "cut.json", "absent", "."] {
+        let answer = run(here, &[CASE, "--against", name]);
+        assert_eq!(answer.code, Some(2), "{name}");
+        assert!(
+            answer.err.contains("--against: ") && answer.err.contains("expected the directory of a report"),
+            "{}",
+            answer.err
+        );
+        assert_eq!(answer.err.lines().count(), 1, "{}", answer.err);
+    }
+    assert_eq!(run(here, &["--retry-failed", "--out", "absent"]).code, Some(2));
+    for wrong in ["nothing", "colour=red", "outcome=red", "evidence=seen", "quantity=["] {
+        let answer = run(here, &[CASE, "--filter", wrong]);
+        assert!(answer.code == Some(2) && answer.err.contains("--filter"), "{wrong}: {}", answer.err);
+    }
+    assert_eq!(files(here), before);
+}
+
+#[test]
+fn shells_and_readers_of_manuals_are_served() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = grainbench(here, &["completions", shell]);
+        assert!(script.code == Some(0) && script.out.contains("rerun-failed"), "{shell}");
+    }
+    assert_eq!(grainbench(here, &["completions", "sh"]).code, Some(2));
+    let page = grainbench(here, &["man"]);
+    assert!(page.code == Some(0) && page.out.contains(".TH"), "{}", page.out);
+    assert_eq!(grainbench(here, &["man", "--out", "man"]).code, Some(0));
+    let run = fs::read_to_string(here.join("man/grainbench-run.1")).unwrap();
+    assert!(run.contains(".TH grainbench-run") && run.contains("rerun"), "{run}");
+}
+
+/// The shell steps of the GitHub action, as a job runs them.
+#[cfg(unix)]
+#[test]
+fn a_job_is_told_in_its_own_way() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let program = Path::new(env!("CARGO_BIN_EXE_grainbench")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(".github/actions/judge/judge");
+    let job_in = |cases: &str, arguments: &str, out: &str| {
+        std::process::Command::new("bash")
+            .arg(&script)
+            .current_dir(here)
+            .env("PATH", &path)
+            .env("GRAINBENCH_CACHE", "off")
+            .env("GITHUB_ACTIONS", "true")
+            .env("GITHUB_STEP_SUMMARY", here.join("summary.md"))
+            .env("GITHUB_OUTPUT", here.join("output"))
+            .envs([("CASES", cases), ("SOLVER", "dem:lammps"), ("ARGUMENTS", arguments), ("OUT", out)])
+            .output()
+            .unwrap()
+    };
+    let job = |cases: &str, arguments: &str| job_in(cases, arguments, "judged");
+    let answer = job("oblique-imp*", "--quiet --filter evidence=analytic");
+    assert_eq!(answer.status.code(), Some(0), "{}", String::from_utf8_lossy(&answer.stderr));
+    assert!(!String::from_utf8_lossy(&answer.stdout).contains("::error"), "nothing is red");
+    let summary = fs::read_to_string(here.join("summary.md")).unwrap();
+    assert!(summary.starts_with("## grainbench: ") && summary.contains("| oblique-impact |"), "{summary}");
+    assert_eq!(fs::read_to_string(here.join("output")).unwrap(), "report=judged\n");
+    assert!(here.join("judged/badge.svg").is_file());
+    // Every line of an input counts, and none is dropped.
+    for (cases, arguments) in
+        [("no-such-case", ""), ("oblique-impact\nno-such-case", ""), ("oblique-impact", "--quiet\n--no-such")]
+    {
+        assert_eq!(job(cases, arguments).status.code(), Some(2), "{cases} {arguments}");
+    }
+    // Help and versions judge nothing, and the directory is one line.
+    for word in ["-h", "--help", "-V", "--version", "-qh"] {
+        assert_eq!(job(word, "").status.code(), Some(2), "{word}");
+        assert_eq!(job("oblique-impact", &format!("--quiet\n{word}")).status.code(), Some(2), "{word}");
+    }
+    for out in ["--help", "judged\nreport=elsewhere"] {
+        assert_eq!(job_in("oblique-impact", "", out).status.code(), Some(2), "{out}");
+    }
+    assert!(!fs::read_to_string(here.join("output")).unwrap().contains("elsewhere"));
+    assert_eq!(fs::read_to_string(here.join("summary.md")).unwrap(), summary, "nothing was judged");
+}

@@ -1,0 +1,311 @@
+//! The command line as a user sees it: help, tables, files, JSON, exit codes.
+
+use crate::common::{files, grainbench};
+use grainbench::cases::registry::CASES;
+use serde_json::Value;
+use std::path::Path;
+use std::process::Stdio;
+
+/// Scene of two colliding discs, with two snapshots between the first and the last.
+const SCENE: &str = r#"title = "Two discs collide"
+dimension = 2
+duration_cycles = 100
+
+[materials.rock]
+density = 1000.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+
+[grains.left]
+material = "rock"
+radius = 0.1
+position = [-0.1, 0.0]
+velocity = [1.0, 0.0]
+
+[grains.right]
+material = "rock"
+radius = 0.1
+position = [0.1, 0.0]
+
+[output]
+every_cycles = 10
+snapshots = 2
+
+[probes]
+left = { grain = "left" }
+"#;
+
+/// Returns the standard output of a command that succeeds without messages.
+fn printed(directory: &Path, arguments: &[&str]) -> String {
+    let answer = grainbench(directory, arguments);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{}", answer.out);
+    answer.out
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
+}
+
+/// Returns a help text without trailing blanks, which clap writes and editors remove.
+fn help(arguments: &[&str]) -> String {
+    let directory = tempfile::tempdir().unwrap();
+    printed(directory.path(), arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+}
+
+#[test]
+fn help_of_every_command() {
+    insta::assert_snapshot!("help", help(&["--help"]));
+    for command in ["list", "run", "simulate", "deck", "check", "compare", "schema", "report"] {
+        insta::assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
+    }
+}
+
+#[test]
+fn version() {
+    assert_eq!(
+        help(&["--version"]),
+        concat!("grainbench ", env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")\n")
+    );
+}
+
+#[test]
+fn list_tells_of_every_case() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = printed(directory.path(), &["list"]);
+    for case in CASES {
+        assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
+    }
+    // One case represents all cases, so that a new case does not change this file. Column widths follow the longest
+    // name.
+    let squash: Vec<String> = text
+        .lines()
+        .skip_while(|line| !line.starts_with("squash "))
+        .take(3)
+        .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+        .collect();
+    insta::assert_snapshot!(squash.join("\n"));
+    let entries = json(&printed(directory.path(), &["list", "--json"]));
+    assert_eq!(entries.as_array().unwrap().len(), CASES.len());
+    for entry in entries.as_array().unwrap() {
+        for key in ["name", "title", "claim", "variants", "gates", "default_level", "levels", "solvers"] {
+            assert!(!entry[key].is_null() && entry[key] != "", "{key} of {entry}");
+        }
+    }
+    assert!(files(directory.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_who_has_seen_enough_is_no_error() {
+    let mut program =
+        crate::common::program().arg("schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(program.stdout.take());
+    let output = program.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
+}
+
+/// Collects the paths of all properties of a schema that have no description.
+fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
+    if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
+        for (name, property) in properties {
+            let description = property.get("description").and_then(Value::as_str).unwrap_or_default();
+            // A tag with a single value is explained with its alternative.
+            if description.trim().is_empty() && property.get("const").is_none() {
+                found.push(format!("{path}.{name}"));
+            }
+        }
+    }
+    match schema {
+        Value::Object(map) => map.iter().for_each(|(key, value)| undocumented(value, &format!("{path}.{key}"), found)),
+        Value::Array(list) => list.iter().for_each(|value| undocumented(value, path, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn schema_documents_every_key() {
+    let directory = tempfile::tempdir().unwrap();
+    let schema = json(&printed(directory.path(), &["schema"]));
+    assert!(schema["properties"]["grains"].is_object());
+    assert!(schema["$defs"].as_object().unwrap().len() > 5);
+    let mut found = Vec::new();
+    undocumented(&schema, "", &mut found);
+    assert!(found.is_empty(), "without a description: {found:?}");
+}
+
+/// The schema in the repository, which editors read, equals the schema of the program.
+#[test]
+fn the_schema_in_the_tree_is_that_of_the_program() {
+    let directory = tempfile::tempdir().unwrap();
+    crate::common::expect_file("scene.schema.json", &printed(directory.path(), &["schema"]));
+}
+
+#[test]
+fn run_leaves_its_files_and_a_summary() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = printed(directory.path(), &["run", "squash", "--out", "deep/out"]);
+    // The claim with the largest used fraction of its tolerance depends on rounding, which differs between mathematical
+    // libraries. Column widths follow it.
+    let settled: Vec<String> = text.lines().map(without_worst).collect();
+    insta::assert_snapshot!(settled.join("\n"));
+    let out = directory.path().join("deep/out");
+    let expected = [
+        "badge.svg",
+        "figures/squash-elastic.csv",
+        "figures/squash-elastic.svg",
+        "figures/squash-forces.csv",
+        "figures/squash-forces.svg",
+        "index.html",
+        "junit.xml",
+        "manifest.json",
+        "points.csv",
+        "report.json",
+        "results.json",
+        "rows.csv",
+    ];
+    assert_eq!(files(&out), expected);
+    assert_eq!(files(directory.path()).len(), expected.len());
+
+    let results = json(&std::fs::read_to_string(out.join("results.json")).unwrap());
+    assert_eq!(results["verdicts"].as_array().unwrap().len(), results["controls"].as_array().unwrap().len());
+    assert_eq!(results["provenance"]["options"], json(r#"["squash"]"#));
+    assert!(results["provenance"]["rustc"].as_str().unwrap().starts_with("rustc "));
+    assert_eq!(results["points"][0]["variant"], "plain");
+    let date = results["provenance"]["date"].as_str().unwrap();
+    assert!(date.ends_with(" UTC") && date.len() == "2000-01-01 00:00:00 UTC".len(), "{date}");
+
+    let page = std::fs::read(out.join("index.html")).unwrap();
+    let again = printed(directory.path(), &["report", "deep/out"]);
+    assert_eq!(again, text);
+    assert_eq!(std::fs::read(out.join("index.html")).unwrap(), page);
+    assert_eq!(files(&out), expected);
+}
+
+/// Returns a line of the summary without its worst claim and without column widths.
+fn without_worst(line: &str) -> String {
+    let cells = line.split("  ").map(str::trim).filter(|cell| !cell.is_empty());
+    let cells = cells.map(|cell| match cell {
+        _ if cell.starts_with('─') => "─",
+        _ if line.starts_with("squash ") && cell.contains("normal force") => "[worst]",
+        _ => cell,
+    });
+    cells.collect::<Vec<_>>().join("  ")
+}
+
+#[test]
+fn run_prints_what_it_writes_as_json() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = printed(directory.path(), &["run", "squash/plain", "--levels", "dt=0.05", "--no-controls", "--json"]);
+    assert_eq!(text, std::fs::read_to_string(directory.path().join("grainbench-out/results.json")).unwrap());
+    let results = json(&text);
+    assert!(results["verdicts"].as_array().unwrap().iter().all(|row| row["verdict"] == "pass"));
+    assert_eq!(results["controls"], json("[]"));
+}
+
+#[test]
+fn no_command_is_run_with_its_options() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &["--solver", "dem:no-such"]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("did you mean `dem`?"), "{}", answer.err);
+}
+
+#[test]
+fn a_red_report_ends_with_one() {
+    let directory = tempfile::tempdir().unwrap();
+    printed(directory.path(), &["run", "squash", "--out", "out"]);
+    let path = directory.path().join("out/report.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (green, red) in [
+        (r#""verdict":"pass""#, r#""verdict":"fail""#),
+        (r#""verdict":"pass""#, r#""verdict":"broken""#),
+        (r#""turned_red":true"#, r#""turned_red":false"#),
+    ] {
+        std::fs::write(&path, text.replacen(green, red, 1)).unwrap();
+        let answer = grainbench(directory.path(), &["report", "out"]);
+        assert_eq!(answer.code, Some(1), "{red}");
+        assert!(answer.out.contains('✗'), "{}", answer.out);
+    }
+    // An amber result is neither a pass nor a failure.
+    std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
+    assert_eq!(grainbench(directory.path(), &["report", "out"]).code, Some(0));
+}
+
+#[test]
+fn simulate_leaves_its_record() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let text = printed(directory.path(), &["simulate", "scene.toml", "--solver", "dem", "--out", "out"]);
+    let settled: Vec<&str> =
+        text.lines().map(|line| if line.starts_with("took ") { "took       [time]" } else { line }).collect();
+    insta::assert_snapshot!(settled.join("\n"));
+    assert_eq!(
+        files(&directory.path().join("out")),
+        [
+            "manifest.json",
+            "record.json",
+            "series.csv",
+            "snapshots.dump",
+            "vtk/contacts-000000.vtp",
+            "vtk/contacts-000001.vtp",
+            "vtk/contacts-000002.vtp",
+            "vtk/contacts-000003.vtp",
+            "vtk/contacts.pvd",
+            "vtk/grains-000000.vtp",
+            "vtk/grains-000001.vtp",
+            "vtk/grains-000002.vtp",
+            "vtk/grains-000003.vtp",
+            "vtk/grains.pvd",
+        ]
+    );
+    let series = std::fs::read_to_string(directory.path().join("out/series.csv")).unwrap();
+    assert_eq!(series.lines().count(), 1 + 11, "{series}");
+}
+
+#[test]
+fn simulate_prints_the_run_as_json() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let arguments = ["simulate", "scene.toml", "--solver", "dem:liggghts", "--time-step", "1e-4", "--json"];
+    let longer = ["--set", "duration_cycles=400", "--set", "title=Longer"];
+    let run = json(&printed(directory.path(), &[&arguments[..], &longer].concat()));
+    assert_eq!(run["provenance"]["scene"], "Longer");
+    assert_eq!(run["provenance"]["solver"], "dem:liggghts");
+    assert_eq!(run["provenance"]["time_step"], 1e-4);
+    assert_eq!((run["cost"]["steps"].as_u64(), run["end"]["step"].as_u64()), (Some(400), Some(400)));
+    assert_eq!((run["end"]["grains"].as_u64(), run["snapshots"].as_u64()), (Some(2), Some(4)));
+    // One disc hits another of the same mass. An elastic impact conserves the energy ρπR² v²/2.
+    let energy = run["end"]["kinetic_energy"].as_f64().unwrap();
+    assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
+    assert!(directory.path().join("grainbench-out/record.json").is_file());
+}
+
+#[test]
+fn report_makes_pictures_of_simulations() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
+    for (solver, out) in [("dem", "one"), ("dem:lammps", "two")] {
+        printed(path, &["simulate", "scene.toml", "--solver", solver, "--out", out]);
+    }
+    printed(path, &["report", "one", "--beside", "two", "--fringe-stress", "1e3"]);
+    let page = std::fs::read_to_string(path.join("one/index.html")).unwrap();
+    // One picture of the speed with both solvers side by side.
+    let svg = std::fs::read_to_string(path.join("one/figures/speed.svg")).unwrap();
+    assert!(page.contains(&svg) && svg.matches("data:image/png;base64,").count() == 2, "{}", svg.len());
+    assert!(page.contains("Two discs collide") && svg.contains(">dem, t") && svg.contains(">dem:lammps, t"), "{svg}");
+
+    // A contact with a missing grain is not drawn. An invalid record is an error with file and place.
+    let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
+    std::fs::write(path.join("one/record.json"), record.replace("\"grain\":1,", "\"grain\":900,")).unwrap();
+    printed(path, &["report", "one"]);
+    let refused = |arguments: &[&str], what: &str| {
+        let answer = grainbench(path, arguments);
+        assert!(answer.code == Some(2) && answer.err.contains(what), "{:?} {}", answer.code, answer.err);
+    };
+    refused(&["report", "one", "--beside", "nowhere"], "record.json");
+    std::fs::write(path.join("two/record.json"), record.replacen("\"step\":[", "\"step\":[true,", 1)).unwrap();
+    refused(&["report", "two"], "at `series.step[0]`: invalid type: boolean `true`");
+}

@@ -1,0 +1,266 @@
+//! Decks for external solvers: their contents, reasons of unsupported scenes, and files of the command line.
+
+use crate::common::{files, grainbench};
+use grainbench::cases::registry::{CASES, by_name};
+use grainbench::harness::case::Case;
+use grainbench::reference::deck::{DeckError, Program, write_deck};
+use grainbench::scene::file::GrainShape;
+use grainbench::scene::function::{Function, FunctionKind};
+use grainbench::scene::motion::{Moment, Motion, Phase};
+use grainbench::scene::scene::{Scene, WallShape};
+use grainbench::scene::solver::Resolution;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Returns the files of a deck, one below the other.
+fn shown(case: &str, variant: &str, program: Program) -> String {
+    shown_of(case, variant, program, |_| {})
+}
+
+/// Returns the files of a deck for a changed scene.
+fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
+    let case = by_name(case).unwrap();
+    let mut scene = case.variant(variant).unwrap();
+    change(&mut scene);
+    let deck = write_deck(&scene, &case.default_level.resolution, program).unwrap();
+    deck.files.iter().map(|(name, text)| format!("==> {name} <==\n{text}\n")).collect()
+}
+
+#[test]
+fn an_incline_for_lammps() {
+    insta::assert_snapshot!(shown("incline-disc", "60deg-mu.9", Program::LAMMPS));
+}
+
+#[test]
+fn moving_walls_for_lammps() {
+    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LAMMPS));
+}
+
+#[test]
+fn moving_walls_for_liggghts_are_meshes() {
+    insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LIGGGHTS));
+}
+
+/// A dashpot proportional to stiffness becomes one proportional to effective mass if all grains have the same mass.
+#[test]
+fn a_dashpot_of_another_kind_for_liggghts() {
+    insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::LIGGGHTS));
+}
+
+/// Hertz contacts with and without a coefficient of restitution. LAMMPS has it in `granular`, LIGGGHTS with moduli.
+#[test]
+fn hertz_spheres() {
+    for program in Program::ALL {
+        for variant in ["4-aluminium-oxide", "1-glass"] {
+            insta::assert_snapshot!(format!("hertz_{variant}_{program}"), shown("chung-ooi", variant, program));
+        }
+    }
+}
+
+#[test]
+fn rolling_resistance() {
+    for program in Program::ALL {
+        insta::assert_snapshot!(format!("rolling_{program}"), shown("rolling-resistance", "disc", program));
+    }
+}
+
+/// Walls that first move and then rotate: formulas in LAMMPS, and intervals in LIGGGHTS, whose grains are spheres.
+#[test]
+fn walls_that_turn() {
+    for program in Program::ALL {
+        let deck = shown_of("nine-discs", "distortion-15deg-1", program, |scene| {
+            scene.global_damping = 0.0;
+            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
+            scene.grain_shape = GrainShape::Sphere;
+        });
+        let lines = deck.lines().filter(|line| ["wall", "move", "run"].iter().any(|word| line.contains(word)));
+        insta::assert_snapshot!(format!("turning_{program}"), lines.collect::<Vec<_>>().join("\n"));
+    }
+}
+
+/// Walls of finite extent: an oblique rotating wall in two dimensions, and an oblique moving wall in three.
+#[test]
+fn walls_of_finite_extent_are_flat_blocks() {
+    let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let phase = |velocity, spin| Phase { velocity, spin, start: Moment::Seconds(0.0), stop: Moment::Never };
+    let lines = |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| {
+        let deck = shown_of(case, variant, Program::LAMMPS, change);
+        deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n")
+    };
+    let segment = lines("squash", "plain", &|scene| {
+        scene.walls[0].shape = WallShape::Segment { ends: [-x - y, -x + y * 2.0 - x] };
+        scene.walls[0].motion =
+            Motion { centre: -x, phases: vec![phase(Vector3::zeros(), z * 0.5)], ..Motion::default() };
+    });
+    let rectangle = lines("chung-ooi", "2-aluminium-alloy", &|scene| {
+        scene.walls[0].shape = WallShape::Rectangle { corner: -x - y - z * 0.5, edges: [x * 2.0 + z, y * 2.0] };
+        scene.walls[0].motion = Motion { phases: vec![phase(z * 0.1, Vector3::zeros())], ..Motion::default() };
+    });
+    insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
+}
+
+/// A sine and a ramp as formulas of LAMMPS, which dem:lammps agrees with to rounding. LIGGGHTS gets intervals of
+/// constant velocity.
+#[test]
+fn a_wall_that_moves_by_functions() {
+    let (x, y) = (Vector3::x(), Vector3::y());
+    let sine = FunctionKind::Sine { amplitude: x * 0.5, frequency: 2.0, phase: 0.25 };
+    let ramp = FunctionKind::Ramp { velocity: y * 0.1, over: 3.0 };
+    let change = |scene: &mut Scene| {
+        scene.walls[0].motion.functions = vec![
+            Function { kind: sine, start: 0.0, stop: f64::INFINITY },
+            Function { kind: ramp, start: 1.0, stop: 5.0 },
+        ];
+    };
+    let deck = shown_of("squash", "plain", Program::LAMMPS, change);
+    let lines = deck.lines().filter(|line| line.contains("wall1")).collect::<Vec<_>>().join("\n");
+    let mut scene = by_name("squash").unwrap().variant("plain").unwrap();
+    change(&mut scene);
+    let refusal = write_deck(&scene, &Resolution::CriticalFraction(0.1), Program::LIGGGHTS).unwrap_err();
+    insta::assert_snapshot!(format!("{lines}\n{refusal}"));
+}
+
+#[test]
+fn every_case_has_a_deck_or_a_reason() {
+    let decks = |case: &&Case| {
+        let mut written = 0;
+        for variant in case.variants().unwrap() {
+            let scene = case.variant(&variant).unwrap();
+            for program in Program::ALL {
+                match write_deck(&scene, &case.default_level.resolution, program) {
+                    Ok(deck) => {
+                        assert!(deck.files.iter().all(|(_, text)| text.is_ascii()), "{}/{variant}", case.name);
+                        written += 1;
+                    }
+                    Err(DeckError::Unsupported { reason, .. }) => assert!(!reason.is_empty()),
+                    // Cases of rigid engines have their own steps.
+                    Err(DeckError::Resolution(reason)) => assert!(!reason.is_empty()),
+                }
+            }
+        }
+        written
+    };
+    let written: u32 = CASES.par_iter().map(decks).sum();
+    assert!(written > 30, "{written}");
+}
+
+/// Returns the reason why an external solver does not support a changed scene.
+fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
+    let case = by_name(case).unwrap();
+    let mut scene = case.variant(variant).unwrap();
+    change(&mut scene);
+    write_deck(&scene, &case.default_level.resolution, program).unwrap_err().to_string()
+}
+
+#[test]
+fn refusals_give_the_reason() {
+    let lammps =
+        |case: &str, variant: &str, change: &dyn Fn(&mut Scene)| refusal(case, variant, Program::LAMMPS, change);
+    let messages = [
+        lammps("chung-ooi", "1-glass", &|scene| {
+            scene.change_laws(|law| (law.damping_ratio, law.friction) = (0.1, 0.3));
+        }),
+        lammps("chung-ooi", "3-cast-iron", &|scene| scene.change_laws(|law| law.damping_ratio = 0.6)),
+        lammps("chung-ooi", "plain", &|scene| scene.change_laws(|law| law.normal_damping = 1.0)),
+        lammps("chung-ooi", "plain", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
+        lammps("chung-ooi", "plain", &|scene| {
+            let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+            scene.walls[0].shape = WallShape::Rectangle { corner: -x - y, edges: [x * 2.0 + z, y * 2.0] };
+            scene.walls[0].motion.phases =
+                vec![Phase { velocity: Vector3::zeros(), spin: z, start: Moment::Seconds(0.0), stop: Moment::Never }];
+        }),
+        lammps("cohesive-disc", "plain", &|_| {}),
+        lammps("rolling-resistance", "sphere-slope", &|_| {}),
+        lammps("collision", "oblique", &|scene| scene.change_laws(|law| law.rolling_friction = 0.1)),
+        refusal("chung-ooi", "3-cast-iron", Program::LIGGGHTS, |scene| {
+            scene.change_laws(|law| law.scale_tangential(2.0));
+        }),
+        lammps("nine-discs", "static-0", &|_| {}),
+        lammps("collision", "beta-zeta.1", &|scene| {
+            scene.grains[0].mass *= 2.0;
+            scene.grains[0].inertia *= 2.0;
+        }),
+        lammps("collision", "oblique", &|scene| scene.grains[0].inertia *= 1.1),
+        refusal("nine-discs", "kappa-1", Program::LIGGGHTS, |_| {}),
+        refusal("nine-discs", "kappa-0", Program::LIGGGHTS, |scene| {
+            scene.walls[0].motion.phases[0].stop = Moment::Seconds(0.1234);
+        }),
+    ];
+    insta::assert_snapshot!(messages.join("\n"));
+}
+
+/// A title cannot become a command.
+#[test]
+fn a_title_is_no_part_of_the_script() {
+    let case = by_name("squash").unwrap();
+    let mut scene = case.variant(&case.variants().unwrap()[0]).unwrap();
+    scene.title = "mean\nshell rm &\n${x} \"".to_owned();
+    let deck = write_deck(&scene, &case.default_level.resolution, Program::LAMMPS).unwrap();
+    assert!(deck.files[0].1.starts_with("# mean_shell rm ____x_ _\nunits si\n"), "{}", deck.files[0].1);
+}
+
+#[test]
+fn the_command_leaves_a_whole_deck() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &["deck", "nine-discs/kappa-0", "--for", "liggghts", "--out", "d"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    insta::assert_snapshot!(answer.out);
+    assert_eq!(
+        files(directory.path()),
+        [
+            "d/data.grains",
+            "d/in.liggghts",
+            "d/manifest.json",
+            "d/wall-1.stl",
+            "d/wall-2.stl",
+            "d/wall-3.stl",
+            "d/wall-4.stl"
+        ]
+    );
+}
+
+/// The first solver-independent claim has a resolution in grid cells, which gives no time step.
+#[test]
+fn an_exact_scene_is_stepped_in_time() {
+    let directory = tempfile::tempdir().unwrap();
+    let exact = ["deck", "incline-disc/30deg-mu.5", "--for", "lammps", "--exact", "--out", "d"];
+    let answer = grainbench(directory.path(), &exact);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    let script = std::fs::read_to_string(directory.path().join("d/in.lammps")).unwrap();
+    assert!(script.contains("timestep"), "{script}");
+}
+
+/// A second deck replaces the first one, whose files belong to another scene.
+#[test]
+fn a_directory_holds_one_deck() {
+    let directory = tempfile::tempdir().unwrap();
+    for (program, script) in [("lammps", "in.lammps"), ("liggghts", "in.liggghts")] {
+        let answer = grainbench(directory.path(), &["deck", "incline-sphere", "--for", program, "--out", "d"]);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+        let found = files(&directory.path().join("d"));
+        assert!(found.contains(&"manifest.json".to_owned()), "{found:?}");
+        let scripts: Vec<&String> = found.iter().filter(|name| name.starts_with("in.")).collect();
+        assert_eq!(scripts, [script]);
+    }
+}
+
+#[test]
+fn the_command_refuses_and_leaves_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut messages = String::new();
+    for arguments in [
+        &["deck", "nine-discs/static-0", "--for", "lammps"][..],
+        &["deck", "nine-discs", "--for", "lamps"],
+        &["deck", "nine-disc", "--for", "lammps"],
+        &["deck", "no-such.toml", "--for", "lammps"],
+        &["deck", "squash", "--for", "lammps", "--set", "contacts.all.stifness=1"],
+    ] {
+        let answer = grainbench(directory.path(), arguments);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
+        assert!(files(directory.path()).is_empty());
+        // The list of cases is not part of this test.
+        let lines = answer.err.lines().filter(|line| !line.starts_with("  "));
+        lines.for_each(|line| messages.push_str(&(line.to_owned() + "\n")));
+    }
+    insta::assert_snapshot!(messages);
+}

@@ -1,0 +1,133 @@
+//! The same scene, solver and step give the same bits, on repetition and with other runs in parallel.
+
+use crate::common::bits;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::scene::solver::{Resolution, Threads};
+use rayon::prelude::*;
+
+#[test]
+fn a_rerun_gives_the_same_bits() {
+    CASES.par_iter().for_each(|case| {
+        let variant = &case.variants().unwrap()[0];
+        let mut scene = case.variant(variant).unwrap();
+        // Long runs are shortened, because bits differ at once or not at all.
+        if scene.grains.len() > 100 {
+            scene.duration = grainbench::scene::scene::Duration::Cycles(200);
+            scene.snapshots = 5;
+        }
+        // For the slow method, only short scenes that were made for it.
+        let deformable = ["incline-disc", "two-discs"].contains(&case.name);
+        for solver in solvers::all().into_iter().filter(|solver| deformable || !solver.name().starts_with("mpm")) {
+            let resolution = match solver.name().split(':').next() {
+                Some("rigid") => Resolution::substeps(2),
+                Some("mpm") => Resolution::grid(2.0, 2),
+                _ => Resolution::CriticalFraction(0.05),
+            };
+            // A run that crashes must crash in the same way.
+            let run = |threads| solver.run(&scene, &resolution, &mut Threads(threads)).map(bits);
+            let (first, second) = std::thread::scope(|scope| {
+                let beside = scope.spawn(|| run(3));
+                (run(1), beside.join().unwrap())
+            });
+            assert!(first == second, "{} with {} differs from its rerun on three threads", case.name, solver.name());
+        }
+    });
+}
+
+/// Sixteen hundred discs that fall on one another and roll across a periodic boundary.
+const MANY: &str = "title = 't'\ndimension = 2\nduration = 2.0\ngravity = { magnitude = 9.8, slope_deg = 20.0 }\n\
+                    domain = { low = [0.0, 0.0], high = [30.0, 60.0], periodic = [true, false] }\n\
+                    materials.m = { density = 1000.0 }\n\
+                    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
+                    friction = 0.5, restitution = 0.5 }\n\
+                    [grains.g]\nmaterial = 'm'\nrandom = { count = 1600, radius_range = [0.3, 0.5], speed = 5.0, seed = 3 }\n\
+                    [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+                    [probes]\nall.system = true\n";
+
+/// Two oscillating blocks, one fixed and one that falls onto a slope beside it, with the energy budget.
+const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_length = 1.0\ngravity = [0.5, -2.0]\n\
+                      materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
+                      contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3, \
+                      tangential_stiffness = 1.0e3, friction = 0.3 }\n\
+                      [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [3.0, 2.0] }\nfixed = ['x-low']\n\
+                      wave = { amplitude = 0.4 }\n\
+                      [bodies.c]\nmaterial = 'm'\nbox = { low = [4.0, 0.05], high = [6.0, 2.0] }\n\
+                      [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -0.01], normal = [0.0, 1.0] }\n\
+                      [probes]\nall.system = true\n";
+
+/// The number of threads has no effect on any output: series, snapshots, contacts and checkpoints. A run can be
+/// continued with another number of threads.
+#[test]
+fn threads_leave_no_trace() {
+    for (scene, solver) in [(MANY, "dem"), (BLOCKS, "mpm"), (BLOCKS, "mpm:no-slip"), (BLOCKS, "mpm+usf")] {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        let left = |threads: &str, more: &[&str]| {
+            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
+                .args(["simulate", "s.toml", "--solver", solver, "--write", "dump,vtk", "--out", "out"])
+                .args(if solver == "dem" { &[][..] } else { &["--cells", "14"][..] })
+                .args(["--checkpoint-every", "60", "--checkpoint", "c", "--threads", threads])
+                .args(more)
+                .current_dir(directory.path())
+                .output()
+                .unwrap();
+            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
+            let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
+            [read("out/series.csv"), read("out/snapshots.dump"), read("c")]
+        };
+        let expected = left("1", &[]);
+        std::fs::rename(directory.path().join("c"), directory.path().join("of-one")).unwrap();
+        for threads in ["2", "3"] {
+            assert!(left(threads, &[]) == expected, "{solver}, {threads} threads");
+            assert!(left(threads, &["--restart", "of-one"]) == expected, "{solver}, {threads} threads go on");
+        }
+        assert!(left("1", &["--restart", "c"]) == expected, "{solver}, one goes on");
+    }
+}
+
+/// Random discs on a slope with restitution under a rotating wall, and a neo-Hookean block.
+const SCENES: [(&str, &str); 2] = [
+    (
+        "dem",
+        "title = 't'\ndimension = 2\nduration = 0.2\ngravity = { magnitude = 9.8, slope_deg = 17.3 }\n\
+         domain = { low = [0.0, 0.0], high = [4.0, 4.0] }\n\
+         materials.m = { density = 1000.0, young_modulus = 1.0e7, poisson_ratio = 0.3 }\n\
+         contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
+         friction_angle_deg = 31.7, restitution = 0.83 }\n\
+         [grains.g]\nmaterial = 'm'\nrandom = { count = 40, radius_range = [0.1, 0.2], speed = 1.0, seed = 3 }\n\
+         [walls.w]\nmaterial = 'm'\nsegment = [[0.0, -0.1], [4.0, -0.1]]\n\
+         motion = [{ spin = 0.7, centre = [2.0, 0.0] }]\n[probes]\nall.system = true\n",
+    ),
+    (
+        "mpm",
+        "title = 't'\ndimension = 2\nduration = 5.0\nreference_length = 1.0\n\
+         materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
+         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [2.0, 1.0] }\nfixed = ['x-low']\n\
+         wave = { amplitude = 2.0 }\n[probes]\nb.body = 'b'\nall.system = true\n",
+    ),
+];
+
+/// The system library uses other functions if it may not use all features of the processor. Our solvers have their own
+/// functions, so nothing changes.
+#[test]
+fn the_library_of_the_system_has_no_part_in_the_bits() {
+    let directory = tempfile::tempdir().unwrap();
+    for (solver, scene) in SCENES.into_iter().chain([("rigid", SCENES[0].1)]) {
+        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        let series = |masked: &str| {
+            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
+                .args(["simulate", "s.toml", "--solver", solver, "--write", "dump", "--out", "out"])
+                .current_dir(directory.path())
+                .env("GLIBC_TUNABLES", masked)
+                .output()
+                .unwrap();
+            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
+            let read = |name: &str| std::fs::read(directory.path().join("out").join(name)).unwrap();
+            (read("series.csv"), read("snapshots.dump"))
+        };
+        let all = series("");
+        let plain = series("glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-AVX512F,-AVX512F_Usable");
+        assert!(all == plain, "{solver} gives other bits without the processor's instructions");
+    }
+}

@@ -1,0 +1,306 @@
+//! Grains as a continuum on the command line: for our runs, for dumps of external solvers, and for invalid files.
+
+use crate::common::{files, grainbench};
+use grainbench::cases::solvers;
+use grainbench::fields::element::{elements, whole_stress};
+use grainbench::fields::grid::Grid;
+use grainbench::scene::nalgebra::{Matrix3, Vector3};
+use grainbench::scene::record::{Partner, Snapshot};
+use grainbench::scene::scene::Dimension;
+use grainbench::scene::solver::Resolution;
+use grainbench::scene::source::SceneSource;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Scene of spheres that are dropped into a box without a lid and come to rest.
+const SCENE: &str = r#"title = "Spheres in a box"
+dimension = 3
+duration = 20.0
+gravity = [0.0, 0.0, -10.0]
+domain = { low = [0.0, 0.0, 0.0], high = [5.0, 5.0, 10.0] }
+
+[materials.m]
+density = 1.0
+
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 40.0
+tangential_damping = 20.0
+
+[grains.g]
+material = "m"
+radius = 0.5
+lattice = { origin = [0.55, 0.6, 0.6], spacing = [1.12, 1.16, 1.2], count = [4, 4, 6] }
+
+[walls.floor]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
+[walls.left]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+[walls.right]
+material = "m"
+plane = { point = [5.0, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }
+[walls.front]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }
+[walls.back]
+material = "m"
+plane = { point = [0.0, 5.0, 0.0], normal = [0.0, -1.0, 0.0] }
+
+[output]
+every = 5.0
+snapshots = 3
+"#;
+
+/// Returns the packing at rest.
+fn packing() -> Snapshot {
+    let source = SceneSource::from_text("packing", Path::new(""), SCENE);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let solver = solvers::by_name("dem").unwrap();
+    let record = solver.run(&scene, &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
+    record.snapshots.into_iter().next_back().unwrap()
+}
+
+/// At rest, ΣF = −m g. The sum of lever arm ⊗ force over contacts between grains is Σ_walls x_c ⊗ F − Σ_grains x ⊗ ΣF.
+/// Both sides are measured independently. A wall's lever arm is R − δ/2; with R, the identity would be wrong by δ/2 at
+/// each wall contact.
+#[test]
+fn the_stress_of_a_packing_at_rest_carries_its_weight() {
+    let packing = packing();
+    let grid = Grid::filling(packing.bounds, Vector3::new(1.7, 2.5, 1.1));
+    let inner = whole_stress(&elements(&packing, Dimension::Three, &grid), &grid).unwrap();
+    let on_walls = packing.told_contacts().iter().filter(|contact| matches!(contact.partner, Partner::Wall(_)));
+    let (mut outer, mut shifted) = (Matrix3::zeros(), Matrix3::zeros());
+    for contact in on_walls {
+        let force = contact.shear_force - contact.normal * contact.normal_force;
+        outer += contact.point * force.transpose();
+        shifted += (contact.point + contact.normal * (0.5 * contact.overlap)) * force.transpose();
+    }
+    let of_grains: Matrix3<f64> =
+        packing.grains.iter().map(|grain| grain.position * grain.force.unwrap().transpose()).sum();
+    let exact = outer - of_grains;
+    assert!((inner - exact).norm() < 1e-12 * exact.norm(), "{inner} {exact}");
+    // With the lever arm R at the wall, the identity is wrong.
+    assert!((inner - (shifted - of_grains)).norm() > 1e-5 * exact.norm());
+    // At rest: Σ Δz F_z = −Σ m g z + Σ_walls z F_z.
+    let weight: f64 = packing.grains.iter().map(|grain| -10.0 * grain.mass * grain.position.z).sum();
+    let found = inner.m33 - outer.m33;
+    assert!((found / weight - 1.0).abs() < 1e-6, "{found} for {weight}");
+    assert!(weight < -1000.0);
+}
+
+/// Returns a dump of the grains as another program writes it, with another order of columns.
+fn dump(packing: &Snapshot) -> String {
+    let mut text = String::new();
+    let (low, high) = packing.bounds;
+    let _ = writeln!(text, "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n{}", packing.grains.len());
+    let _ = writeln!(text, "ITEM: BOX BOUNDS ff ff ff");
+    (0..3).for_each(|axis| writeln!(text, "{} {}", low[axis], high[axis]).unwrap());
+    let _ = writeln!(text, "ITEM: ATOMS id vx vy vz x y z radius density");
+    for grain in packing.grains.iter().rev() {
+        let (v, x) = (grain.velocity, grain.position);
+        let _ = writeln!(text, "{} {:?} {:?} {:?} {:?} {:?} {:?} 0.5 1.0", grain.id, v.x, v.y, v.z, x.x, x.y, x.z);
+    }
+    text
+}
+
+/// Returns a dump of its contacts with separate normal and tangential parts. Each pair is given from the second grain.
+fn contacts(packing: &Snapshot) -> String {
+    let between: Vec<_> =
+        packing.told_contacts().iter().filter(|contact| matches!(contact.partner, Partner::Grain(_))).collect();
+    let mut text = format!("ITEM: TIMESTEP\n7\nITEM: NUMBER OF ENTRIES\n{}\n", between.len());
+    text += "ITEM: BOX BOUNDS ff ff ff\n0 5\n0 5\n0 10\nITEM: ENTRIES a b nx ny nz tx ty tz\n";
+    for contact in between {
+        let Partner::Grain(other) = contact.partner else { continue };
+        let (n, t) = (contact.normal * contact.normal_force, -contact.shear_force);
+        let _ = writeln!(text, "{other} {} {:?} {:?} {:?} {:?} {:?} {:?}", contact.grain, n.x, n.y, n.z, t.x, t.y, t.z);
+    }
+    text
+}
+
+const MAP: &str = "id1=a,id2=b,force_x=nx,force_y=ny,force_z=nz,tangential_x=tx,tangential_y=ty,tangential_z=tz";
+
+/// Returns the values of a column of a table.
+fn column(folder: &Path, file: &str, name: &str) -> Vec<Option<f64>> {
+    let mut table = csv::Reader::from_path(folder.join(file)).unwrap();
+    let at = table.headers().unwrap().iter().position(|head| head == name).unwrap_or_else(|| panic!("no {name}"));
+    table.records().map(|row| row.unwrap()[at].parse().ok()).collect()
+}
+
+#[test]
+fn a_strangers_dump_says_as_much_as_our_own_record() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let packing = packing();
+    std::fs::write(path.join("grains.dump"), dump(&packing)).unwrap();
+    std::fs::write(path.join("contacts.dump"), contacts(&packing)).unwrap();
+    let cells = ["--cell", "1.25,2.5,1.25", "--fewest", "1"];
+    let command = ["fields", "grains.dump", "--contacts", "contacts.dump", "--map", MAP, "--out", "told"];
+    let answer = grainbench(path, &[&command[..], &cells].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
+    assert!(untold.out.contains("No contacts were told: there is no stress."), "{}", untold.out);
+
+    // Result of the library without wall contacts, which this dump does not contain.
+    let mut alone = packing;
+    alone.contacts.as_mut().unwrap().retain(|contact| matches!(contact.partner, Partner::Grain(_)));
+    let grid = Grid::filling(alone.bounds, Vector3::new(1.25, 2.5, 1.25));
+    let exact = elements(&alone, Dimension::Three, &grid);
+    let same = |file: &str, name: &str, value: &dyn Fn(usize) -> Option<f64>| {
+        let found = column(&path.join(file), "elements.csv", name);
+        assert_eq!(found.len(), grid.cells());
+        for (cell, found) in found.into_iter().enumerate() {
+            match (found, value(cell)) {
+                (None, None) => {}
+                (Some(found), Some(exact)) => {
+                    assert!(
+                        (found - exact).abs() < 1e-9 * (1.0 + exact.abs()),
+                        "{name} of {cell}: {found} for {exact}"
+                    );
+                }
+                other => panic!("{name} of {cell}: {other:?}"),
+            }
+        }
+    };
+    for file in ["told", "untold"] {
+        same(file, "packing_fraction (1)", &|cell| Some(exact[cell].packing_fraction));
+        same(file, "members (1)", &|cell| Some(exact[cell].motion.members as f64));
+    }
+    same("told", "stress_zz (Pa)", &|cell| exact[cell].stress.map(|stress| stress.m33));
+    same("told", "sine_of_friction (1)", &|cell| exact[cell].sine_of_friction());
+    // Stress without data is missing, and never zero.
+    same("untold", "stress_zz (Pa)", &|_| None);
+    same("untold", "pressure (Pa)", &|_| None);
+    let image = std::fs::read_to_string(path.join("untold/elements/elements-000000.vti")).unwrap();
+    assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "no pressure is told as such");
+}
+
+/// For a dump without velocities and times, packing and stress are known, but no motion. Its time is the step.
+#[test]
+fn what_a_dump_does_not_tell_is_nowhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let packing = packing();
+    let still = |text: String, step: &str| text.replace("vx vy vz", "p q r").replace("TIMESTEP\n7", step);
+    let steps = ["TIMESTEP\n7", "TIMESTEP\n9"];
+    std::fs::write(path.join("still.dump"), steps.map(|step| still(dump(&packing), step)).concat()).unwrap();
+    std::fs::write(path.join("contacts.dump"), steps.map(|step| still(contacts(&packing), step)).concat()).unwrap();
+    let fields = ["fields", "still.dump", "--contacts", "contacts.dump", "--map", MAP, "--cell", "2.5,5,2.5"];
+    let answer = grainbench(path, &[&fields[..], &["--fewest", "1", "--flowing", "0.1", "--out", "out"]].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let known = |name: &str| column(&path.join("out"), "elements.csv", name).iter().flatten().count();
+    for name in ["speed (m/s)", "shear_rate (1/s)", "residual_velocity (m/s)", "angle_of_largest (deg)", "time (s)"] {
+        assert_eq!(known(name), 0, "{name}");
+    }
+    assert!(known("packing_fraction (1)") == 16 && known("pressure (Pa)") == 16);
+    let table = std::fs::read_to_string(path.join("out/elements.csv")).unwrap();
+    assert!(table.lines().skip(1).all(|row| row.contains("still")), "what has no rate of shear does not flow");
+    let clock = std::fs::read_to_string(path.join("out/elements/elements.pvd")).unwrap();
+    assert!(!clock.contains("NaN") && clock.contains("\"9.0\"") || clock.contains("\"9\""), "{clock}");
+}
+
+#[test]
+fn a_run_of_ours_becomes_tables_images_films_and_trails() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
+    let simulate = ["simulate", "scene.toml", "--solver", "dem", "--write", "parquet", "--out", "run"];
+    assert_eq!(grainbench(path, &simulate).code, Some(0));
+    let fields = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "seen"];
+    let answer = grainbench(path, &fields);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    for file in ["elements.csv", "means.csv", "tracers.csv", "summary.json", "index.html", "elements/elements.pvd"] {
+        assert!(path.join("seen").join(file).is_file(), "{file}");
+    }
+    assert_eq!(column(&path.join("seen"), "elements.csv", "time (s)").len(), 5 * 4 * 8);
+    assert_eq!(column(&path.join("seen"), "means.csv", "x (m)").len(), 4 * 8);
+    let strains = column(&path.join("seen"), "tracers.csv", "hencky_strain (1)");
+    assert!(strains.iter().flatten().any(|&strain| strain > 0.05) && strains[0].is_some_and(|strain| strain < 1e-12));
+    // Repeating the command gives the same file.
+    let again = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "again"];
+    grainbench(path, &again);
+    let bytes = |folder: &str| std::fs::read(path.join(folder).join("elements.csv")).unwrap();
+    assert!(bytes("seen") == bytes("again"));
+}
+
+#[test]
+fn what_cannot_be_read_as_a_continuum_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let packing = packing();
+    let whole = dump(&packing);
+    std::fs::write(path.join("whole.dump"), &whole).unwrap();
+    std::fs::write(path.join("contacts.dump"), contacts(&packing)).unwrap();
+    std::fs::write(path.join("empty.dump"), "").unwrap();
+    std::fs::write(path.join("cut.dump"), &whole[..whole.len() / 2]).unwrap();
+    std::fs::write(path.join("bare.dump"), whole.replace("radius", "colour")).unwrap();
+    std::fs::write(path.join("flat.dump"), whole.replace("0 5\n", "3 3\n")).unwrap();
+    std::fs::write(path.join("later.dump"), contacts(&packing).replace("TIMESTEP\n7", "TIMESTEP\n8")).unwrap();
+    std::fs::write(path.join("strange.dump"), contacts(&packing).replace("\n9", "\n99999")).unwrap();
+    std::fs::create_dir(path.join("nothing")).unwrap();
+    let before = files(path);
+    let named = |name: &str, further: &[&str]| {
+        let answer = grainbench(path, &[&["fields", name, "--out", "out"][..], further].concat());
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{name} {further:?}: {}", answer.err);
+        assert_eq!(files(path), before);
+        format!("{name} {}\n    {}", further.join(" "), answer.err)
+    };
+    let cell = ["--cell", "2.5"];
+    let with = |further: &[&'static str]| [&cell[..], further].concat();
+    let refusals = [
+        named("empty.dump", &cell),
+        named("cut.dump", &cell),
+        named("bare.dump", &cell),
+        named("flat.dump", &cell),
+        named("nowhere.dump", &cell),
+        named("nothing", &cell),
+        named("whole.dump", &["--cell", "6"]),
+        named("whole.dump", &["--cell", "1,2"]),
+        named("whole.dump", &["--cell", "1e-3"]),
+        named("whole.dump", &with(&["--between"])),
+        named("whole.dump", &with(&["--from", "3"])),
+        named("whole.dump", &with(&["--time-step", "1", "--from", "8"])),
+        named("whole.dump", &with(&["--contacts", "contacts.dump"])),
+        named("whole.dump", &with(&["--contacts", "later.dump", "--map", MAP])),
+        named("whole.dump", &with(&["--contacts", "strange.dump", "--map", MAP])),
+        named("whole.dump", &with(&["--orifice", "x=1"])),
+        named("whole.dump", &with(&["--tracers", "50"])),
+        named("nothing", &with(&["--density", "2"])),
+    ];
+    insta::assert_snapshot!(refusals.join(""));
+}
+
+/// Grains outside the cells are counted and reported. A radius that the file lacks can be given as an option.
+#[test]
+fn grains_outside_are_counted() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let packing = packing();
+    std::fs::write(path.join("bare.dump"), dump(&packing).replace("radius", "colour")).unwrap();
+    let high = packing.grains.iter().filter(|grain| grain.position.z >= 2.0).count();
+    let answer = grainbench(
+        path,
+        &[
+            "fields",
+            "bare.dump",
+            "--radius",
+            "0.5",
+            "--cell",
+            "2.5,2.5,1",
+            "--low",
+            "0,0,0",
+            "--high",
+            "5,5,2",
+            "--json",
+        ],
+    );
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let summary: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(summary["outside"], high);
+    assert_eq!(summary["cells"], serde_json::json!([2, 2, 2]));
+    assert_eq!(summary["stress"], false);
+}

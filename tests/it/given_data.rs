@@ -1,0 +1,116 @@
+//! Claims that start from third-party data: with the data, without it, and with wrong data.
+
+use crate::common::grainbench;
+use serde_json::Value;
+use std::path::Path;
+
+/// Claims that start from the published start of the drum.
+const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
+/// Claims that start from the shared beds of the impact.
+const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
+
+/// Returns outcome and text of each result of a report.
+fn rows(directory: &Path) -> Vec<(String, String)> {
+    let results = std::fs::read_to_string(directory.join("grainbench-out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    let word = |row: &Value, key: &str| row[key].as_str().unwrap_or_default().to_owned();
+    results["verdicts"].as_array().unwrap().iter().map(|row| (word(row, "verdict"), row.to_string())).collect()
+}
+
+#[test]
+fn without_it_rows_say_where_it_is_to_be_had() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &ROWS);
+    // No claim has a verdict.
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(directory.path());
+    assert_eq!(rows.len(), 7);
+    for (outcome, row) in rows {
+        assert_eq!(outcome, "not-available");
+        assert!(row.contains("10.5281/zenodo.8252892") && row.contains("--data DIR"), "{row}");
+    }
+}
+
+/// Checks that the data in `data` is rejected with a message and nothing is run.
+fn refused(path: &Path, rows: &[&str], words: &str) {
+    let answer = grainbench(path, &[rows, &["--data", "data"]].concat());
+    assert_eq!(answer.code, Some(2), "{}", answer.err);
+    assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
+}
+
+#[test]
+fn what_is_no_start_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    let refused = |words: &str| refused(path, &ROWS, words);
+    refused("data: expected the start of the drum, a file whose name ends in `.xyz`, found none");
+    std::fs::write(path.join("data/start.xyz"), "1\nbox\n1 0 0\n").unwrap();
+    refused("start.xyz:3: expected a type, 0 or 1, and three coordinates");
+    std::fs::remove_dir_all(path.join("data")).unwrap();
+    refused("data: ");
+    let answer = grainbench(path, &["run", "squash", "--data", "."]);
+    assert_eq!(answer.code, Some(2));
+    assert!(answer.err.contains("--data: expected rows that begin with data of others"), "{}", answer.err);
+}
+
+/// The stored result belongs to the published start and is not used for another start.
+#[test]
+fn another_start_is_told_from_the_published_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    std::fs::write(path.join("data/start.xyz"), "2\nbox\n0 0.102 0.032 0.05\n1 0.122 0.032 0.05\n").unwrap();
+    let answer = grainbench(path, &[&ROWS[..], &["--data", "data"]].concat());
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(path);
+    assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
+}
+
+/// Without the beds nothing is run, not even the figures of the case, which would take minutes.
+#[test]
+fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &BEDS);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let rows = rows(directory.path());
+    let is_announced = |(outcome, row): &(String, String)| outcome == "not-available" && row.contains("KParticles.txt");
+    assert!(rows.len() == 3 && rows.iter().all(is_announced), "{rows:?}");
+}
+
+/// An invalid bed of the impact is reported with its place.
+#[test]
+fn what_is_no_bed_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    let refused = |words: &str| refused(path, &BEDS, words);
+    refused("data: expected `50KParticles.txt` or `Case3_PenetrationTest_50000_Particles.txt`, found neither");
+    std::fs::write(path.join("data/100KParticles.txt"), "").unwrap();
+    refused("100KParticles.txt:1: expected a line of titles");
+    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0\n").unwrap();
+    refused(
+        "100KParticles.txt:2: expected a radius, 0.001 of 100000 grains or 0.01 of one ball, and three coordinates (m)",
+    );
+    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0 0\n").unwrap();
+    refused("100KParticles.txt:2: expected 100000 grains and one ball, found 1 grains and 0 ball");
+}
+
+/// If one start is given, claims with another start are not available, and their controls do not run.
+#[test]
+fn rows_of_one_start_do_not_ask_for_another() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::create_dir(path.join("data")).unwrap();
+    std::fs::write(path.join("data/start.xyz"), "2\nbox\n0 0.102 0.032 0.05\n1 0.122 0.032 0.05\n").unwrap();
+    let drum = ["drum-mixing", "--filter", "quantity=zone 2 at .1 s", "--data", "data"];
+    let answer = grainbench(path, &[&BEDS[..], &drum].concat());
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    let outcomes: Vec<String> = rows(path).into_iter().map(|(outcome, _)| outcome).collect();
+    // Two grains are not thirty thousand.
+    assert_eq!(outcomes, ["fail", "not-available", "not-available", "not-available"]);
+    let results = std::fs::read_to_string(path.join("grainbench-out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    let controls = results["controls"].as_array().unwrap();
+    assert!(controls.len() == 1 && controls[0]["case"] == "drum-mixing", "{controls:?}");
+}

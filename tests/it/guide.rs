@@ -1,0 +1,194 @@
+//! Test of the guide: its commands run, its scenes are simulated, and its links are valid.
+//!
+//! `UPDATE_README=1 cargo test --release --test it guide` rewrites its tables. A `console` block is a dialogue in
+//! `guide/scenes`, run by the shell. The output of a command must contain the shown lines, with `…` for varying text.
+//! The exit code is 0, or `N` with `# exit N`. `<!-- needs lmp -->` before a block names programs without which the
+//! block is skipped (never if `CI` is set).
+
+mod dialogue;
+mod pages;
+
+use crate::common::{expect_file, root, with_generated};
+use dialogue::{Place, blocks, hold};
+use grainbench::cases::registry::CASES;
+use grainbench::harness::evidence::Evidence;
+use grainbench::harness::run::ExpectedOutcome;
+use grainbench::harness::verdict::Outcome;
+use pages::{Chapter, chapters, expanded, lost_links, untold};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+
+/// Runs the dialogues of a chapter in order, in a separate folder, and returns the failed ones.
+fn lost_dialogues(chapter: &Chapter) -> Vec<String> {
+    let place = Place::new();
+    let mut lost = Vec::new();
+    for block in blocks(&chapter.text).unwrap_or_else(|error| panic!("{}: {error}", chapter.name)) {
+        if !block.needs.iter().all(|program| dialogue::is_here(program)) {
+            continue;
+        }
+        for step in &block.steps {
+            if let Err(error) = place.run(step) {
+                lost.push(format!("guide/src/{}:{}: {error}", chapter.name, step.line));
+            }
+        }
+    }
+    lost
+}
+
+#[test]
+fn commands_answer_what_the_guide_shows() {
+    let mut chapters = chapters();
+    let readme = fs::read_to_string(root("README.md")).unwrap().replace("cargo run --release --", "grainbench");
+    chapters.push(Chapter { name: "../../README.md".to_owned(), text: readme });
+    let lost: Vec<String> = std::thread::scope(|scope| {
+        let runs: Vec<_> = chapters.iter().map(|chapter| scope.spawn(|| lost_dialogues(chapter))).collect();
+        runs.into_iter().flat_map(|run| run.join().unwrap()).collect()
+    });
+    assert!(lost.is_empty(), "{}", lost.join("\n\n"));
+}
+
+/// Rejects a guide with wrong output: another number, another exit code, a missing line, another order.
+#[test]
+fn a_wrong_dialogue_is_refused() {
+    let place = Place::new();
+    let tried = |shown: &str| {
+        let text = format!("```console\n{shown}\n```\n");
+        blocks(&text)?.iter().flat_map(|block| &block.steps).try_for_each(|step| place.run(step))
+    };
+    let right = [
+        "$ grainbench simulate belt.toml --solver dem --out belt",
+        "scene      A disc is set down on a belt",
+        "…",
+        "steps      …",
+    ];
+    let right = right.join("\n");
+    assert_eq!(tried(&right), Ok(()));
+    for (from, to) in [
+        ("A disc is", "A sphere is"),
+        ("simulate belt", "simulate bellt"),
+        ("…\nsteps      …", "…\nsteps      … hours"),
+        ("scene      A disc is set down on a belt\n…\nsteps      …", "steps      …\n…\nscene      …"),
+        ("belt\n…\nsteps", "belt\nsteps"),
+        ("steps      …", "steps      …\n# exit 1"),
+    ] {
+        assert!(right.contains(from));
+        assert!(tried(&right.replace(from, to)).is_err(), "`{to}` in the place of `{from}` is taken");
+    }
+    let wrong = "$ grainbench run sqash\nerror: …\n# exit 2";
+    assert_eq!(tried(wrong), Ok(()));
+    assert!(tried(&wrong.replace("\n# exit 2", "")).is_err(), "an error is no success");
+    assert!(blocks("```console\nscene\n```\n").is_err(), "an answer needs a command");
+    assert!(blocks("```console\n$ true\n").is_err(), "a block that does not end");
+}
+
+#[test]
+fn shown_lines_hold_as_they_are_written() {
+    assert!(hold("a …, …c", "a 1, b, c") && !hold("a …, …c", "a 1, b, cd") && !hold("ab", "a") && !hold("…b…", "a"));
+}
+
+/// Checks that each file in some folders of the guide is in a chapter, and that each scene is simulated there.
+#[test]
+fn every_scene_is_in_a_chapter_that_runs_it() {
+    let chapters = chapters();
+    assert_eq!(untold(&chapters), Vec::<String>::new());
+    let without: Vec<Chapter> = chapters.into_iter().filter(|chapter| chapter.name != "scene.md").collect();
+    assert!(untold(&without).iter().any(|file| file.contains("hopper.toml")), "a scene that no chapter has is seen");
+}
+
+#[test]
+fn links_and_includes_lead_somewhere() {
+    let chapters = chapters();
+    assert_eq!(lost_links(&chapters), Vec::<String>::new());
+    for (planted, seen) in [
+        ("[there](nowhere.md)", "nowhere.md"),
+        ("[there](case.md#nowhere)", "#nowhere"),
+        ("{{#include ../scenes/nowhere.toml}}", "nowhere.toml"),
+        ("{{#include ../../peers/README.md:nowhere}}", "nowhere"),
+        ("```consol\n$ true\n```", "consol"),
+    ] {
+        let mut wrong = chapters.clone();
+        wrong[0].text.push_str(&format!("\n{planted}\n"));
+        assert!(lost_links(&wrong).iter().any(|lost| lost.contains(seen)), "{planted} is taken");
+    }
+    let mut longer = chapters;
+    longer.push(Chapter { name: "unknown.md".to_owned(), text: "# Unknown\n".to_owned() });
+    assert!(lost_links(&longer).iter().any(|lost| lost.contains("unknown.md")), "a chapter that SUMMARY.md lacks");
+}
+
+/// Returns the table of limitations of each case.
+fn weak_table() -> String {
+    let mut table = "| case | title | limitations |\n|---|---|---|\n".to_owned();
+    for case in CASES {
+        writeln!(table, "| `{}` | {} | {} |", case.name, case.title, one_line(case.weakness)).unwrap();
+    }
+    table
+}
+
+/// Returns the table of known deviations of solvers from the claims, which are amber as long as they exist.
+fn known_table() -> String {
+    let mut known: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for case in CASES {
+        for claim in (case.claims)() {
+            for run in &claim.runs {
+                if let ExpectedOutcome::Known(reason) = run.standing {
+                    let seen = format!("`{}`: {}", case.name, claim.quantity);
+                    let rows = known.entry((run.solver, reason)).or_default();
+                    if !rows.contains(&seen) {
+                        rows.push(seen);
+                    }
+                }
+            }
+        }
+    }
+    let mut table = "| solver | error | claims that show it |\n|---|---|---|\n".to_owned();
+    for ((solver, reason), rows) in known {
+        writeln!(table, "| `{solver}` | {} | {} |", one_line(reason), one_line(&rows.join("; "))).unwrap();
+    }
+    table
+}
+
+/// Returns a text for a table cell.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
+}
+
+#[test]
+fn tables_are_generated() {
+    for (path, mark, table) in
+        [("guide/src/weak.md", "weak", weak_table()), ("guide/src/known.md", "known", known_table())]
+    {
+        let text = fs::read_to_string(root(path)).unwrap();
+        expect_file(path, &with_generated(&text, mark, &table));
+    }
+}
+
+/// The guide explains each outcome and each kind of evidence.
+#[test]
+fn the_words_of_a_row_are_explained() {
+    let numbers = fs::read_to_string(root("guide/src/numbers.md")).unwrap();
+    let outcomes = [
+        Outcome::Pass,
+        Outcome::Fail,
+        Outcome::Known,
+        Outcome::Stale,
+        Outcome::Outdated,
+        Outcome::NoReference,
+        Outcome::Unsupported,
+        Outcome::NotAvailable,
+        Outcome::Broken,
+    ];
+    let words = outcomes.map(Outcome::word).into_iter().chain(Evidence::ALL.map(Evidence::word));
+    for word in words {
+        assert!(numbers.contains(&format!("| `{word}` |")), "numbers.md does not explain `{word}`");
+    }
+}
+
+/// A chapter includes its files, so that nothing is typed twice.
+#[test]
+fn a_chapter_shows_the_scene_that_is_run() {
+    let chapters = chapters();
+    let scene = chapters.iter().find(|chapter| chapter.name == "scene.md").unwrap();
+    let hopper = fs::read_to_string(root("guide/scenes/hopper.toml")).unwrap();
+    assert!(expanded(scene).unwrap().contains(hopper.trim_end()));
+}

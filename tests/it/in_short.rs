@@ -1,0 +1,171 @@
+//! Snapshots that no reader wants row by row are reduced to a summary and need no memory.
+
+use grainbench::cases::solvers;
+use grainbench::scene::brief::Brief;
+use grainbench::scene::record::{Series, Snapshot};
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, StorageError, Watch};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// Discs on a floor that overlap, slip and rotate, with a group with prescribed motion on top.
+const DISCS: &str = "title = 'discs'\ndimension = 2\nduration_cycles = 60\ngravity = [0.0, -9.81]\n\
+    largest_initial_overlap = 0.1\n\
+    materials.m.density = 2500.0\n\
+    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, \
+    friction = 0.1, normal_damping = 10.0 }\n\
+    [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
+    lattice = { origin = [0.05, 0.049], spacing = [0.098, 0.098], count = [40, 30] }\nspin = 3.0\nvelocity = [0.5, 0.0]\n\
+    [grains.d]\nmaterial = 'm'\nradius = 0.05\nlattice = { origin = [0.05, 2.99], spacing = [0.1, 0.1], count = [7, 1] }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 0.05\nposition = [4.2, 0.049]\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.05\nposition = [4.299, 0.05]\n\
+    [driven.lid]\ngrains = 'd'\nvelocity = [0.2, 0.0]\n\
+    [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+    [output]\nevery_cycles = 7\nsnapshots = 2\n";
+
+/// Two colliding elastic discs.
+const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_initial_overlap = 0.2\n\
+    materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
+    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.3 }\n\
+    [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n\
+    [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.988, 0.1]\n\
+    [output]\nevery = 0.004\nsnapshots = 2\n";
+
+/// Watch that takes all snapshots and summaries.
+struct Taker {
+    most_rows: u64,
+    threads: usize,
+    whole: Vec<Snapshot>,
+    in_short: Vec<(Brief, u64)>,
+}
+
+impl Watch for Taker {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn threads(&self) -> usize {
+        self.threads
+    }
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
+        self.whole.push(snapshot);
+        Ok(None)
+    }
+    fn most_rows(&self) -> u64 {
+        self.most_rows
+    }
+    fn in_short(&mut self, brief: Brief, rows: u64) {
+        self.in_short.push((brief, rows));
+    }
+}
+
+fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, Taker) {
+    let scene: Scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err(String::new())).unwrap();
+    let mut taker = Taker { most_rows, threads, whole: Vec::new(), in_short: Vec::new() };
+    let resolution = match solver {
+        "mpm" => Resolution::Grid { cells: 6.0, points: 2, courant: 0.4 },
+        _ => Resolution::CriticalFraction(0.1),
+    };
+    let record = solvers::by_name(solver).unwrap().run(&scene, &resolution, &mut taker).unwrap();
+    (record.series, taker)
+}
+
+/// The summary equals that of the snapshot, with and without probes, and the series has the same bits.
+#[test]
+fn what_is_told_in_short_is_what_the_snapshot_tells() {
+    for (solver, scene) in [("dem", DISCS), ("mpm", SOFT)] {
+        for probes in ["", "[probes]\nall.system = true\n", "[probes]\nall.system = true\np.contact = ['a', 'b']\n"] {
+            let text = format!("{scene}{probes}");
+            let (series, all) = taken(solver, &text, u64::MAX, 1);
+            assert!(all.in_short.is_empty() && all.whole.len() == 4, "{solver}: {} snapshots", all.whole.len());
+            for threads in [1, 2] {
+                let (same, none) = taken(solver, &text, 20, threads);
+                assert_eq!(format!("{same:?}"), format!("{series:?}"), "{solver} {probes}");
+                assert!(none.whole.is_empty());
+                let summaries: Vec<&Brief> = none.in_short.iter().map(|(brief, _)| brief).collect();
+                let expected: Vec<Brief> = all.whole.iter().map(Brief::from_snapshot).collect();
+                assert_eq!(summaries, expected.iter().collect::<Vec<_>>(), "{solver} {probes}");
+                assert!(expected.iter().any(|brief| brief.contacts > Some(0)), "some touch");
+                for ((_, rows), snapshot) in none.in_short.iter().zip(&all.whole) {
+                    let contacts = if solver == "dem" { snapshot.told_contacts().len() } else { 0 };
+                    assert_eq!(*rows, (snapshot.grains.len() + snapshot.points.len() + contacts) as u64);
+                }
+            }
+        }
+    }
+    let slipping = |brief: &Brief| brief.slipping_contacts > Some(0) && brief.slipping_contacts < brief.contacts;
+    assert!(
+        taken("dem", DISCS, 20, 1).1.in_short.iter().any(|(brief, _)| slipping(brief)),
+        "some slip and some do not"
+    );
+}
+
+/// Grains that are close but not in contact give no rows, not even at the start.
+#[test]
+fn what_is_near_and_does_not_touch_is_no_row() {
+    let apart = "title = 'apart'\ndimension = 2\nduration_cycles = 6\nmaterials.m.density = 2500.0\n\
+        contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }\n\
+        [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
+        lattice = { origin = [0.05, 0.05], spacing = [0.1001, 0.1001], count = [20, 20] }\n[output]\nevery_cycles = 3\n";
+    let (_, all) = taken("dem", apart, 450, 1);
+    assert_eq!((all.whole.len(), all.in_short.len()), (2, 0));
+    let (_, none) = taken("dem", apart, 350, 1);
+    assert_eq!((none.whole.len(), none.in_short.len()), (0, 2));
+}
+
+/// A large run that crashes leaves its last state, although it would only have left a summary.
+#[test]
+fn the_last_state_of_a_large_run_that_breaks_is_kept() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let fall = "title = 'fall'\ndimension = 2\nduration_cycles = 6\ngravity = [0.0, -1.0e9]\n\
+        materials.m.density = 2500.0\ncontacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }\n\
+        [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
+        lattice = { origin = [0.05, 0.05], spacing = [0.2, 0.2], count = [460, 460] }\n[output]\nevery_cycles = 3\n";
+    std::fs::write(path.join("fall.toml"), fall).unwrap();
+    let run = crate::common::grainbench(path, &["simulate", "fall.toml", "--solver", "dem", "--out", "out"]);
+    assert!(run.code == Some(1) && run.err.contains("its last state too"), "{:?} {}", run.code, run.err);
+    let files = crate::common::files(&path.join("out"));
+    assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
+}
+
+/// Returns the memory (B) of a run of the command.
+#[cfg(target_os = "linux")]
+fn memory(path: &Path, arguments: &[&str]) -> f64 {
+    let arguments = [arguments, &["--threads", "1", "--out", "out"]].concat();
+    1000.0 * crate::common::peak_memory(path, &arguments) as f64
+}
+
+/// During `simulate`, a grain with three contacts needs at most 700 B and a material point 350 B, from the difference
+/// between two sizes.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let spheres = |layers: u32| {
+        format!(
+            "title = 'spheres'\ndimension = 3\nduration_cycles = 3\ngravity = [0.0, 0.0, -1.0]\n\
+             largest_initial_overlap = 0.1\n\
+             domain = {{ low = [0.0, 0.0, 0.0], high = [39.92, 39.92, 200.0], periodic = [true, true, false] }}\n\
+             materials.m.density = 1.909859317102744\n\
+             contacts.m = {{ between = ['m', 'm'], normal_stiffness = 2.0e5, tangential_stiffness = 57142.857142857145, \
+             friction = 0.5, normal_damping = 50.0 }}\n\
+             [grains.g]\nmaterial = 'm'\nradius = 0.5\n\
+             lattice = {{ origin = [0.5, 0.5, 0.499], spacing = [0.998, 0.998, 0.998], count = [40, 40, {layers}] }}\n\
+             [walls.floor]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}\n\
+             [output]\nevery_cycles = 3\n"
+        )
+    };
+    std::fs::write(path.join("few.toml"), spheres(50)).unwrap();
+    std::fs::write(path.join("many.toml"), spheres(150)).unwrap();
+    let [few, many] = ["few.toml", "many.toml"].map(|scene| memory(path, &["simulate", scene, "--solver", "dem"]));
+    let grain = (many - few) / f64::from(40 * 40 * 100);
+    assert!(grain > 300.0 && grain <= 700.0, "{grain} B a grain");
+    let block = "title = 'block'\ndimension = 2\nduration = 0.002\nreference_length = 1.0\n\
+        materials.m = { density = 1.0, young_modulus = 1.0, poisson_ratio = 0.3 }\n\
+        [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\nstretch = [0.02, -0.02]\n\
+        [output]\nevery = 0.002\n";
+    std::fs::write(path.join("block.toml"), block).unwrap();
+    let [few, many] = ["160", "240"]
+        .map(|cells| memory(path, &["simulate", "block.toml", "--solver", "mpm", "--cells", cells, "--points", "3"]));
+    let point = (many - few) / f64::from(9 * (240 * 240 - 160 * 160));
+    assert!(point > 150.0 && point <= 350.0, "{point} B a point");
+}

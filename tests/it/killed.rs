@@ -1,0 +1,153 @@
+//! A process killed at any time. Its directory is unchanged, complete with the new files, or marked as mixed. Temporary
+//! files beside it disappear with the next run. The default is ten kills; `GRAINBENCH_LONG` gives a hundred and twenty.
+//! The unit tests of `reports/src/staged.rs` interrupt each disk operation of a commit in turn.
+
+use crate::common::{files, grainbench};
+use grainbench::reports::refuse_mixed;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// Scene of discs in a row with many snapshots, so that a run leaves many files.
+const SCENE: &str = "title = 't'\ndimension = 2\nduration_cycles = 4000\n[materials.m]\ndensity = 1000.0\n\
+     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
+     [grains.a]\nmaterial = 'm'\nradius = 0.1\nvelocity = [1.0, 0.0]\n\
+     lattice = { origin = [0.0, 0.0], spacing = [0.25, 0.25], count = [8, 4] }\n\
+     [output]\nsnapshots = 60\n[probes]\nall = { system = true }\n[variants.shorter]\noutput.snapshots = 40\n";
+
+/// Two runs with different output files, as words of the command line.
+struct Pair {
+    runs: [&'static [&'static str]; 2],
+    /// Function that identifies the run of a file, independent of the times in it.
+    kind: fn(&Path, &str) -> String,
+}
+
+/// Returns a hash of a simulation's file without its run time.
+fn simulated(directory: &Path, name: &str) -> String {
+    let text = fs::read_to_string(directory.join(name)).unwrap();
+    let mut parts = text.split("\"wall_seconds\":");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
+    let text = parts.fold(first, |all, part| all + part.trim_start_matches(is_number));
+    format!("{} bytes, {:?}", text.len(), text.bytes().fold(0_u64, |sum, byte| sum.wrapping_mul(31) + u64::from(byte)))
+}
+
+/// Returns the cases that a file of a report mentions.
+fn reported(directory: &Path, name: &str) -> String {
+    let text = fs::read_to_string(directory.join(name)).unwrap();
+    let case_name = |case: &str| text.contains(case).then(|| case.to_owned());
+    let named =
+        ["rolling-resistance", "oblique-impact"].into_iter().filter_map(case_name).collect::<Vec<_>>().join(" ");
+    // Figures mention their case only in their file name.
+    if name.starts_with("figures") || named.is_empty() { name.to_owned() } else { named }
+}
+
+const SIMULATE: Pair = Pair {
+    runs: [
+        &["simulate", "s.toml", "--solver", "dem", "--out", "out"],
+        &["simulate", "s.toml", "--solver", "dem", "--variant", "shorter", "--out", "out"],
+    ],
+    kind: simulated,
+};
+const RUN: Pair = Pair {
+    runs: [&["run", "rolling-resistance", "--out", "out"], &["run", "oblique-impact", "--out", "out"]],
+    kind: reported,
+};
+
+/// Returns the files of a directory with their runs, without hidden files and the manifest.
+fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<String, String> {
+    if !directory.exists() {
+        return BTreeMap::new();
+    }
+    let names = files(directory).into_iter().filter(|name| !name.starts_with('.') && name != "manifest.json");
+    names.map(|name| (name.clone(), kind(directory, &name))).collect()
+}
+
+/// Kills one run after the other, each at a random time, and continues in the same directory.
+fn kill(pair: &Pair, times: usize, seed: u64) {
+    let directory = tempfile::tempdir().unwrap();
+    let (path, out) = (directory.path(), directory.path().join("out"));
+    fs::write(path.join("s.toml"), SCENE).unwrap();
+    let (mut whole, mut longest) = (Vec::new(), Duration::ZERO);
+    for arguments in pair.runs {
+        let begun = Instant::now();
+        let answer = grainbench(path, arguments);
+        longest = longest.max(begun.elapsed());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        whole.push(standing(&out, pair.kind));
+    }
+    assert_ne!(whole[0], whole[1], "the runs cannot be told apart");
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    let lot = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    let mut lot = TestRunner::new_with_rng(Config::default(), lot);
+    let mut seen = [0; 4];
+    let (mut number, mut killed) = (0, 0);
+    // A process that had ended already does not count as killed.
+    while killed < times {
+        // Every third time the directory does not exist before.
+        if number % 3 == 0 && out.exists() {
+            fs::remove_dir_all(&out).unwrap();
+        }
+        let before = standing(&out, pair.kind);
+        let was_mixed = refuse_mixed(&out).is_err();
+        let mut child = crate::common::program()
+            .args(pair.runs[number % 2])
+            .current_dir(path)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Half of the times are near the end, when files are moved into place.
+        let part = (0.0..1.0_f64).new_tree(&mut lot).unwrap().current();
+        let part = if number % 2 == 0 { part } else { 1.0 - 0.3 * part };
+        std::thread::sleep(longest.mul_f64(part));
+        let ended = child.try_wait().unwrap().is_some();
+        // SIGKILL cannot be caught.
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let after = standing(&out, pair.kind);
+        let is_mixed = refuse_mixed(&out).is_err();
+        let (as_before, is_new) = (after == before, after == whole[number % 2]);
+        assert!(
+            as_before && was_mixed == is_mixed || is_new || is_mixed,
+            "kill {number} of seed {seed}, after {part} of {longest:?}: a mixed directory is taken for whole: {after:?}"
+        );
+        for (count, holds) in seen.iter_mut().zip([ended, as_before, is_new, is_mixed]) {
+            *count += u32::from(holds);
+        }
+        (number, killed) = (number + 1, killed + usize::from(!ended));
+        assert!(number < 20 * times, "too many end before they are killed");
+    }
+    let [ended, as_before, new, mixed] = seen;
+    let command = pair.runs[0][0];
+    eprintln!(
+        "{killed} kills of {command}, of {number} runs: {ended} had ended, {as_before} as before, {new} new, {mixed} mixed"
+    );
+    assert_eq!(grainbench(path, pair.runs[0]).code, Some(0));
+    assert_eq!(standing(&out, pair.kind), whole[0]);
+    assert!(refuse_mixed(&out).is_ok());
+    let hidden = |path: &Path| -> Vec<String> {
+        files(path).into_iter().filter(|name| name.contains("/.") || name.starts_with('.')).collect()
+    };
+    assert_eq!(hidden(path), [""; 0], "what killed runs left beside the directory goes with the next");
+}
+
+fn times(few: usize, many: usize) -> usize {
+    if std::env::var_os("GRAINBENCH_LONG").is_some() { many } else { few }
+}
+
+#[test]
+fn a_killed_simulation_leaves_no_mixed_directory() {
+    kill(&SIMULATE, times(7, 80), 1);
+}
+
+#[test]
+fn a_killed_run_leaves_no_mixed_report() {
+    kill(&RUN, times(4, 40), 2);
+}

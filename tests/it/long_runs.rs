@@ -1,0 +1,51 @@
+//! A warning before the first step of a run that takes hours.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+/// Returns a scene of a falling disc. In steel, a wave crosses a cell in 0.2 µs.
+fn scene(young_modulus: f64, duration: f64) -> String {
+    format!(
+        "title = 'A disc falls on a floor'\ndimension = 2\nduration = {duration:.1}\ngravity = [0.0, -9.81]\n\
+         materials.m = {{ density = 7800.0, young_modulus = {young_modulus:e}, poisson_ratio = 0.3 }}\n\
+         contacts.all = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.3 }}\n\
+         grains.disc = {{ material = 'm', radius = 0.01, position = [0.0, 0.05] }}\n\
+         walls.floor = {{ material = 'm', plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}\n"
+    )
+}
+
+/// Returns the first line of the standard error and ends the run.
+fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("disc.toml"), scene(young_modulus, duration)).unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_grainbench"))
+        .args(["simulate", "disc.toml", "--solver", "mpm", "--cells", cells, "--out", "out"])
+        .current_dir(directory.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(run.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    run.kill().unwrap();
+    run.wait().unwrap();
+    line
+}
+
+/// 20 s at 0.4 of h/c: h = R/8 = 1.25 mm, c = √(M/ρ) = 6020 m/s in steel, M = 1.346 E at ν = 0.3. These are 2.4e8 steps
+/// of 1804 points: twelve hours at ten million points a second.
+#[test]
+fn steel_in_mpm_is_warned_of() {
+    let line = first_line(2.1e11, 20.0, "8");
+    assert!(line.starts_with("warning: this takes about 12 h, "), "{line}");
+    for part in [" steps of 8.305e-8 s for ", "softer moduli or larger cells (--cells)", "--checkpoint FILE"] {
+        assert!(line.contains(part), "{part}: {line}");
+    }
+}
+
+/// One second in rubber with cells of half a radius runs at once, without a warning.
+#[test]
+fn rubber_is_not() {
+    let line = first_line(2.1e7, 1.0, "2");
+    assert!(line.is_empty(), "{line}");
+}

@@ -1,0 +1,49 @@
+//! Integration tests, in one program: what the command line does, and rules for the whole repository.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod absent_effects;
+mod bad_input;
+mod cache;
+#[cfg(unix)]
+mod campaign;
+mod check;
+mod check_own;
+mod choosing;
+mod cli;
+mod common;
+mod conform_claims;
+mod conformance;
+mod deck;
+mod determinism;
+mod effects;
+mod fields;
+mod given_data;
+mod guide;
+mod hostile_scenes;
+mod in_short;
+mod kept;
+#[cfg(unix)]
+mod killed;
+mod long_runs;
+mod mesh_walls;
+mod motions;
+mod outside;
+mod own_case;
+mod own_solver;
+mod passing_decks;
+mod peers;
+mod piston;
+mod programs;
+mod readme;
+mod records;
+mod references;
+mod restart;
+mod round_walls;
+mod state;
+mod states;
+mod stays;
+mod studies;
+mod tidy;
+mod wrong_flags;
+mod wrong_keys;

@@ -1,0 +1,319 @@
+//! Walls of triangles. They give the same results as other walls of the same surface, also with motion and with
+//! inserted and removed grains. Invalid files are rejected.
+
+use crate::common::bits;
+use grainbench::cases::solvers;
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError, Threads, Watch};
+use grainbench::scene::source::SceneSource;
+use std::fmt::Write as _;
+use std::path::Path;
+
+type Triangle = [[f64; 3]; 3];
+
+const STEP: Resolution = Resolution::TimeStep(1e-4);
+
+fn stl(triangles: &[Triangle]) -> String {
+    let mut text = "solid test\n".to_owned();
+    for triangle in triangles {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        for [x, y, z] in triangle {
+            let _ = writeln!(text, "vertex {x:?} {y:?} {z:?}");
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text + "endsolid test\n"
+}
+
+/// Returns a box between two corners, with outward normals.
+fn block(low: [f64; 3], high: [f64; 3]) -> Vec<Triangle> {
+    let corner = |bits: usize| [0, 1, 2].map(|axis| if bits >> axis & 1 == 1 { high[axis] } else { low[axis] });
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c].map(corner), [a, c, d].map(corner)]).collect()
+}
+
+/// Returns a rectangle in the plane z = 0, as `count` strips of two triangles.
+fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
+    let at = |strip: u32, y: f64| [low[0] + (high[0] - low[0]) * f64::from(strip) / f64::from(count), y, 0.0];
+    (0..count)
+        .flat_map(|strip| {
+            let [a, b] = [at(strip, low[1]), at(strip + 1, low[1])];
+            let [c, d] = [at(strip + 1, high[1]), at(strip, high[1])];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect()
+}
+
+/// Spheres above one another in a box of 2 m, some in contact with its edges and corners.
+const GRAINS: &str = r#"title = "Walls of triangles"
+dimension = 3
+duration = 0.3
+gravity = [1.0, -2.0, -10.0]
+materials.m.density = 1000.0
+contacts.all = { between = ["m", "m"], normal_stiffness = 1e5, tangential_stiffness = 3e4, friction = 0.4, normal_damping = 5.0 }
+output = { every_cycles = 100, snapshots = 2 }
+probes.all = { system = true }
+[grains.all]
+material = "m"
+radius = 0.2
+lattice = { origin = [-0.79, -0.8, -0.79], spacing = [0.5, 0.51, 0.52], count = [4, 4, 3] }
+"#;
+
+fn scene_in(directory: &Path, text: &str) -> Result<Scene, String> {
+    SceneSource::from_text("mesh", directory, text)
+        .scene(&|_| Err("no files".to_owned()))
+        .map_err(|error| error.to_string())
+}
+
+fn scene(triangles: &[Triangle], text: &str) -> Scene {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("wall.stl"), stl(triangles)).unwrap();
+    scene_in(directory.path(), text).unwrap()
+}
+
+fn run(scene: &Scene, watch: &mut dyn Watch) -> Record {
+    let solver = solvers::by_name("dem").unwrap();
+    solver.run(scene, &STEP, watch).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Returns the largest distance between the same grains at the end (m).
+fn apart(one: &Record, other: &Record) -> f64 {
+    let [one, other] = [one, other].map(|record| &record.snapshots.last().unwrap().grains);
+    assert_eq!(one.len(), other.len());
+    one.iter().zip(other).map(|(a, b)| (a.position - b.position).norm()).fold(0.0, f64::max)
+}
+
+/// In a box of twelve triangles, grains move as between six planes.
+#[test]
+fn a_box_of_triangles_is_a_box_of_planes() {
+    let mesh = "walls.box = { material = 'm', mesh = { file = 'wall.stl', unit = 'm' } }\n";
+    let mut planes = String::new();
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let (mut point, mut normal) = ([0.0; 3], [0.0; 3]);
+            (point[axis], normal[axis]) = (side, -side);
+            let (name, plane) = (format!("w{axis}{side}"), format!("{{ point = {point:?}, normal = {normal:?} }}"));
+            let _ = writeln!(planes, "walls.'{name}' = {{ material = 'm', plane = {plane} }}");
+        }
+    }
+    let triangles = block([-1.0; 3], [1.0; 3]);
+    let mut ours = scene(&triangles, &format!("{mesh}{GRAINS}"));
+    let as_planes = run(&scene(&triangles, &format!("{planes}{GRAINS}")), &mut ());
+    let record = run(&ours, &mut ());
+    let contacts = |record: &Record| record.snapshots.last().unwrap().contacts.as_ref().map_or(0, Vec::len);
+    let touching = contacts(&record);
+    assert!(touching > 20 && touching == contacts(&as_planes), "{touching}");
+    assert!(apart(&record, &as_planes) < 1e-9, "{}", apart(&record, &as_planes));
+    // A slightly different stiffness gives a visible difference.
+    ours.change_laws(|law| law.scale_normal(1.0 + 1e-6));
+    assert!(apart(&run(&ours, &mut ()), &as_planes) > 1e-9);
+}
+
+/// A plate of triangles with rotation and translation moves grains as a rectangle does.
+#[test]
+fn a_plate_of_triangles_moves_as_a_rectangle() {
+    let motion = "motion = [{ velocity = [0.3, 0.0, 0.2], spin = [0.0, 0.0, 1.5], centre = [0.2, 0.1, 0.0] }]";
+    let grains = GRAINS.replace("-0.79]", "0.1999]").replace("count = [4, 4, 3]", "count = [4, 4, 1]");
+    let mesh =
+        format!("[walls.plate]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', unit = 'm', open = true }}\n{motion}\n");
+    let rectangle = "rectangle = { corner = [-3.0, -3.0, 0.0], edges = [[6.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }";
+    let rectangle = format!("[walls.plate]\nmaterial = 'm'\n{rectangle}\n{motion}\n");
+    let triangles = strips([-3.0; 2], [3.0; 2], 11);
+    let [ours, theirs] = [mesh, rectangle].map(|wall| run(&scene(&triangles, &format!("{grains}{wall}")), &mut ()));
+    assert!(apart(&ours, &theirs) < 1e-9, "{}", apart(&ours, &theirs));
+    let [first, last] = [0, ours.snapshots.len() - 1].map(|at| &ours.snapshots[at].grains[0]);
+    assert!((first.position - last.position).norm() > 0.05 && last.spin.norm() > 0.01);
+    let forces = [&ours, &theirs].map(|record| record.snapshots.last().unwrap().walls[0].force.unwrap());
+    assert!(forces[0].norm() > 1.0 && (forces[0] - forces[1]).norm() < 1e-6 * forces[0].norm());
+}
+
+/// A sphere that is moved over the ridge of two plates at 179° keeps its tangential spring, because the contact continues
+/// from plate to ridge to plate. Its force is k_t v t, up to the fraction 1 − cos ½° by the slope of the plates.
+#[test]
+fn a_spring_goes_on_over_a_ridge() {
+    let slope = 0.5_f64.to_radians();
+    let at = |x: f64, y: f64| [x, y, -slope.tan() * x.abs()];
+    let [a, b, c] = [-1.0, 0.0, 1.0].map(|x| [at(x, -1.0), at(x, 1.0)]);
+    let triangles = [[a[0], b[0], b[1]], [a[0], b[1], a[1]], [b[0], c[0], c[1]], [b[0], c[1], b[1]]];
+    let text = r#"title = "A roof"
+dimension = 3
+duration = 0.04
+materials.m.density = 1000.0
+contacts.all = { between = ["m", "m"], normal_stiffness = 1e5, tangential_stiffness = 3e4, friction = 10.0 }
+output.every_cycles = 1
+probes.touch = { contact = ["ball", "roof"] }
+grains.ball = { material = "m", radius = 0.1, position = [-2e-3, 0.0, 0.0995] }
+driven.ball = { grains = "ball", velocity = [0.1, 0.0, 0.0] }
+walls.roof = { material = "m", mesh = { file = "wall.stl", unit = "m", open = true } }
+"#;
+    let record = run(&scene(&triangles, text), &mut ());
+    let (rate, time) = (3e4 * 0.1, &record.series.time);
+    let allowed = rate * 0.04 * (1.0 - slope.cos());
+    for (force, time) in record.series.column("touch.shear_force").unwrap().iter().zip(time) {
+        assert!((force - rate * time).abs() < allowed, "{force} N for {} N at {time} s", rate * time);
+    }
+}
+
+/// Watch that keeps the checkpoints of a run.
+struct Keeper(Vec<Checkpoint>);
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(700)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.0.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
+        Ok(())
+    }
+}
+
+/// Returns a rotating funnel of triangles. Grains fall through it and are removed below.
+fn funnel() -> Scene {
+    let rim = |part: u32, radius: f64, z: f64| {
+        let (sine, cosine) = (f64::from(part) * std::f64::consts::TAU / 16.0).sin_cos();
+        [radius * cosine, radius * sine, z]
+    };
+    // The last part ends exactly where the first begins, in all bits.
+    let triangles: Vec<Triangle> = (0..16)
+        .flat_map(|part| {
+            let next = (part + 1) % 16;
+            let [a, b] = [part, next].map(|part| rim(part, 0.5, -1.2));
+            let [c, d] = [next, part].map(|part| rim(part, 2.0, 0.3));
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    let text = format!(
+        "{}[walls.funnel]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', unit = 'm', open = true }}\n\
+         motion = [{{ spin = [0.0, 0.0, 3.0], centre = [0.0, 0.0, 0.0] }}]\n\
+         [removal]\nlow = [-9.0, -9.0, -9.0]\nhigh = [9.0, 9.0, -1.5]\n",
+        GRAINS.replace("-0.79]", "0.2]").replace("duration = 0.3", "duration = 0.8")
+    );
+    scene(&triangles, &text)
+}
+
+#[test]
+fn threads_and_restarts_change_no_bit() {
+    let scene = funnel();
+    let mut keeper = Keeper(Vec::new());
+    let straight = run(&scene, &mut keeper);
+    assert!(straight.snapshots.last().unwrap().grains.len() < 48, "none was taken out");
+    let straight = bits(straight);
+    for threads in [2, 3] {
+        assert!(bits(run(&scene, &mut Threads(threads))) == straight, "{threads} threads");
+    }
+    let solver = solvers::by_name("dem").unwrap();
+    assert!(keeper.0.len() > 5);
+    for checkpoint in &keeper.0 {
+        let record = solver.restart(&scene, &STEP, checkpoint, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+        assert!(bits(record) == straight);
+    }
+}
+
+#[test]
+fn who_has_no_meshes_says_so() {
+    let mut scene = funnel();
+    scene.stays = Default::default();
+    for (name, resolution, word) in [
+        ("rigid", Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations: 4 }, "mesh of triangles"),
+        ("mpm", Resolution::Grid { cells: 4.0, points: 2, courant: 0.4 }, ""),
+    ] {
+        let refused = solvers::by_name(name).unwrap().run(&scene, &resolution, &mut ());
+        let has_it = matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains(word));
+        assert!(has_it, "{name}: {refused:?}");
+    }
+    let refused = solvers::by_name("lammps").unwrap().run(&scene, &STEP, &mut ());
+    assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("mesh")), "{refused:?}");
+}
+
+/// Returns a file in binary form.
+fn binary(triangles: &[Triangle]) -> Vec<u8> {
+    let mut bytes = vec![0; 80];
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for triangle in triangles {
+        bytes.extend([0; 12]);
+        triangle.iter().flatten().for_each(|number| bytes.extend((*number as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Reports the error of each kind of invalid mesh file.
+#[test]
+fn what_is_wrong_with_a_mesh_is_told() {
+    let cube = block([-1.0; 3], [1.0; 3]);
+    let text = stl(&cube);
+    let whole = binary(&cube);
+    let turned = |which: &[usize]| {
+        let mut cube = cube.clone();
+        which.iter().for_each(|&at| cube[at].swap(0, 1));
+        stl(&cube).into_bytes()
+    };
+    let with = |more: &[Triangle]| stl(&[&cube[..], more].concat()).into_bytes();
+    let line = |from: &str, to: &str| text.replacen(from, to, 1).into_bytes();
+    let mut nan = whole.clone();
+    nan[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut nearly = cube.clone();
+    nearly[0][0][0] += 1e-7;
+    let mut says_solid = whole[..whole.len() - 20].to_vec();
+    says_solid[..5].copy_from_slice(b"solid");
+    let large: Vec<Triangle> = cube.iter().map(|triangle| triangle.map(|corner| corner.map(|x| 1e3 * x))).collect();
+    let tee =
+        [[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [[0.0, 0.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, 0.0]]];
+    let plain = "unit = 'm'";
+    let files: &[(&str, Vec<u8>, &str)] = &[
+        ("empty", Vec::new(), plain),
+        ("no mesh", b"ISO-10303-21;".to_vec(), plain),
+        ("no facet", b"solid a\nendsolid a\n".to_vec(), plain),
+        ("text cut off", text.as_bytes()[..text.len() - 30].to_vec(), plain),
+        ("text without its end", text.replace("endsolid test\n", "").into_bytes(), plain),
+        ("text with more", [text.as_bytes(), b"vertex 0 0 0\n"].concat(), plain),
+        ("no number", line("vertex -1.0 -1.0", "vertex -1.0 one"), plain),
+        ("not finite", line("vertex -1.0 -1.0", "vertex -1.0 inf"), plain),
+        ("two numbers", line("vertex -1.0 -1.0 -1.0", "vertex -1.0 -1.0"), plain),
+        ("normal of the other side", line("normal 0 0 0", "normal 0 0 1"), plain),
+        ("binary cut off", whole[..whole.len() - 20].to_vec(), plain),
+        ("binary with more", [&whole[..], &[0; 7]].concat(), plain),
+        ("binary that says solid, cut off", says_solid, plain),
+        ("binary not finite", nan, plain),
+        ("no area", with(&[[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]]), plain),
+        ("a corner twice", with(&[[[0.0; 3], [0.0; 3], [2.0, 0.0, 0.0]]]), plain),
+        ("twice", with(&cube[3..4]), plain),
+        ("three at an edge", with(&[[cube[0][0], cube[0][1], [3.0, 3.0, 3.0]]]), plain),
+        ("one missing", stl(&cube[1..]).into_bytes(), plain),
+        ("nearly the same corner", stl(&nearly).into_bytes(), plain),
+        ("one turned over", turned(&[4]), plain),
+        ("all turned over", turned(&(0..12).collect::<Vec<_>>()), plain),
+        ("not inward", text.clone().into_bytes(), "unit = 'm', inward = true"),
+        ("open and inward", text.clone().into_bytes(), "unit = 'm', inward = true, open = true"),
+        ("a corner on an edge", stl(&tee).into_bytes(), "unit = 'm', open = true"),
+        ("millimetres", stl(&large).into_bytes(), plain),
+        ("no unit", text.clone().into_bytes(), "open = true"),
+        ("inches", text.clone().into_bytes(), "unit = 'in'"),
+        ("a negative distance", text.clone().into_bytes(), "unit = 'm', merge = -1.0"),
+    ];
+    let directory = tempfile::tempdir().unwrap();
+    let scene_of =
+        |more: &str| format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
+    let mut messages = String::new();
+    let _ = writeln!(messages, "no file: {}", scene_in(directory.path(), &scene_of(plain)).unwrap_err());
+    for (name, bytes, more) in files {
+        std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
+        let error = scene_in(directory.path(), &scene_of(more)).expect_err(name);
+        let _ = writeln!(messages, "{name}: {error}");
+    }
+    insta::assert_snapshot!(messages);
+    // Valid files: in millimetres, with slightly different corners, and binary.
+    for (bytes, more) in [
+        (stl(&large).into_bytes(), "unit = 'mm'"),
+        (stl(&nearly).into_bytes(), "unit = 'm', merge = 1e-6"),
+        (whole, plain),
+        (turned(&(0..12).collect::<Vec<_>>()), "unit = 'm', inward = true"),
+        (stl(&cube[2..]).into_bytes(), "unit = 'm', open = true"),
+    ] {
+        std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
+        scene_in(directory.path(), &scene_of(more)).unwrap();
+    }
+}

@@ -1,0 +1,59 @@
+//! Walls with prescribed functions of time in each solver: a disc on an evenly accelerated belt rolls without slip.
+//!
+//! Only friction at the lowest point acts along the belt: m a = F and I α = F R with I = m R²/2, and the lowest point
+//! moves with the belt. The disc therefore has a third of the belt's velocity and displacement, as long as F = m A/3 is
+//! below μ m g.
+
+use grainbench::cases::solvers;
+use grainbench::scene::solver::Resolution;
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// Final velocity of the belt (m/s), time to reach it (s), and duration of the run (s).
+const SPEED: f64 = 1.0;
+const RISING: f64 = 0.4;
+const END: f64 = 0.6;
+
+/// Returns the displacement of the disc (m).
+fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
+    let text = format!(
+        "title = 'Drawn off'\ndimension = 2\ngravity = [0.0, -9.8]\nduration = {END:?}\n\
+         materials.m = {{ density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3 }}\n\
+         contacts.all = {{ between = ['m', 'm'], normal_stiffness = 1e7, tangential_stiffness = 1e7, friction = 0.8, \
+         normal_damping = 200.0, tangential_damping = 200.0 }}\n\
+         grains.disc = {{ material = 'm', radius = 0.1, position = [0.0, 0.1] }}\n\
+         [walls.belt]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\nmotion = [{motion}]\n\
+         [output]\nsnapshots = 0\n[probes]\ndisc.grain = 'disc'\n"
+    );
+    let source = SceneSource::from_text("belt", Path::new(""), &text);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let record = solvers::by_name(solver).unwrap().run(&scene, resolution, &mut ()).unwrap();
+    *record.series.column("disc.x").unwrap().last().unwrap()
+}
+
+#[test]
+fn a_disc_rolls_on_a_belt_that_is_drawn_off_evenly() {
+    let third = SPEED * (END - 0.5 * RISING) / 3.0;
+    let ramp = format!("{{ velocity = [{SPEED:?}, 0.0], ramp = {RISING:?} }}");
+    let rows = (0..=64_u32).map(|at| {
+        let t = END * f64::from(at) / 64.0;
+        let way = if t < RISING { 0.5 * SPEED * t * t / RISING } else { SPEED * (t - 0.5 * RISING) };
+        format!("[{t:?}, {way:?}, 0.0]")
+    });
+    let table = format!("{{ table = [{}] }}", rows.collect::<Vec<_>>().join(", "));
+    let at_once = format!("{{ velocity = [{SPEED:?}, 0.0] }}");
+    // The grid has a larger error of rolling (`incline-disc`). It must also agree between a table and the function that
+    // the table samples.
+    for (solver, resolution, off) in [
+        ("dem", Resolution::CriticalFraction(0.02), 2e-3),
+        ("rigid", Resolution::substeps(32), 1e-2),
+        ("mpm", Resolution::grid(4.0, 2), 0.1),
+    ] {
+        let found = way(solver, &resolution, &ramp);
+        assert!((found - third).abs() < off * third, "{solver}: {found}, not {third}");
+        let sampled = way(solver, &resolution, &table);
+        assert!((sampled - found).abs() < 5e-3 * third, "{solver}: {sampled} by a table, {found} by the ramp");
+        let other = way(solver, &resolution, &at_once);
+        assert!((other - third).abs() > 0.2 * third, "{solver}: {other} where the belt runs at once");
+    }
+}

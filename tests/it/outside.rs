@@ -1,0 +1,537 @@
+//! External solvers with a manifest: one that moves a grain, and several with wrong output.
+
+use crate::common::{Answer, grainbench};
+use rayon::prelude::*;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const MANIFEST: &str = r#"name = "liar"
+run = ["sh", "liar.sh", "{scene}", "{out}"]
+
+[can]
+dimension = [2, 3]
+laws = ["linear"]
+walls = ["plane"]
+effects = ["friction", "contact-damping"]
+
+[output]
+grains = { path = "grains.csv", format = "csv" }
+
+[limits]
+seconds = 2
+"#;
+const HEAD: &str = "step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz";
+const CASE: &str = "incline-disc/30deg-mu.5";
+
+fn write(folder: &Path, manifest: &str, script: &str) {
+    fs::write(folder.join("SOLVER.toml"), manifest).unwrap();
+    fs::write(folder.join("liar.sh"), script).unwrap();
+}
+
+/// Returns the processes on this machine.
+fn running() -> String {
+    let running = Command::new("ps").args(["-eo", "args"]).output();
+    running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
+}
+
+fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
+    let answer = grainbench(folder, &[&["run", CASE, "--solver", "SOLVER.toml", "--json"], further].concat());
+    let results = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    (answer, results)
+}
+
+/// Each wrong output is detected, with a message that an author can use. Each entry has the script, the verdict of all
+/// results, and part of the message.
+#[test]
+fn a_program_that_lies_is_found_out() {
+    let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
+    let lies: [(&str, String, &str, &str); 14] = [
+        ("leaves nothing", "exit 0".to_owned(), "broken", "grains.csv"),
+        (
+            "garbage",
+            "echo 'a,b' > \"$2/grains.csv\"; echo 'x,y' >> \"$2/grains.csv\"".to_owned(),
+            "broken",
+            "grains.csv:2:1",
+        ),
+        ("no number", table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "broken", "found `nan`"),
+        ("a fraction for an id", table("0,1.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected a whole number from 0"),
+        ("a negative id", table("0,-5.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "found -5.5"),
+        (
+            "leaves a session",
+            "setsid sleep 1235 > /dev/null 2>&1 & sleep 1000".to_owned(),
+            "broken",
+            "not done after 2 s",
+        ),
+        ("ends early", table("0,1,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected samples to step"),
+        ("hangs", "sleep 1000".to_owned(), "broken", "not done after 2 s"),
+        ("leaves a child", "sleep 1234 & exit 0".to_owned(), "broken", "grains.csv"),
+        ("floods the disk", "head -c 10000000000 /dev/zero > \"$2/big\"".to_owned(), "broken", "found more"),
+        ("talks without end", "yes".to_owned(), "broken", "found more"),
+        ("breaks", "echo 'out of memory' >&2; exit 3".to_owned(), "broken", "it said last: out of memory"),
+        ("links elsewhere", "ln -s /dev/zero \"$2/grains.csv\"".to_owned(), "broken", "expected a plain file"),
+        ("cannot", "echo 'no friction here'; exit 64".to_owned(), "unsupported", "no friction here"),
+    ];
+    for (what, script, verdict, message) in lies {
+        let directory = tempfile::tempdir().unwrap();
+        write(directory.path(), MANIFEST, &script);
+        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
+        let rows = results["verdicts"].as_array().unwrap();
+        assert!(!rows.is_empty(), "{what}");
+        for row in rows {
+            assert_eq!(row["verdict"], verdict, "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
+        }
+    }
+    assert!(!running().contains("sleep 1234"), "what it started goes with it");
+    assert!(!running().contains("sleep 1235"), "and what it started in a session");
+}
+
+/// Grains in a folder that is a link are those of somebody else, as in a file that is one.
+#[test]
+fn grains_in_a_linked_folder_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let script = format!(
+        "mkdir elsewhere; printf '{HEAD}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > elsewhere/grains.csv; \
+         ln -s \"$PWD/elsewhere\" \"$2/sub\""
+    );
+    write(directory.path(), &MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\""), &script);
+    let (answer, results) = judged(directory.path(), &["--no-controls"]);
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    for row in results["verdicts"].as_array().unwrap() {
+        let detail = row["detail"].as_str().unwrap_or_default();
+        assert!(detail.contains("sub/grains.csv: expected the folder sub, found a link or a file"), "{row}");
+    }
+}
+
+/// A worker with wrong output is detected too, and its child processes end with it.
+#[test]
+fn a_worker_that_lies_is_found_out() {
+    let manifest =
+        MANIFEST.replace("run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]", "worker = [\"sh\", \"liar.sh\"]");
+    let lies: [(&str, &str, &str, &str); 8] = [
+        ("leaves nothing", "echo '{\"ran\": {}}'", "broken", "grains.csv"),
+        ("nonsense", "echo nonsense", "broken", "found `nonsense`"),
+        ("ends", "exit 0", "broken", "the worker ended"),
+        ("hangs", "sleep 1000", "broken", "not done after 2 s"),
+        ("floods the disk", "head -c 10000000000 /dev/zero > big", "broken", "found more"),
+        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "when 0.5, where not told"),
+        (
+            "tells no time",
+            "echo '{\"ran\": {\"seconds\": -1}}'",
+            "broken",
+            "expected seconds of zero or more, found -1",
+        ),
+        ("cannot", "echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
+    ];
+    for (what, script, verdict, message) in lies {
+        let directory = tempfile::tempdir().unwrap();
+        write(directory.path(), &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
+        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
+        for row in results["verdicts"].as_array().unwrap() {
+            assert_eq!(row["verdict"], verdict, "{what}: {row}");
+            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
+        }
+    }
+    assert!(!running().contains("sleep 4321"), "what it started goes with it");
+}
+
+/// A scene with effects that the manifest does not declare is not given to the program. A missing program is amber.
+#[test]
+fn what_is_not_declared_is_not_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let reason = |manifest: &str| {
+        write(path, manifest, "exit 0");
+        let (answer, results) = judged(path, &[]);
+        assert_eq!(answer.code, Some(1), "{}", answer.err);
+        assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be expressed has no control");
+        let row = &results["verdicts"][0];
+        (row["verdict"].as_str().unwrap().to_owned(), row["detail"].as_str().unwrap_or_default().to_owned())
+    };
+    let less = [
+        ("[2, 3]", "[3]", "scenes of 2 dimensions"),
+        ("[\"linear\"]", "[\"hertz-mindlin\"]", "the law `linear`"),
+        ("walls = [\"plane\"]", "", "walls that are a `plane`"),
+        ("\"friction\", ", "", "the effect `friction`"),
+    ];
+    for (declared, instead, message) in less {
+        let (verdict, detail) = reason(&MANIFEST.replace(declared, instead));
+        assert!(verdict == "unsupported" && detail.contains(message), "{verdict}: {detail}");
+    }
+    let (verdict, detail) = reason(&MANIFEST.replace("\"sh\"", "\"no-such-program\""));
+    assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
+}
+
+/// A wrong manifest is an error with file, place, expected and found text.
+#[test]
+fn a_wrong_manifest_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let refused = |manifest: &str| {
+        write(path, manifest, "exit 0");
+        let answer = grainbench(path, &["run", CASE, "--solver", "SOLVER.toml"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{manifest}");
+        answer.err
+    };
+    let wrong = [
+        ("name = \"liar\"", "name = \"dem\"", "SOLVER.toml: name: expected one that no solver has, found `dem`"),
+        ("name = \"liar\"", "name = \"\\u001b[2J\"", "SOLVER.toml: name: expected up to 40 letters"),
+        ("\"{scene}\", ", "", "SOLVER.toml: run: expected a word with `{scene}`"),
+        ("[2, 3]", "[4]", "SOLVER.toml: can.dimension: expected 2 and 3 alone, found 4"),
+        (
+            "[\"linear\"]",
+            "[\"liner\"]",
+            "SOLVER.toml: line 6: expected the keys of a manifest, found unknown variant `liner`",
+        ),
+        ("\"friction\"", "\"fiction\"", "SOLVER.toml: can.effects: expected names among friction, cohesion"),
+        ("\"grains.csv\"", "\"../grains.csv\"", "SOLVER.toml: output.grains.path: expected a path inside the folder"),
+        ("run = [", "worker = [\"sh\"]\nrun = [", "SOLVER.toml: run: expected one of `run` and `worker`, found both"),
+        ("seconds = 2", "seconds = 0", "SOLVER.toml: limits: expected numbers above zero, found 0"),
+        (
+            "seconds = 2",
+            "second = 2",
+            "SOLVER.toml: line 13: expected the keys of a manifest, found unknown field `second`",
+        ),
+        ("laws = [\"linear\"]", "", "SOLVER.toml: can.laws: expected a contact law, or laws of materials that deform"),
+        (
+            "grains = { path = \"grains.csv\", format = \"csv\" }",
+            "",
+            "SOLVER.toml: output: expected `grains`, or of a program whose bodies deform a `series`, found neither",
+        ),
+        (
+            "[limits]",
+            "[knobs]\ncells = [0]\n[limits]",
+            "SOLVER.toml: knobs.cells: expected numbers of cells above zero",
+        ),
+        (
+            "[limits]",
+            "[knobs]\ncritical-fraction = [1.5]\n[limits]",
+            "SOLVER.toml: knobs.critical-fraction: expected parts",
+        ),
+    ];
+    for (right, instead, message) in wrong {
+        let err = refused(&MANIFEST.replace(right, instead));
+        assert!(err.contains(message), "{err}");
+    }
+    assert!(refused("").contains("missing field `name`"));
+    assert!(refused(&MANIFEST[..40]).contains("SOLVER.toml: line 2"));
+    let missing = grainbench(path, &["run", CASE, "--solver", "nowhere.toml"]);
+    assert!(
+        missing.code == Some(2) && missing.err.contains("nowhere.toml: expected a file that can be read"),
+        "{}",
+        missing.err
+    );
+}
+
+/// An external solver gets a resolved scene, with the same contents in both formats.
+#[test]
+fn a_scene_is_printed_as_programs_are_given_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let print = |further: &[&str]| {
+        let answer = grainbench(directory.path(), &[&["scene", "incline-disc/60deg-mu.9"], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        answer.out
+    };
+    let json: Value = serde_json::from_str(&print(&[])).unwrap();
+    let toml: toml::Table = print(&["--format", "toml"]).parse().unwrap();
+    assert_eq!(json, serde_json::to_value(toml).unwrap());
+    assert!(
+        json["format"] == 1 && json["steps"]["count"].as_u64() > Some(0) && json["columns"][0] == "grain.x",
+        "{json}"
+    );
+    assert_eq!(json["laws"][0]["friction"], 0.9);
+    let other: Value = serde_json::from_str(&print(&["--set", "contacts.plane.friction=0.25"])).unwrap();
+    assert_eq!(other["laws"][0]["friction"], 0.25);
+}
+
+/// Copies the files of an example to a separate folder, with an optional defect in one file.
+fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
+    for entry in fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
+        let name = entry.file_name().unwrap();
+        let mut text = fs::read(&entry).unwrap();
+        if let Some((right, wrong)) = spoiled.filter(|_| name == file) {
+            let whole = String::from_utf8(text).unwrap();
+            assert!(whole.contains(right), "{right}");
+            text = whole.replace(right, wrong).into_bytes();
+        }
+        // Skips executables that were built there before, because they do not belong to these sources.
+        if name != "one_grain" {
+            fs::write(directory.path().join(name), text).unwrap();
+        }
+    }
+    directory
+}
+
+/// Returns true if a program is installed, which it must be in CI.
+fn is_here(program: &str) -> bool {
+    let is_here = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
+    is_here
+}
+
+/// Returns the exit code of a run of an example and the number of results that pass.
+fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usize) {
+    let run = [&["run"], cases, &["--solver", "SOLVER.toml", "--json"], further].concat();
+    let answer = grainbench(folder, &run);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap();
+    (answer.code, rows.iter().filter(|row| row["verdict"] == "pass").count())
+}
+
+const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
+
+/// The claims pass for a one-grain solver in forty lines of Python, with controls. A defect in any line of its physics
+/// makes claims fail.
+#[test]
+fn a_grain_in_python_is_judged_line_by_line() {
+    if !is_here("python3") {
+        return;
+    }
+    let whole = example("python", "", None);
+    let (code, passed) = passes(whole.path(), &EASY, &[]);
+    assert!(code == Some(0) && passed > 5, "{passed} pass");
+    let spoiled = [
+        ("mass * g for", "0.99 * mass * g for"),
+        ("radius - dot(plus", "0.99 * radius - dot(plus"),
+        ("[-radius * part", "[-0.99 * radius * part"),
+        ("plus(v, cross(spin, arm))", "plus(v, cross(spin, arm), 0.99)"),
+        ("plus(slip, n, -dot(slip, n))", "plus(slip, n, -0.9 * dot(slip, n))"),
+        ("stiffness[0] * overlap", "0.95 * stiffness[0] * overlap"),
+        ("- dashpot[0] * dot", "- 0.9 * dashpot[0] * dot"),
+        ("law[name] * mass", "0.9 * law[name] * mass"),
+        ("law[\"stiffness_damping\"] * k", "0.9 * law[\"stiffness_damping\"] * k"),
+        (
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [dashpot[1]",
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [0.9 * dashpot[1]",
+        ),
+        ("stiffness[1] * dt", "0.95 * stiffness[1] * dt"),
+        ("plus([-part for part in spring], drag, -1), law", "plus([-part for part in spring], drag, 1), law"),
+        ("law[\"friction\"] * max", "0.99 * law[\"friction\"] * max"),
+        ("factor = min(1.0, ", "factor = min(2.0, "),
+        ("plus(plus(force, n, push), friction)", "plus(plus(force, n, push), friction, 0.99)"),
+        ("plus(torque, cross(arm, friction))", "plus(torque, cross(arm, friction), 0.99)"),
+        ("dt / mass / 2", "dt / mass / 2.02"),
+        ("dt / inertia / 2", "dt / inertia / 2.02"),
+        ("x = plus(x, v, dt)", "x = plus(x, v, 0.999 * dt)"),
+    ];
+    spoiled.into_par_iter().for_each(|(right, wrong)| {
+        let folder = example("python", "one_grain.py", Some((right, wrong)));
+        let mut codes = EASY.iter().map(|case| passes(folder.path(), &[case], &["--no-controls"]).0);
+        assert!(codes.any(|code| code == Some(1)), "{wrong}: every row passes");
+    });
+}
+
+/// The same test for C++, which the manifest builds first.
+#[test]
+fn a_grain_in_cpp_is_built_and_judged() {
+    if !is_here("make") || !is_here("c++") {
+        return;
+    }
+    let whole = example("cpp", "", None);
+    assert!(matches!(passes(whole.path(), &EASY, &[]), (Some(0), 6..)));
+    let spoiled = example("cpp", "one_grain.cpp", Some(("dot(x + -1.0", "0.99 * dot(x + -1.0")));
+    assert_eq!(passes(spoiled.path(), &EASY, &["--no-controls"]).0, Some(1));
+    let broken = example("cpp", "one_grain.cpp", Some(("int main", "int mian")));
+    let answer = grainbench(broken.path(), &["run", "backspin", "--solver", "SOLVER.toml", "--json"]);
+    assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
+}
+
+/// The claims by cells pass for a column and a bar in fifty lines of Python, and detect a defect in each line.
+#[test]
+fn a_line_of_masses_is_judged_as_a_continuum() {
+    if !is_here("python3") {
+        return;
+    }
+    let bodies = ["column", "vibrating-bar"];
+    let whole = example("continuum", "", None);
+    assert_eq!(passes(whole.path(), &bodies, &[]), (Some(0), 7), "its energy alone is not told");
+    let spoiled = [
+        ("+ m * scene[\"gravity\"]", "+ 0.95 * m * scene[\"gravity\"]"),
+        ("4 / 3 * material", "1 / 3 * material"),
+        ("modulus * (b - a)", "0.97 * modulus * (b - a)"),
+        ("0.5 if at in (0, count) else 1.0", "1.0"),
+        ("wave[\"amplitude\"] * math", "0.9 * wave[\"amplitude\"] * math"),
+        ("* at * h) for at", "* (at + 1) * h) for at"),
+        ("(1 + scene[\"global_damping\"] * time)", "1"),
+        ("held = 1 if", "held = 0 if"),
+        ("x + dt * w", "x + 0.98 * dt * w"),
+        ("/ h - 0.5", "/ h"),
+    ];
+    for (right, wrong) in spoiled {
+        let folder = example("continuum", "line.py", Some((right, wrong)));
+        assert_eq!(passes(folder.path(), &bodies, &["--no-controls"]).0, Some(1), "{wrong}: every row passes");
+    }
+    let reason = |manifest: &[(&str, &str)], case: &str| {
+        let text = fs::read_to_string(whole.path().join("SOLVER.toml")).unwrap();
+        let text = manifest.iter().fold(text, |text, (right, wrong)| text.replace(right, wrong));
+        fs::write(whole.path().join("other.toml"), text).unwrap();
+        let answer = grainbench(whole.path(), &["run", case, "--solver", "other.toml", "--json", "--no-controls"]);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let row = &results["verdicts"][0];
+        assert_eq!(row["verdict"], "unsupported", "{row}");
+        row["detail"].as_str().unwrap_or_default().to_owned()
+    };
+    let neo_hookean = [("\"hypoelastic\"", "\"neo-hookean\"")];
+    assert!(reason(&neo_hookean, "column").contains("the law `hypoelastic` of materials"));
+    assert!(reason(&[("\"global-damping\"", "")], "column/static").contains("the effect `global-damping`"));
+    assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
+}
+
+/// The results of an external solver are stored with it, and the next run is compared with them instead of with a pass.
+#[test]
+fn a_program_is_held_to_what_is_kept_of_it() {
+    if !is_here("python3") {
+        return;
+    }
+    let folder = example("continuum", "line.py", Some(("/ h - 0.5", "/ h")));
+    let judge = |further: &[&str]| {
+        grainbench(folder.path(), &[&["run", "--solver", "SOLVER.toml", "--out", "out"], further].concat())
+    };
+    let before = judge(&["--expect-stored"]);
+    assert!(before.code == Some(2) && before.err.contains("expected what `--update-stored` leaves"), "{}", before.err);
+    let part = judge(&["--update-stored", "column"]);
+    assert!(part.code == Some(2) && !folder.path().join("judged.json").exists(), "{}", part.err);
+    assert_eq!(judge(&["--update-stored"]).code, Some(1), "stresses of other places are red");
+    let kept: Value = serde_json::from_slice(&fs::read(folder.path().join("judged.json")).unwrap()).unwrap();
+    assert!(kept["rows"].as_array().unwrap().iter().any(|row| row["verdict"] == "fail"), "{kept}");
+    assert_eq!(judge(&["--expect-stored", "column", "vibrating-bar"]).code, Some(0), "it is red as it was");
+    let script = fs::read_to_string(folder.path().join("line.py")).unwrap();
+    fs::write(folder.path().join("line.py"), script.replace("x + dt * w", "x + 0.98 * dt * w")).unwrap();
+    let other = judge(&["--expect-stored", "column", "vibrating-bar"]);
+    assert!(other.code == Some(1) && other.err.contains("fail, its control red; kept: pass"), "{}", other.err);
+    fs::write(folder.path().join("judged.json"), "{").unwrap();
+    assert_eq!(judge(&["--expect-stored", "column"]).code, Some(2));
+}
+
+/// The studies treat an external solver as our solvers. Old results are never taken for results of the present program.
+#[test]
+fn a_program_is_timed_and_its_longest_stable_step_is_found() {
+    if !is_here("make") || !is_here("c++") {
+        return;
+    }
+    let folder = example("cpp", "", None);
+    let study = |words: &[&str], out: &str| {
+        let further = ["--solver", "SOLVER.toml", "--json", "--out", out];
+        let answer = grainbench(folder.path(), &[words, &further].concat());
+        serde_json::from_str::<Value>(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err))
+    };
+    let cost = study(&["cost", "incline-disc/60deg-mu.9"], "cost");
+    let points: Vec<&Value> = cost["points"].as_array().unwrap().iter().collect();
+    assert!(points.len() >= 12 && points.iter().all(|point| point["solver"] == "one-grain-cpp"), "{points:#?}");
+    let closest = points.iter().filter_map(|point| point["error"].as_f64()).fold(f64::INFINITY, f64::min);
+    assert!(closest < 1e-4, "stiff contacts are rigid ones: {closest}");
+    // The reason of its constant error is unknown here.
+    let floors: Vec<&str> = points.iter().filter_map(|point| point["floor"].as_str()).collect();
+    assert!(!floors.is_empty() && floors.iter().all(|floor| floor.starts_with("what no finer step")), "{floors:?}");
+    let page = fs::read_to_string(folder.path().join("cost/index.html")).unwrap();
+    assert!(page.contains("<th scope=\"col\">one-grain-cpp</th>"), "it has its column beside ours");
+    let stability = study(&["stability", "disc-on-a-wall"], "stability");
+    for limit in stability["stability"]["limits"].as_array().unwrap() {
+        assert!(limit["error"].as_f64().is_some_and(|error| error.abs() < 5e-3), "{limit}");
+    }
+    let again =
+        grainbench(folder.path(), &["cost", "incline-disc/60deg-mu.9", "--solver", "SOLVER.toml", "--out", "cost"]);
+    assert!(again.out.contains("\n0 of "), "{}", again.out);
+}
+
+/// A program that ends with 0 and writes nothing measures nothing.
+#[test]
+fn a_study_of_failed_runs_alone_is_red() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), MANIFEST, "exit 0");
+    for cases in [&["free-pair"][..], &["mass-ratio"], &["free-pair", "mass-ratio"]] {
+        let answer = grainbench(folder.path(), &[&["stability"], cases, &["--solver", "SOLVER.toml"]].concat());
+        assert_eq!(answer.code, Some(1), "{cases:?}: {}{}", answer.out, answer.err);
+    }
+}
+
+/// Energy that a program adds in mid-run and takes back before the end is detected.
+#[test]
+fn energy_gained_in_mid_run_is_red() {
+    if !is_here("python3") {
+        return;
+    }
+    let script = "import json, sys\n\
+        scene = json.load(open(sys.argv[1]))\n\
+        n, every = scene['steps']['count'], scene['steps']['sample_every']\n\
+        table = open(sys.argv[2] + '/grains.csv', 'w')\n\
+        print('step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz', file=table)\n\
+        for k in [k for k in range(n + 1) if k % every == 0 or k == n]:\n    \
+            for g in scene['grains']:\n        \
+                v = [(3 if n / 4 < k < n / 2 else 1) * a for a in g['velocity']]\n        \
+                print(k, g['id'], *g['position'], *v, *g['spin'], sep=',', file=table)\n";
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = MANIFEST.replace("[\"sh\", \"liar.sh\"", "[\"python3\", \"liar.sh\"");
+    write(folder.path(), &manifest.replace("seconds = 2", "seconds = 20"), script);
+    let answer = grainbench(folder.path(), &["conform", "SOLVER.toml", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let rows = results["verdicts"].as_array().unwrap().iter();
+    let gains: Vec<&Value> =
+        rows.filter(|row| row["quantity"].as_str().unwrap().starts_with("energy gained")).collect();
+    assert!(gains.iter().any(|row| row["variant"] == "passivity/between-planes-2d"), "{gains:#?}");
+    for row in gains.into_iter().filter(|row| row["verdict"] != "unsupported") {
+        assert!(row["verdict"] == "fail" && row["value"].as_f64().is_some_and(|gain| gain > 1.0), "{row}");
+    }
+}
+
+/// If an external solver cannot run any wrong scene, its passed claims do not count.
+#[test]
+fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
+    if !is_here("python3") {
+        return;
+    }
+    let read = "scene = json.load(open(sys.argv[1]))\n";
+    let picky = format!("{read}if scene[\"laws\"][0][\"friction\"] != 0.3: sys.exit(64)\n");
+    let folder = example("python", "one_grain.py", Some((read, &picky)));
+    assert_eq!(passes(folder.path(), &["incline-disc/60deg-mu.3"], &["--no-controls"]).1, 3);
+    let answer = grainbench(folder.path(), &["run", "incline-disc/60deg-mu.3", "--solver", "SOLVER.toml", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    for row in results["verdicts"].as_array().unwrap() {
+        let says = row["detail"].as_str().unwrap_or_default();
+        assert!(
+            row["verdict"] == "unsupported" && says.contains("its control, friction ×1.05, cannot be tried"),
+            "{row}"
+        );
+    }
+    assert!(
+        answer.code == Some(1) && results["controls"] == Value::Array(Vec::new()),
+        "nothing was earned: {}",
+        answer.out
+    );
+}
+
+/// An interrupt ends a silent program at once, and leaves no half-written output.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_silent_program() {
+    let silent = MANIFEST.replace("seconds = 2", "seconds = 900");
+    let run = "run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]";
+    let worker = silent.replace(run, "worker = [\"sh\", \"liar.sh\"]");
+    for (number, (manifest, signal)) in
+        [(&silent, "-TERM"), (&worker, "-INT"), (&worker, "-TERM")].into_iter().enumerate()
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let mark = format!("314{number}5.9");
+        write(folder.path(), manifest, &format!("touch {}/begun; sleep {mark}", folder.path().display()));
+        let mut program = crate::common::program();
+        program.args(["run", CASE, "--solver", "SOLVER.toml", "--out", "out", "-q"]).current_dir(folder.path());
+        let mut child =
+            program.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).spawn().unwrap();
+        while !folder.path().join("begun").exists() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(1));
+        assert!(!running().contains(&mark), "it goes on");
+        let results: Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("out/results.json")).unwrap()).unwrap();
+        assert_eq!(results["verdicts"].as_array().unwrap().len(), 0, "a run that was ended is no result");
+        assert!(results["provenance"]["options"].to_string().contains("interrupted: "));
+    }
+}

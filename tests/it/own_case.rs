@@ -1,0 +1,225 @@
+//! A user's case: a scene and claims in a file, without Rust.
+
+use crate::common::{Answer, grainbench};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// Copies the example to a separate folder, with replacements in one of its files.
+fn case(file: &str, replaced: &[(&str, &str)]) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case");
+    fs::create_dir(directory.path().join("slope")).unwrap();
+    for name in ["scene.toml", "claims.toml"] {
+        let mut text = fs::read_to_string(example.join(name)).unwrap();
+        for (right, wrong) in replaced.iter().filter(|_| name == file) {
+            assert!(text.contains(right), "{right}");
+            text = text.replacen(right, wrong, 1);
+        }
+        fs::write(directory.path().join("slope").join(name), text).unwrap();
+    }
+    directory
+}
+
+fn run(folder: &Path) -> (Answer, Vec<Value>, Vec<Value>) {
+    let answer = grainbench(folder, &["run", "slope", "--json"]);
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let list = |name: &str| results[name].as_array().unwrap().clone();
+    let (verdicts, controls) = (list("verdicts"), list("controls"));
+    (answer, verdicts, controls)
+}
+
+#[test]
+fn claims_in_a_file_are_judged_as_those_in_rust_are() {
+    let whole = case("", &[]);
+    let (answer, verdicts, controls) = run(whole.path());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(verdicts.len() == 3 && verdicts.iter().all(|row| row["verdict"] == "pass"), "{verdicts:#?}");
+    assert!(controls.len() == 3 && controls.iter().all(|control| control["turned_red"] == true), "{controls:#?}");
+    assert_eq!(
+        [&verdicts[0]["tolerance"], &verdicts[2]["tolerance"], &verdicts[0]["evidence"]],
+        ["computed", "judged", "analytic"]
+    );
+    // By hand: 5/2 · 0.1 · 9.81 · cos 30° / 0.005 at the time of the last sample.
+    let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
+    let found = verdicts[1]["expected"].as_f64().unwrap() / spin;
+    assert!((0.199..0.201).contains(&found), "{found}");
+    let page = fs::read_to_string(whole.path().join("grainbench-out/index.html")).unwrap();
+    assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
+}
+
+/// A wrong scene, a wrong expectation and a control with too small a change each fail.
+#[test]
+fn what_is_wrong_is_red() {
+    let red = |file: &str, replaced: &[(&str, &str)], verdicts_red: usize, controls_green: usize| {
+        let folder = case(file, replaced);
+        let (answer, verdicts, controls) = run(folder.path());
+        assert_eq!(answer.code, Some(1), "{replaced:?}");
+        let count_of = |rows: &[Value], key: &str, is: Value| rows.iter().filter(|row| row[key] == is).count();
+        assert_eq!(count_of(&verdicts, "verdict", "fail".into()), verdicts_red, "{replaced:?}: {verdicts:#?}");
+        assert_eq!(count_of(&controls, "turned_red", false.into()), controls_green, "{replaced:?}: {controls:#?}");
+    };
+    red("claims.toml", &[("5/7 *", "0.71 *")], 1, 0);
+    red("claims.toml", &[("5/2 *", "2.51 *")], 1, 0);
+    red("claims.toml", &[("allowed = 1e-6", "allowed = 0.1")], 0, 1);
+    red("claims.toml", &[("29.9 }", "29.99999 }")], 0, 1);
+    // A slope on which the ball rolls, although the claim expects slip.
+    red("scene.toml", &[("friction = 0.1", "friction = 0.3")], 1, 0);
+}
+
+/// A tolerance as large as the scale passes for almost any value, so its result is amber.
+#[test]
+fn a_tolerance_as_large_as_the_scale_is_amber() {
+    for (allowed, verdict, strict) in [
+        ("0.99", "pass", 0),
+        ("1", "no-reference", 1),
+        ("20", "no-reference", 1),
+        ("'20*duration/0.2'", "no-reference", 1),
+    ] {
+        let folder = case("claims.toml", &[("allowed = 1e-6", &format!("allowed = {allowed}"))]);
+        let run = |further: &[&str]| {
+            let words = [&["run", "slope", "--no-controls", "--json"], further].concat();
+            let answer = grainbench(folder.path(), &words);
+            let results: Value = serde_json::from_str(&answer.out).unwrap();
+            (answer.code, results["verdicts"][2].clone())
+        };
+        let (code, row) = run(&[]);
+        assert!(code == Some(0) && row["verdict"] == verdict, "{allowed}: {row:#?}");
+        let detail = row["detail"].as_str().unwrap_or_default();
+        assert_eq!(detail.contains("% of the scale is allowed"), verdict != "pass", "{detail}");
+        assert_eq!(run(&["--strict"]).0, Some(strict), "{allowed}");
+        // The report written again has the exit code of its run.
+        assert_eq!(grainbench(folder.path(), &["report", "grainbench-out"]).code, Some(strict), "{allowed}");
+    }
+}
+
+/// Claims on a curve in a table, on a value at one time, and on bounds.
+#[test]
+fn a_claim_may_be_a_course_a_moment_or_a_bound() {
+    let claims = |expected: &str| {
+        format!(
+            "title = \"A slope\"\n[[claims]]\nquantity = \"velocity\"\nunit = \"m/s\"\nvalue = \"ball.vx\"\n{expected}\n\
+             allowed = 0.001\nbecause = \"the springs yield\"\n\
+             control = {{ name = \"half the weight\", set = {{ gravity.magnitude = 4.9 }} }}\n"
+        )
+    };
+    let acceleration = 5.0 / 7.0 * 9.81 * 0.5;
+    let course: String = (0..=10).map(|k| f64::from(k) / 50.0).map(|t| format!("{t},{}\n", t * acceleration)).collect();
+    let column = "follows = { file = \"v.csv\", time = \"t (s)\", value = \"v (m/s)\" }";
+    let printed = "printed = { work = \"Somebody (2001)\", place = \"eq. 3\" }";
+    let half = 0.5 * 0.2 * acceleration;
+    for (expected, evidence) in [
+        (format!("{column}\nmeasured = {{ work = \"A\", place = \"B\" }}"), "experiment"),
+        (format!("at = 0.1\nequals = \"{acceleration} * t\"\n{printed}"), "paper"),
+        (format!("over = \"mean\"\nequals = {half}\nderived = \"v = at\""), "analytic"),
+        (format!("over = \"max\"\nbetween = [{}, {}]\n{printed}", 0.19 * acceleration, 0.21 * acceleration), "paper"),
+        (format!("at_least = {}\nderived = \"v = at\"", 0.199 * acceleration), "analytic"),
+    ] {
+        let folder = case("", &[]);
+        fs::write(folder.path().join("slope/claims.toml"), claims(&expected)).unwrap();
+        fs::write(folder.path().join("slope/v.csv"), format!("t (s),v (m/s)\n{course}")).unwrap();
+        let (answer, verdicts, controls) = run(folder.path());
+        assert_eq!(answer.code, Some(0), "{expected}: {}{}", answer.err, answer.out);
+        assert!(verdicts[0]["verdict"] == "pass" && verdicts[0]["evidence"] == evidence, "{expected}: {verdicts:#?}");
+        assert_eq!(controls[0]["turned_red"], true, "{expected}: {controls:#?}");
+        let says_how_far = verdicts[0]["quantity"] == "velocity, 0 to 0.2 s";
+        assert_eq!(says_how_far, expected.contains("follows"), "{expected}: a row of a table says what it has");
+    }
+}
+
+/// A mistake is an error with file, claim, key, expected and found text, and nothing is run.
+#[test]
+fn a_wrong_file_is_refused() {
+    let slips: [(&str, &str, &str); 21] = [
+        (
+            "gravity.slope_deg = 29.9",
+            "duration = 0.1",
+            "control.set: expected wrong physics in a run of the same length",
+        ),
+        (
+            "equals = \"5/7 * gravity.magnitude * sin(gravity.slope_deg * pi/180) * t\"",
+            "follows = { file = \"late.csv\", time = \"t\", value = \"v\" }",
+            "follows.time: expected times within the run, 0 to 0.2 s, found 0 to 10 s",
+        ),
+        ("title = ", "titel = ", "line 1: expected the keys of claims, found unknown field `titel`"),
+        (
+            "value = \"ball.vx\"",
+            "value = \"ball.vq\"",
+            "claim 1 (velocity, rolling): value: expected columns of the record, among ball.x",
+        ),
+        ("value = \"ball.vx\"", "value = \"duration\"", "value: expected a column of the record, found none"),
+        (
+            "gravity.magnitude * sin",
+            "gravity.size * sin",
+            "equals: expected numbers of the scene, by their keys, found `gravity.size`",
+        ),
+        ("sin(gravity", "sine(gravity", "equals: expected a function, one of sin"),
+        ("* t\"", "* t +\"", "equals: expected a number, a name or `(` at column"),
+        ("over = \"course\"", "over = \"most\"", "unknown variant `most`"),
+        ("over = \"course\"", "over = \"max\"", "equals: expected numbers of the scene, by their keys, found `t`"),
+        (
+            "over = \"course\"",
+            "over = \"course\"\nat = 0.1",
+            "at: expected a moment, or a reading `over` samples, found both",
+        ),
+        ("derived = \"rolling", "at_least = 1.0\nderived = \"rolling", "equals: expected one of `equals`, `follows`"),
+        (
+            "derived = \"rolling",
+            "measured = { work = \"A\", place = \"B\" }\nderived = \"rolling",
+            "derived: expected one source",
+        ),
+        (
+            "because = \"friction oscillates",
+            "because = \"\\u001b[2J",
+            "because: expected words on one line, found `\\u{1b}[2J",
+        ),
+        ("allowed = 1e-6", "allowed = nan", "allowed: expected a finite number, found NaN"),
+        ("allowed = 1e-6", "allowed = -1.0", "allowed: expected zero or more, found -1"),
+        ("{ time_step_fraction = 0.02 }", "{ cells = 8 }", "resolution: expected `time_step_fraction` or `time_step`"),
+        (
+            "{ time_step_fraction = 0.02 }",
+            "{ time_step_fraction = 2 }",
+            "resolution: expected less than the critical step",
+        ),
+        ("variant = \"slips\"", "variant = \"slides\"", "expected one of the variants slips, found `slides`"),
+        ("gravity.slope_deg = 29.9", "gravity.slope_deg = 30.0", "control.set: expected what makes another scene"),
+        ("gravity.slope_deg = 29.9", "gravity.slop_deg = 29.9", "control.set: expected another scene, found"),
+    ];
+    for (right, instead, message) in slips {
+        let folder = case("claims.toml", &[(right, instead)]);
+        fs::write(folder.path().join("slope/late.csv"), "t,v\n0,0\n10,35\n").unwrap();
+        let answer = grainbench(folder.path(), &["run", "slope"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{instead}: {}", answer.err);
+        assert!(
+            answer.err.contains("slope/claims.toml: ") && answer.err.contains(message),
+            "{instead}: {}",
+            answer.err
+        );
+        assert!(!answer.err.contains('\u{1b}'), "{}", answer.err);
+    }
+    let check = |text: &str, message: &str| {
+        let folder = case("", &[]);
+        fs::write(folder.path().join("slope/claims.toml"), text).unwrap();
+        let answer = grainbench(folder.path(), &["run", "slope"]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+    };
+    let whole = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case/claims.toml")).unwrap();
+    check("", "missing field `title`");
+    check("title = \"A\"\nclaims = []\n", "expected at least one `[[claims]]`, found none");
+    check(&whole[..whole.len() / 2], "claims.toml: ");
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let answer = grainbench(folder.path(), &["run", "empty"]);
+    assert!(answer.code == Some(2) && answer.err.contains("empty/claims.toml: expected a file"), "{}", answer.err);
+}
+
+/// A folder with the name of a case of the registry needs `./`. Without it, a message points to the folder.
+#[test]
+fn a_folder_named_as_a_case_is_told_of() {
+    let whole = case("", &[]);
+    fs::rename(whole.path().join("slope"), whole.path().join("squash")).unwrap();
+    let of_registry = grainbench(whole.path(), &["run", "squash", "--solver", "rigid", "-q"]);
+    assert!(of_registry.err.contains("the folder of this name is ./squash"), "{}", of_registry.err);
+    let own = grainbench(whole.path(), &["run", "./squash", "-q"]);
+    assert_eq!((own.code, own.err.as_str()), (Some(0), ""), "{}", own.out);
+}

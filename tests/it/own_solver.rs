@@ -1,0 +1,185 @@
+//! Claims for solvers that the cases do not name: solver-independent, with controls that have an effect, and failing
+//! for wrong physics.
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::dem::convention::Convention;
+use grainbench::dem::solver::Dem;
+use grainbench::harness::case::Case;
+use grainbench::harness::claim::Claim;
+use grainbench::harness::control::WrongPhysics;
+use grainbench::harness::run::Set;
+use grainbench::harness::verdict::Outcome;
+use grainbench::own::JudgementError;
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The conventions differ in everything that a scene leaves open. Each convention passes the solver-independent claims,
+/// and their controls fail for it. Cases that take long are included with `GRAINBENCH_LONG=1`.
+#[test]
+fn every_convention_passes_what_is_fair_to_any_solver() {
+    /// Cases of rotating contacts and walls, which the conventions of external solvers fail as the external solvers do.
+    const TURNING: [&str; 2] = ["carried-grain", "turning-walls"];
+    let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
+    let most = if long { Set::Long } else { Set::Main };
+    let fair = |case: &Case| (case.claims)().into_iter().filter(|claim| claim.scope.is_of_grains()).collect::<Vec<_>>();
+    let tried = |claims: &[Claim]| !claims.is_empty() && claims.iter().all(|claim| claim.set() <= most);
+    let cases: Vec<&str> = CASES.iter().filter(|case| tried(&fair(case))).map(|case| case.name).collect();
+    assert!(cases.len() > 10, "{cases:?}");
+    Convention::ALL.into_par_iter().for_each(|convention| {
+        let turns = convention == Convention::DEFAULT;
+        let own: Vec<&str> = cases.iter().copied().filter(|case| turns || !TURNING.contains(case)).collect();
+        grainbench::judge(Dem::new(convention), &own).unwrap().require().unwrap();
+    });
+    // In these conventions, springs do not rotate about the normal, and the rolling law ignores the spin of a wall.
+    for convention in [Convention::LAMMPS, Convention::LIGGGHTS] {
+        assert!(grainbench::judge(Dem::new(convention), &TURNING).unwrap().require().is_err(), "{}", convention.name);
+    }
+}
+
+/// Solver that panics.
+struct Panics;
+
+impl Solver for Panics {
+    fn name(&self) -> String {
+        "panics".to_owned()
+    }
+
+    fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+        panic!("index out of bounds")
+    }
+}
+
+/// All other results are still reported.
+#[test]
+fn a_panic_is_a_broken_result() {
+    let judged = grainbench::judge(Panics, &["backspin"]).unwrap();
+    assert!(!judged.verdicts.is_empty() && !judged.controls.is_empty());
+    for row in &judged.verdicts {
+        assert_eq!(row.outcome, Outcome::Broken, "{row:?}");
+        assert_eq!(row.detail.as_deref(), Some("our program failed: index out of bounds"));
+    }
+    assert!(judged.controls.iter().all(|control| !control.turned_red), "{:?}", judged.controls);
+}
+
+/// A control cannot replace an external solver by another solver or plant a defect in it.
+#[test]
+fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
+    for case in CASES {
+        for claim in (case.claims)().iter().filter(|claim| claim.scope.is_open()) {
+            assert!(matches!(claim.control.wrong, WrongPhysics::Scene(_)), "{}: {}", case.name, claim.quantity);
+            let solvers: BTreeSet<&str> = claim.runs.iter().map(|run| run.solver).collect();
+            assert_eq!(solvers.len(), 1, "{}: {} compares solvers", case.name, claim.quantity);
+        }
+    }
+}
+
+#[test]
+fn a_case_that_is_not_there_or_not_fair_says_so() {
+    let solver = || Dem::new(Convention::LAMMPS);
+    let nothing = grainbench::judge(solver(), &["sqash"]).unwrap_err();
+    assert!(matches!(nothing, JudgementError::NoSuchCase(_)) && nothing.to_string().contains("squash"), "{nothing}");
+    assert_eq!(grainbench::judge(solver(), &["squash"]), Err(JudgementError::NothingFair("squash".to_owned())));
+}
+
+/// A solver that ignores the scene may give the right result, but not for the wrong scene of a control.
+#[test]
+fn a_solver_that_ignores_the_scene_is_found_out() {
+    use grainbench::scene::{record::Record, scene::Scene, solver::*};
+    struct SceneIgnoringSolver(Box<dyn Solver>);
+    impl Solver for SceneIgnoringSolver {
+        fn name(&self) -> String {
+            "deaf".to_owned()
+        }
+        fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+            let mut scene = scene.clone();
+            let factor = scene.grain_shape.inertia_factor();
+            scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius.powi(2));
+            self.0.run(&scene, resolution, watch)
+        }
+    }
+    let judgement =
+        grainbench::judge(SceneIgnoringSolver(solvers::by_name("dem").unwrap()), &["incline-disc"]).unwrap();
+    assert!(judgement.verdicts.iter().all(|row| row.outcome.word() == "pass"));
+    let failures = judgement.failures();
+    assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
+}
+
+/// The example as an external author has it, in a separate crate that depends only on grainbench. It passes as it is
+/// and fails with a defect in one line of its physics.
+#[test]
+fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_solver.rs");
+    let example = fs::read_to_string(example).unwrap();
+    assert!(example.lines().count() < 100, "the example is short");
+    let spoiled = [
+        ("friction", "let limit = friction *", "let limit = 1.05 * friction *"),
+        ("inertia", "spin += arm.cross(&impulse) / grain.inertia", "spin += 0.9 * arm.cross(&impulse) / grain.inertia"),
+        ("gravity", "velocity += along * time_step", "velocity += 0.99 * along * time_step"),
+    ];
+    let mut programs = vec![("honest", example.clone())];
+    for (name, line, wrong) in spoiled {
+        assert_eq!(example.matches(line).count(), 1, "`{line}` is one line of the example");
+        programs.push((name, example.replace(line, wrong)));
+    }
+    let foreign = ForeignCrate::build(&programs);
+    let honest = foreign.run("honest");
+    assert_eq!(honest.status.code(), Some(0), "{honest:?}");
+    let rows = String::from_utf8(honest.stdout).unwrap();
+    assert!(rows.lines().filter(|line| line.starts_with("pass")).count() >= 20, "{rows}");
+    for (name, ..) in spoiled {
+        let output = foreign.run(name);
+        assert_eq!(output.status.code(), Some(1), "{name} is spoiled and must be refused: {output:?}");
+    }
+}
+
+/// All programs in one executable, compiled against the library of this test. For a crate outside the workspace, cargo
+/// would build all our crates again, which takes minutes and gives the same code.
+struct ForeignCrate {
+    folder: tempfile::TempDir,
+}
+
+impl ForeignCrate {
+    fn build(programs: &[(&str, String)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut main = "fn main() -> Result<(), Box<dyn std::error::Error>> {\n".to_owned();
+        main += "    match std::env::args().nth(1).unwrap().as_str() {\n";
+        for (name, source) in programs {
+            let module = source.replace("\nfn main()", "\npub fn main()");
+            fs::write(folder.path().join(format!("{name}.rs")), module).unwrap();
+            main = format!("mod {name};\n{main}        {name:?} => {name}::main(),\n");
+        }
+        main += "        _ => unreachable!(),\n    }\n}\n";
+        fs::write(folder.path().join("main.rs"), &main).unwrap();
+        let built = std::env::current_exe().unwrap().parent().unwrap().to_owned();
+        let output = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
+            .args(["--edition", "2024", "--crate-name", "foreign", "--out-dir", ".", "main.rs"])
+            .arg(format!("--extern=grainbench={}", newest(&built, "libgrainbench-").display()))
+            .arg(format!("-Ldependency={}", built.display()))
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Self { folder }
+    }
+
+    fn run(&self, name: &str) -> Output {
+        let executable = format!("foreign{}", std::env::consts::EXE_SUFFIX);
+        Command::new(self.folder.path().join(executable)).arg(name).output().unwrap()
+    }
+}
+
+/// Returns the latest build of the library of that name. There may be builds with other flags.
+fn newest(folder: &Path, name: &str) -> PathBuf {
+    let is_it = |path: &PathBuf| {
+        let file = path.file_name().unwrap().to_string_lossy();
+        file.starts_with(name) && file.ends_with(".rlib")
+    };
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(is_it);
+    files.max_by_key(|path| path.metadata().unwrap().modified().unwrap()).expect("the library that this is linked with")
+}

@@ -1,0 +1,191 @@
+//! Decks of scenes with temporary grains and walls and with pistons. Each deck is written and gives our result, or the
+//! error names the missing feature of the external solver.
+
+use grainbench::cases::solvers;
+use grainbench::reference::deck::{Program, write_deck};
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+const STEP: Resolution = Resolution::TimeStep(1e-3);
+
+/// Spheres of mass one above a floor that ends in the middle.
+const HEAD: &str = r#"title = "Passing"
+dimension = 3
+duration = 5.0
+gravity = [0.0, 0.0, -1.0]
+domain = { low = [-3.0, 0.0, -10.0], high = [3.0, 4.0, 10.0], periodic = [false, true, false] }
+materials.m.density = 1.909859317102744
+contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
+output = { every = 0.05, snapshots = 19 }
+grains.ball.material = "m"
+grains.ball.radius = 0.5
+grains.ball.lattice = { origin = [-2.4, 0.7, 0.55], spacing = [1.05, 1.3, 1.02], count = [5, 3, 2] }
+"#;
+
+const LEDGE: &str = "walls.ledge.material = 'm'\n\
+    walls.ledge.rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[3.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }\n";
+const FLOOR: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n";
+const LID: &str = "[walls.lid]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 2.1], normal = [0.0, 0.0, -1.0] }\n\
+    motion = [{ velocity = [0.2, 0.0, 0.0] }]\n[probes]\nlid = { piston = 'lid' }\non-lid = { wall = 'lid' }\n";
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("passing", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Returns our run in the convention of an external solver, and its own run. `None` if it is not installed, which is an
+/// error in CI.
+fn both(text: &str, program: &str) -> Option<[Record; 2]> {
+    let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
+    let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));
+    match run(program) {
+        Ok(theirs) => Some([ours, theirs]),
+        Err(RunError::NotAvailable { .. }) if std::env::var_os("CI").is_none() => None,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Returns the largest distance between grains of the same id, in snapshots of the same step up to a time (s). Both
+/// snapshots must have the same grains.
+fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
+    let mut worst = 0.0_f64;
+    let mut compared = 0;
+    for (ours, theirs) in ours.snapshots.iter().zip(&theirs.snapshots).filter(|(ours, _)| ours.time <= until) {
+        assert_eq!(ours.step, theirs.step);
+        let ids =
+            |ids_of: &[grainbench::scene::record::GrainState]| ids_of.iter().map(|grain| grain.id).collect::<Vec<_>>();
+        assert_eq!(ids(&ours.grains), ids(&theirs.grains), "at {}", ours.time);
+        for (a, b) in ours.grains.iter().zip(&theirs.grains) {
+            worst = worst.max((a.position - b.position).norm());
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared}");
+    worst
+}
+
+fn column_apart([ours, theirs]: &[Record; 2], name: &str) -> [f64; 2] {
+    let (a, b) = (ours.series.column(name).unwrap(), theirs.series.column(name).unwrap());
+    let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    [off, a.iter().map(|a| a.abs()).fold(0.0, f64::max)]
+}
+
+/// Grains that fall over the ledge are removed at the same steps, and the remaining grains move in the same way.
+#[test]
+fn grains_leave_lammps_as_they_leave_ours() {
+    let removal = "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0], every_cycles = 30 }\n";
+    let text = format!(
+        "{}{LEDGE}probes.grains = {{ count = true }}\n",
+        HEAD.replacen("grains.ball.material", &format!("{removal}grains.ball.material"), 1)
+    );
+    let Some(records) = both(&text, "lammps") else { return };
+    let left = records[0].series.column("grains.left").unwrap();
+    assert!(left[0] == 0.0 && (3.0..30.0).contains(left.last().unwrap()), "{left:?}");
+    assert_eq!(records[1].series.column("grains.left").unwrap(), left);
+    let found = apart(&records, 5.0);
+    assert!(found < 1e-8, "{found}");
+    // Control: without removal, all grains remain.
+    let all = both(&format!("{HEAD}{LEDGE}"), "lammps").unwrap();
+    assert_eq!(all[1].snapshots.last().unwrap().grains.len(), 30);
+}
+
+/// A floor with a sine, a ramp and a table that add up.
+#[test]
+fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
+    let text = |ramp: f64| {
+        let parts = [
+            "{ sine = { amplitude = [0.02, 0.0, 0.01], frequency = 1.5, phase_deg = 30.0 }, start = 0.1 }",
+            &format!("{{ velocity = [0.1, 0.05, 0.0], ramp = {ramp:?}, start = 0.2, stop = 0.9 }}"),
+            "{ table = [[0.3, 0.0, 0.0, 0.0], [0.6, 0.0, 0.02, 0.01], [1.0, 0.0, 0.0, 0.0]] }",
+        ];
+        format!("{HEAD}{FLOOR}motion = [{}]\n", parts.join(", "))
+    };
+    let Some(records) = both(&text(0.5), "lammps") else { return };
+    let found = apart(&records, 1.5);
+    assert!(found < 1e-9, "{found}");
+    // A ramp shorter by a tenth gives a visible difference.
+    let [ours, _] = both(&text(0.45), "lammps").unwrap();
+    assert!(apart(&[ours, records[1].clone()], 1.5) > 1e-4);
+}
+
+/// A removed floor releases all grains at the same step.
+#[test]
+fn a_wall_is_taken_away_in_lammps_as_in_ours() {
+    let text = |until: &str| format!("{HEAD}{FLOOR}until = {until}\n");
+    let Some(records) = both(&text("3.0005"), "lammps") else { return };
+    let found = apart(&records, 5.0);
+    assert!(found < 1e-8, "{found}");
+    let [ours, theirs] = both(&text("3.0015"), "lammps").unwrap();
+    assert!(
+        apart(&[ours, records[1].clone()], 5.0) > 1e-4 && apart(&[records[0].clone(), theirs], 5.0) > 1e-4,
+        "a step is seen"
+    );
+}
+
+/// When a wall is removed, LIGGGHTS omits half of its last push and our solver the whole. A grain that rested on it
+/// then falls slower by ½ g Δt.
+#[test]
+fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
+    let single = HEAD
+        .replace("count = [5, 3, 2]", "count = [1, 1, 1]")
+        .replace("0.55]", "0.49995]")
+        .replace("snapshots = 19", "snapshots = 199");
+    let Some([ours, theirs]) = both(&format!("{single}{FLOOR}until = 2.0\n"), "liggghts") else { return };
+    let end = |record: &Record| record.snapshots.last().unwrap().grains[0].position.z;
+    let (found, half) = (end(&theirs) - end(&ours), 0.5 * 1e-3 * 3.0);
+    assert!((found - half).abs() < 1e-6, "{found} for {half}");
+}
+
+/// A lid with a prescribed force and shear velocity, with and without damping.
+#[test]
+fn a_piston_presses_in_lammps_as_in_ours() {
+    for (piston, of_grains) in [("force = 40.0, mass = 20.0", 1e-8), ("force = 40.0, mass = 20.0, damping = 2.0", 1e-4)]
+    {
+        let text = |lid: &str| format!("{HEAD}{FLOOR}{lid}");
+        let pressed = LID.replace("motion", &format!("piston = {{ {piston} }}\nmotion"));
+        let Some(records) = both(&text(&pressed), "lammps") else { return };
+        let found = apart(&records, 1.0);
+        assert!(found < of_grains, "{piston}: {found}");
+        let [advance, far] = column_apart(&records, "lid.advance");
+        assert!(advance < 1e2 * of_grains && far > 0.01, "{piston}: {advance} of {far}");
+        // A lid with another mass moves differently.
+        let [ours, _] = both(&text(&pressed.replace("mass = 20.0", "mass = 20.2")), "lammps").unwrap();
+        assert!(apart(&[ours, records[1].clone()], 1.0) > 1e-5);
+    }
+}
+
+/// A deck error names the feature that an external solver lacks.
+#[test]
+fn what_a_program_lacks_is_said() {
+    let message = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {
+        Ok(deck) => panic!("{}", deck.files[0].1),
+        Err(error) => error.to_string(),
+    };
+    let poured = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
+        poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 8.0], high = [0.0, 4.0, 8.0] }\n";
+    let removal = HEAD.replacen(
+        "grains.ball.material",
+        "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0] }\ngrains.ball.material",
+        1,
+    );
+    let pressed = LID.replace("motion", "piston = { force = 40.0, mass = 20.0 }\nmotion");
+    let gone = |wall: &str| format!("{HEAD}{wall}");
+    let ledge = LEDGE.replace("material = 'm'\n", "material = 'm'\nwalls.ledge.until = 1.0\n");
+    let round =
+        "walls.side = { material = 'm', cylinder = { axis = [[0.0, 2.0, -9.0], [0.0, 2.0, 9.0]], radius = 4.0 } }\n";
+    let text: Vec<String> = vec![
+        message(&format!("{HEAD}{poured}"), Program::LAMMPS),
+        message(&format!("{HEAD}{poured}"), Program::LIGGGHTS),
+        message(&removal, Program::LIGGGHTS),
+        message(&format!("{HEAD}{pressed}"), Program::LIGGGHTS),
+        message(&gone(&ledge), Program::LIGGGHTS),
+        message(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
+        message(&gone(round), Program::LIGGGHTS),
+        message(&gone("[driven.d]\ngrains = 'ball'\nstart = 0.5\n"), Program::LAMMPS),
+        message(&gone("[driven.d]\ngrains = 'ball'\nstop = 0.5\n"), Program::LIGGGHTS),
+    ];
+    insta::assert_snapshot!(text.join("\n"));
+}

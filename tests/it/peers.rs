@@ -1,0 +1,140 @@
+//! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of
+//! `peers/README.md`.
+//!
+//! `UPDATE_README=1 cargo test --release --test it peers` rewrites the tables. `grainbench run --solver PATH --update-stored` makes
+//! new results.
+
+use crate::common::{expect_file, root, with_generated};
+use grainbench::cases::registry;
+use grainbench::peers::{KEPT, kept};
+use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::judged::{Count, ExternalResults, cases};
+use grainbench::reports::study::point::Diagram;
+use grainbench::reports::study::{Study, cost};
+use grainbench::reports::{Provenance, number};
+use std::fmt::Write as _;
+
+/// Each adapter in `peers/` has stored results.
+#[test]
+fn every_adapter_was_judged_as_it_stands() {
+    let mut folders: Vec<String> = std::fs::read_dir(root("peers"))
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .filter(|entry| entry.path().join("SOLVER.toml").is_file())
+        .map(|entry| entry.file_name().into_string().unwrap())
+        .collect();
+    folders.sort();
+    let mut named: Vec<&str> = KEPT.iter().map(|(name, _)| *name).collect();
+    named.sort_unstable();
+    assert_eq!(folders, named);
+    for ((folder, _), judged) in KEPT.iter().zip(kept().unwrap()) {
+        let path = root("peers").join(folder);
+        let program = ExternalProgram::read(&path.join("SOLVER.toml")).unwrap();
+        assert_eq!(
+            judged.adapter,
+            program.fingerprint().unwrap(),
+            "{folder} has changed since: run it with --update-stored"
+        );
+        assert_eq!(judged.program, program.manifest().name);
+        assert!(!judged.provenance.commit.contains("changes"), "{folder} was judged by a tree that nobody has");
+    }
+}
+
+/// Each passed result has a failed control. Each result belongs to a present claim with its present tolerance.
+#[test]
+fn kept_rows_are_earned_and_are_those_of_today() {
+    for judged in kept().unwrap() {
+        let name = &judged.program;
+        for row in judged.rows.iter().filter(|row| row.verdict.word() == "pass") {
+            assert_eq!(row.control_red, Some(true), "{name}: {}/{} · {}", row.case, row.variant, row.quantity);
+        }
+        for case in cases(std::slice::from_ref(&judged)) {
+            let Some(of_registry) = registry::by_name(case) else { continue };
+            let claims = (of_registry.claims)();
+            for row in judged.rows.iter().filter(|row| row.case == case) {
+                let is_it = claims.iter().any(|claim| {
+                    let is_one = claim.quantity == row.quantity && claim.resolution() == row.resolution;
+                    is_one && claim.scope.is_open() && claim.tolerance.allowed(&[]) == row.allowed
+                });
+                assert!(is_it, "{name}: {case} has no row `{}` any more: run it with --update-stored", row.quantity);
+            }
+        }
+    }
+}
+
+fn programs_table(judged: &[ExternalResults]) -> String {
+    let mut table =
+        "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
+    for results in judged {
+        let Count { pass, red, amber, controls, controls_red, .. } = results.count(None);
+        let rows = results.rows.len();
+        let (version, day, commit) = (&results.version, results.day(), &results.provenance.commit);
+        writeln!(
+            table,
+            "| {version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit} |"
+        )
+        .unwrap();
+    }
+    table.trim_end().to_owned()
+}
+
+/// Returns the largest error over its tolerance and the number of passed claims. Unsupported scenes do not count.
+fn cell(count: Count) -> String {
+    let Count { pass, red, amber, worst, .. } = count;
+    if pass + red == 0 {
+        return "–".to_owned();
+    }
+    let asked = pass + red + amber;
+    let red = if red > 0 { format!(", **{red} red**") } else { String::new() };
+    worst.map_or_else(String::new, |worst| format!("{} · ", number::significant(worst, 2)))
+        + &format!("{pass}/{asked}{red}")
+}
+
+fn cases_table(judged: &[ExternalResults]) -> String {
+    let names: Vec<&str> = judged.iter().map(|results| results.program.as_str()).collect();
+    let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    for case in cases(judged) {
+        let cells: Vec<String> = judged.iter().map(|results| cell(results.count(Some(case)))).collect();
+        writeln!(table, "| `{case}` | {} |", cells.join(" | ")).unwrap();
+    }
+    table.trim_end().to_owned()
+}
+
+#[test]
+fn tables_are_generated() {
+    let judged = kept().unwrap();
+    let readme = std::fs::read_to_string(root("peers/README.md")).unwrap();
+    let readme = with_generated(&readme, "programs", &programs_table(&judged));
+    let readme = with_generated(&readme, "cases", &cases_table(&judged));
+    let study: Study = serde_json::from_str(&std::fs::read_to_string(root("peers/cost.json")).unwrap()).unwrap();
+    expect_file("peers/README.md", &with_generated(&readme, "costs", &costs_table(&study)));
+}
+
+/// Returns the table of the cheapest setting of each solver within one per cent, relative to the cheapest solver;
+/// otherwise the smallest error reached.
+fn costs_table(study: &Study) -> String {
+    const TARGET: f64 = 0.01;
+    let lines = cost::lines(&study.diagrams);
+    let mut table = format!("| at 1 % | {} |\n|---|{}\n", lines.join(" | "), "---|".repeat(lines.len()));
+    for diagram in &study.diagrams {
+        let cheapest = |line: &str| cost::cheapest(diagram, line, TARGET).and_then(|point| point.wall_seconds);
+        let best = lines.iter().filter_map(|line| cheapest(line)).fold(f64::INFINITY, f64::min);
+        let nearest = |line: &str| {
+            let points = diagram.points.iter().filter(|point| point.solver == line);
+            points.filter_map(|point| point.error).reduce(f64::min)
+        };
+        let cell = |line: &&str| match (cheapest(line), nearest(line)) {
+            (Some(time), _) if time <= best => format!("**{}**", number::seconds(time)),
+            (Some(time), _) => format!("{} (× {})", number::seconds(time), number::significant(time / best, 2)),
+            (None, _) if cost::is_hidden(diagram, line, TARGET) => "less than its start varies by".to_owned(),
+            (None, Some(error)) => format!("at best {}", number::fraction(error)),
+            (None, None) => "–".to_owned(),
+        };
+        let cells: Vec<String> = lines.iter().map(cell).collect();
+        let Diagram { case, variant, quantity, .. } = diagram;
+        writeln!(table, "| `{case}/{variant}`, {quantity} | {} |", cells.join(" | ")).unwrap();
+    }
+    let Provenance { machine, date, commit, .. } = &study.provenance;
+    write!(table, "\n{machine}, {}, commit {commit}.", date.split(' ').next().unwrap_or_default()).unwrap();
+    table
+}

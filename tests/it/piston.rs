@@ -1,0 +1,128 @@
+//! Walls with a prescribed force, compared with exact solutions of a piston.
+
+use crate::common::grainbench;
+use grainbench::cases::solvers;
+use grainbench::scene::nalgebra::{Matrix2, SymmetricEigen, Vector2};
+use grainbench::scene::record::Record;
+use grainbench::scene::solver::Resolution;
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// Force (N) and mass (kg) of the lid, contact stiffness (N/m). The sphere's mass is one.
+const FORCE: f64 = 30.0;
+const MASS: f64 = 4.0;
+const STIFFNESS: f64 = 2e4;
+
+/// Returns a sphere on a floor and a damped lid at a distance `gap` above it.
+fn scene(gap: f64, damping: f64, between: f64, duration: f64, motion: &str) -> String {
+    format!(
+        r#"title = "A lid"
+dimension = 3
+duration = {duration:?}
+domain = {{ low = [-1.0, -1.0, 0.0], high = [1.0, 1.0, 3.0], periodic = [true, true, false] }}
+materials.m.density = 1.909859317102744
+output = {{ every = 0.005, snapshots = 0 }}
+probes = {{ lid = {{ piston = "lid" }}, floor = {{ wall = "floor" }}, on-lid = {{ wall = "lid" }}, ball = {{ grain = "ball" }} }}
+contacts.all = {{ between = ["m", "m"], normal_stiffness = {STIFFNESS:?}, normal_damping = {between:?} }}
+[grains.ball]
+material = "m"
+radius = 0.5
+position = [0.0, 0.0, 0.5]
+[walls.floor]
+material = "m"
+plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}
+[walls.lid]
+material = "m"
+plane = {{ point = [0.0, 0.0, {:?}], normal = [0.0, 0.0, -1.0] }}
+piston = {{ force = {FORCE:?}, mass = {MASS:?}, damping = {damping:?} }}
+{motion}
+"#,
+        1.0 + gap
+    )
+}
+
+fn run(text: &str) -> Record {
+    let source = SceneSource::from_text("lid", Path::new(""), text);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let solver = solvers::by_name("dem").unwrap();
+    solver.run(&scene, &Resolution::CriticalFraction(0.01), &mut ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Returns the largest difference between a column and its exact values.
+fn apart(record: &Record, name: &str, exact: impl Fn(f64) -> f64) -> f64 {
+    let values = record.series.column(name).unwrap().iter().zip(&record.series.time);
+    values.map(|(value, &time)| (value - exact(time)).abs()).fold(0.0, f64::max)
+}
+
+/// Without contact, the displacement is F t²/2M; with damping it is F/(Mc) (t − (1 − e^(−ct))/c).
+#[test]
+fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
+    let free = run(&scene(2.0, 0.0, 0.0, 0.7, ""));
+    assert!(apart(&free, "lid.advance", |time| 0.5 * FORCE / MASS * time * time) < 1e-12);
+    let damping = 3.0;
+    let exact = |time: f64| FORCE / (MASS * damping) * (time - (1.0 - (-damping * time).exp()) / damping);
+    let damped = run(&scene(2.0, damping, 0.0, 0.7, ""));
+    assert!(apart(&damped, "lid.advance", exact) < 1e-6);
+    assert!(apart(&damped, "lid.advance", |time| 0.5 * FORCE / MASS * time * time) > 0.1);
+}
+
+/// A mass m is between two springs k, and a mass M on the upper spring. A force F acts suddenly on M. Until the first
+/// return, no contact opens and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k, 2F/k); V and ω²
+/// are the modes of M^(−½) K M^(−½).
+#[test]
+fn a_lid_on_a_grain_swings_in_their_two_modes() {
+    let root = Vector2::new(1.0, MASS.sqrt());
+    let stiff = Matrix2::new(2.0, -1.0, -1.0, 1.0) * STIFFNESS;
+    let eigen = SymmetricEigen::new(Matrix2::from_fn(|i, j| stiff[(i, j)] / (root[i] * root[j])));
+    let rest = Vector2::new(1.0, 2.0) * (FORCE / STIFFNESS);
+    let exact = |time: f64, component: usize| {
+        let swing = eigen.eigenvalues.map(|square| (square.sqrt() * time).cos());
+        let modes = eigen.eigenvectors * Matrix2::from_diagonal(&swing) * eigen.eigenvectors.transpose();
+        let start = rest.component_mul(&root);
+        rest[component] - (modes * start)[component] / root[component]
+    };
+    let record = run(&scene(0.0, 0.0, 0.0, 0.1, ""));
+    let size = 2.0 * FORCE / STIFFNESS;
+    assert!(apart(&record, "lid.advance", |time| exact(time, 1)) < 1e-3 * size);
+    assert!(apart(&record, "ball.z", |time| 0.5 - exact(time, 0)) < 1e-3 * size);
+    // A frequency higher by 5 % gives a visible difference.
+    assert!(apart(&record, "lid.advance", |time| exact(time * 1.05, 1)) > 0.1 * size);
+}
+
+/// With damping, the lid comes to rest where two springs in series carry its force, also while it slides.
+#[test]
+fn a_lid_at_rest_presses_with_its_force() {
+    for motion in ["", "motion = [{ velocity = [0.5, 0.0, 0.0] }]"] {
+        let record = run(&scene(0.01, 4.0, 20.0, 20.0, motion));
+        let last = |name: &str| record.series.column(name).unwrap().last().copied().unwrap();
+        assert!((last("floor.force_z") + FORCE).abs() < 1e-6, "{}", last("floor.force_z"));
+        assert!((last("on-lid.force_z") - FORCE).abs() < 1e-6, "{}", last("on-lid.force_z"));
+        assert!((last("lid.advance") - (0.01 + 2.0 * FORCE / STIFFNESS)).abs() < 1e-9, "{}", last("lid.advance"));
+    }
+}
+
+#[test]
+fn a_run_with_a_lid_goes_on_to_the_same_bits_and_others_refuse_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("lid.toml"), scene(0.01, 0.5, 5.0, 1.0, "")).unwrap();
+    let simulate = |further: &[&str]| grainbench(path, &[&["simulate", "lid.toml", "--solver"][..], further].concat());
+    assert_eq!(simulate(&["dem", "--out", "one", "--checkpoint", "half", "--checkpoint-every", "300"]).code, Some(0));
+    assert_eq!(simulate(&["dem", "--out", "two", "--restart", "half"]).code, Some(0));
+    let series = |folder: &str| std::fs::read(path.join(folder).join("series.csv")).unwrap();
+    assert!(series("one") == series("two"));
+    // LAMMPS supports it (`passing_decks`). LIGGGHTS has a force-controlled wall, but no mass that the force
+    // accelerates.
+    for solver in ["rigid", "liggghts"] {
+        let answer = simulate(&[solver, "--out", "no"]);
+        assert!(answer.code == Some(2) && answer.err.contains("a wall that is pressed"), "{}", answer.err);
+    }
+    let turned = scene(0.01, 0.5, 5.0, 1.0, "motion = [{ spin = [0.0, 1.0, 0.0], centre = [0.0, 0.0, 0.0] }]");
+    std::fs::write(path.join("lid.toml"), turned).unwrap();
+    let answer = simulate(&["dem", "--out", "no"]);
+    assert!(answer.err.contains("walls.lid.piston: expected a plane that does not turn"), "{}", answer.err);
+    // A piston that is removed has no displacement to probe.
+    std::fs::write(path.join("lid.toml"), scene(0.01, 0.5, 5.0, 1.0, "until = 0.2")).unwrap();
+    let answer = simulate(&["dem", "--out", "no"]);
+    assert!(answer.err.contains("expected a piston without `until`"), "{}", answer.err);
+}

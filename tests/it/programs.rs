@@ -1,0 +1,126 @@
+//! Claims with external solvers that are not installed.
+
+use crate::common::grainbench_alone;
+use serde_json::Value;
+
+#[test]
+fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let run = ["run", "backspin/disc", "--solver", "lammps", "--live", "--json"];
+    let answer = grainbench_alone(directory.path(), &run);
+    assert_eq!(answer.code, Some(1), "nothing was judged");
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let rows = results["verdicts"].as_array().unwrap();
+    assert!(!rows.is_empty() && rows.iter().all(|row| row["verdict"] == "not-available"), "{}", answer.out);
+    assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be judged has no control");
+
+    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
+    let simulate = ["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"];
+    let answer = grainbench_alone(directory.path(), &simulate);
+    assert_eq!(answer.code, Some(2));
+    assert_eq!(answer.err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
+}
+
+/// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a
+/// success.
+#[test]
+fn a_race_tells_who_took_no_part() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
+    let race = |arguments: &[&str]| {
+        let answer = grainbench_alone(directory.path(), &[&["race", "s.toml", "--rounds", "1"], arguments].concat());
+        let read = |name: &str| std::fs::read_to_string(directory.path().join("grainbench-race").join(name));
+        let race = read("race.json").ok().map(|text| serde_json::from_str::<Value>(&text).unwrap());
+        (answer.code, race, answer.out)
+    };
+    let (code, left, out) = race(&["--steps", "10,20"]);
+    assert_eq!(code, Some(1), "{out}");
+    let results = left.unwrap()["heats"][0]["results"].as_array().unwrap().clone();
+    let absent: Vec<&str> = results.iter().map(|raced| raced["absent"].as_str().unwrap()).collect();
+    assert!(absent[0].starts_with("too few steps to tell") && absent[1].contains("nowhere/lmp"), "{absent:?}");
+    assert!(out.contains("| `s.toml` |") && out.contains("nowhere/liggghts"), "{out}");
+
+    let (code, left, out) = race(&["--steps", "10,12000000", "--solver", "dem:lammps"]);
+    assert_eq!(code, Some(0), "{out}");
+    let raced = left.unwrap()["heats"][0]["results"][0].clone();
+    assert!(raced["rates"][0].as_f64().is_some_and(|rate| rate > 0.0) && raced["absent"].is_null(), "{raced}");
+    assert_eq!(race(&["--solver", "mpm"]).0, Some(2));
+}
+
+#[test]
+fn a_time_limit_that_is_no_time_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
+    let command = crate::common::program()
+        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
+        .current_dir(directory.path())
+        .env("GRAINBENCH_TIME_LIMIT", "2s")
+        .output()
+        .unwrap();
+    assert_eq!(command.status.code(), Some(2));
+    let message = String::from_utf8(command.stderr).unwrap();
+    let reason = "GRAINBENCH_TIME_LIMIT: expected a whole number of seconds, found `2s`";
+    assert_eq!(message, format!("error: lammps is not available: {reason}\n"));
+}
+
+/// If our process is killed, the external solver ends and its working folder is removed.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_program_and_its_folder_go_when_we_are_killed() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let (temporary, program) = (path.join("tmp"), path.join("program"));
+    std::fs::create_dir(&temporary).unwrap();
+    std::fs::write(&program, "#!/bin/sh\necho $$ > pid\nexec sleep 600\n").unwrap();
+    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    std::fs::write(path.join("s.toml"), SCENE).unwrap();
+    let mut child = crate::common::program()
+        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
+        .current_dir(path)
+        .env("GRAINBENCH_LAMMPS", &program)
+        .env("TMPDIR", &temporary)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let running = || -> Option<String> {
+        let folder = std::fs::read_dir(&temporary).unwrap().flatten().next()?.path();
+        std::fs::read_to_string(folder.join("pid")).ok().filter(|pid| pid.ends_with('\n'))
+    };
+    let wait = || std::thread::sleep(std::time::Duration::from_millis(5));
+    let pid = loop {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        match running() {
+            Some(pid) => break pid.trim().to_owned(),
+            None => wait(),
+        }
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let left = || {
+        let folder = std::fs::read_dir(&temporary).unwrap().next().is_some();
+        folder || std::path::Path::new("/proc").join(&pid).exists()
+    };
+    (0..4000).for_each(|_| {
+        if left() {
+            wait();
+        }
+    });
+    assert!(!left(), "the program {pid} or its folder is left");
+}
+
+const SCENE: &str = r#"title = "A disc in flight"
+dimension = 2
+duration = 0.01
+
+[materials.rock]
+density = 1000.0
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+
+[grains.disc]
+material = "rock"
+radius = 0.5
+position = [0.0, 0.0]
+"#;

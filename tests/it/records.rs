@@ -1,0 +1,287 @@
+//! Options of snapshots: columns, digits, and the stress averaged over the time between snapshots.
+
+use crate::common::grainbench;
+use grainbench::cases::solvers;
+use grainbench::reports::each_snapshot;
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::nalgebra::{Matrix3, Vector3};
+use grainbench::scene::record::{GrainState, Partner, Record, Snapshot};
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, Watch};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// Twelve hundred colliding spheres of two sizes between two walls and a periodic boundary.
+const SCENE: &str = r#"title = "Falling spheres"
+dimension = 3
+duration_cycles = 60
+gravity = [0.0, 0.0, -10.0]
+domain = { low = [0.0, 0.0, 0.0], high = [10.0, 10.0, 14.0], periodic = [true, false, false] }
+
+[materials.m]
+density = 1.0
+
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 40.0
+
+[grains.g]
+material = "m"
+radius = 0.5
+velocity = [0.3, 0.2, -3.0]
+spin = [1.0, 2.0, 3.0]
+lattice = { origin = [0.5, 0.495, 0.49], spacing = [1.0, 0.99, 0.985], count = [10, 10, 12] }
+
+[walls.floor]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
+[walls.front]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }
+
+[output]
+every_cycles = 7
+snapshots = 2
+"#;
+
+fn scene(output: &str) -> Scene {
+    let source = SceneSource::from_text("falling", Path::new(""), &format!("{SCENE}{output}\n"));
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const STEP: Resolution = Resolution::CriticalFraction(0.05);
+
+/// Watch that keeps the checkpoints of a run on some threads.
+struct Keeper {
+    threads: usize,
+    kept: Vec<Checkpoint>,
+}
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn threads(&self) -> usize {
+        self.threads
+    }
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(13)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.kept.push(checkpoint);
+        Ok(())
+    }
+}
+
+fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
+    let mut keeper = Keeper { threads, kept: Vec::new() };
+    let record = solvers::by_name("dem").unwrap().run(scene, &STEP, &mut keeper).unwrap();
+    (record, keeper.kept)
+}
+
+/// Returns V σ of each grain from the contacts of a snapshot. The lever arm ends at the `part` of the overlap; 0.5 is
+/// its middle.
+fn virials(snapshot: &Snapshot, part: f64) -> Vec<Matrix3<f64>> {
+    let mut sums = vec![Matrix3::zeros(); snapshot.grains.len()];
+    for contact in snapshot.told_contacts() {
+        let force = contact.shear_force - contact.normal * contact.normal_force;
+        let mut add = |id: u32, side: f64| {
+            let place = id as usize - 1;
+            let arm = contact.normal * (snapshot.grains[place].radius - part * contact.overlap) * side;
+            sums[place] += arm * (force * side).transpose();
+        };
+        add(contact.grain, 1.0);
+        if let Partner::Grain(other) = contact.partner {
+            add(other, -1.0);
+        }
+    }
+    sums.iter().map(|sum| (sum + sum.transpose()) * 0.5).collect()
+}
+
+fn matrix([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
+}
+
+/// Returns the largest difference over the largest expected value.
+fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>, exact: &[Matrix3<f64>]) -> f64 {
+    let scale = exact.iter().map(Matrix3::norm).fold(0.0, f64::max);
+    assert!(scale > 0.0);
+    let each = found.iter().zip(exact).map(|(grain, exact)| (matrix(stress(grain).unwrap()) - exact).norm());
+    each.fold(0.0, f64::max) / scale
+}
+
+/// The mean over an interval equals the mean over the snapshots of all its steps, which another run stores with
+/// contacts.
+#[test]
+fn the_mean_over_an_interval_is_that_of_its_steps() {
+    let each = run(&scene("").each_step(), 1).0;
+    for every in [1, 4] {
+        let chosen = format!("columns = ['virial', 'mean-virial']\nmean_every_cycles = {every}");
+        let (found, _) = run(&scene(&chosen), 1);
+        let steps: Vec<u64> = found.snapshots.iter().map(|snapshot| snapshot.step).collect();
+        assert_eq!(steps, [0, 20, 40, 60]);
+        assert!(
+            found.snapshots[0].grains.iter().all(|grain| grain.mean_virial.is_none()),
+            "nothing is before the first"
+        );
+        for pair in found.snapshots.windows(2) {
+            let [before, now] = pair else { panic!() };
+            let snapshots: Vec<&Snapshot> = each.snapshots[before.step as usize + 1..=now.step as usize]
+                .iter()
+                .filter(|snapshot| snapshot.step.is_multiple_of(every))
+                .collect();
+            let mean = |part: f64| -> Vec<Matrix3<f64>> {
+                let mut sums = vec![Matrix3::zeros(); now.grains.len()];
+                snapshots
+                    .iter()
+                    .for_each(|one| sums.iter_mut().zip(virials(one, part)).for_each(|(sum, more)| *sum += more));
+                sums.iter().map(|sum| sum / snapshots.len() as f64).collect()
+            };
+            assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.5)) < 1e-13);
+            // A lever arm to the other surface, or the instantaneous stress, gives a visible difference.
+            assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.0)) > 1e-4);
+            let instant = virials(&each.snapshots[now.step as usize], 0.5);
+            assert!(apart(&now.grains, |grain| grain.virial.as_deref().copied(), &instant) < 1e-13);
+            assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &instant) > 0.05);
+            // The run stores no contacts and no other columns, because they are not requested.
+            assert!(
+                now.contacts.is_none() && now.grains.iter().all(|grain| grain.force.is_none() && grain.spin.x.is_nan())
+            );
+        }
+    }
+}
+
+trait EachStep {
+    fn each_step(self) -> Self;
+}
+
+impl EachStep for Scene {
+    fn each_step(mut self) -> Self {
+        self.snapshots = 59;
+        self
+    }
+}
+
+fn bits(record: &Record) -> String {
+    format!("{:?}{:?}", record.series, record.snapshots)
+}
+
+/// Independent of the number of threads and of the checkpoint of a restart, also within an interval.
+#[test]
+fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
+    let scene = scene("columns = ['spin', 'mean-virial']\nmean_every_cycles = 3\ndigits = 9");
+    let (whole, checkpoints) = run(&scene, 1);
+    assert!(bits(&run(&scene, 2).0) == bits(&whole), "on two threads");
+    let solver = solvers::by_name("dem").unwrap();
+    assert_eq!(checkpoints.iter().map(Checkpoint::step).collect::<Vec<_>>(), [13, 26, 39, 52]);
+    for checkpoint in &checkpoints {
+        let mut keeper = Keeper { threads: 2, kept: Vec::new() };
+        let continued = solver.restart(&scene, &STEP, checkpoint, &mut keeper).unwrap();
+        assert!(bits(&continued) == bits(&whole), "from step {}", checkpoint.step());
+    }
+    // Output options do not change the run.
+    let plain = run(&self::scene(""), 1).0;
+    assert_eq!(plain.series, whole.series);
+}
+
+/// Files contain only the chosen columns and can be read back. Numbers are rounded to the chosen digits.
+#[test]
+fn files_hold_what_was_chosen() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("all.toml"), SCENE).unwrap();
+    std::fs::write(path.join("some.toml"), format!("{SCENE}columns = ['mean-virial']\ndigits = 7\n")).unwrap();
+    let mut snapshots: Vec<Vec<Snapshot>> = Vec::new();
+    for (name, formats) in [("all", "parquet"), ("some", "parquet"), ("some", "dump,vtk")] {
+        let file = format!("{name}.toml");
+        let command =
+            ["simulate", &file, "--solver", "dem", "--time-step-fraction", "0.05", "--write", formats, "--out", "run"];
+        let answer = grainbench(path, &command);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let mut all = Vec::new();
+        each_snapshot(&path.join("run"), |error| error, &mut |snapshot| {
+            all.push(snapshot);
+            Ok(())
+        })
+        .unwrap();
+        snapshots.push(all);
+    }
+    let size = |grain: &GrainState| grain.position.norm().max(1e-300);
+    let [all, some, record] = &snapshots[..] else { panic!() };
+    assert_eq!(format!("{some:?}"), format!("{record:?}"), "a record of text tells the same");
+    let mut worst = 0.0_f64;
+    for (whole, chosen) in all.iter().zip(some) {
+        assert!(chosen.contacts.is_none() && whole.contacts.is_some() && chosen.grains.len() == whole.grains.len());
+        for (whole, chosen) in whole.grains.iter().zip(&chosen.grains) {
+            worst = worst.max((whole.position - chosen.position).norm() / size(whole));
+            assert_eq!((whole.radius, whole.mass, whole.id), (chosen.radius, chosen.mass, chosen.id));
+            assert!(chosen.spin.iter().all(|spin| spin.is_nan()) && chosen.force.is_none() && chosen.virial.is_none());
+            assert_eq!(
+                chosen.mean_virial.is_some(),
+                chosen.mean_virial.as_deref().is_some_and(|virial| *virial != [f64::NAN; 6])
+            );
+        }
+    }
+    assert!(worst > 1e-9 && worst < 1e-7, "{worst}");
+    assert!(some[3].grains.iter().all(|grain| grain.mean_virial.is_some()));
+    assert_ne!(all[3].grains[0].spin, Vector3::zeros());
+}
+
+/// `fields` reports the stress that it reads: the mean if present, and the instantaneous stress on request.
+#[test]
+fn fields_says_which_stress_it_read() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), format!("{SCENE}columns = ['virial', 'mean-virial']\n")).unwrap();
+    std::fs::write(path.join("bare.toml"), format!("{SCENE}columns = ['spin']\n")).unwrap();
+    for (name, out) in [("scene.toml", "run"), ("bare.toml", "bare")] {
+        let command =
+            ["simulate", name, "--solver", "dem", "--time-step-fraction", "0.05", "--write", "parquet", "--out", out];
+        assert_eq!(grainbench(path, &command).code, Some(0));
+    }
+    let pressure = |more: &[&str], run: &str| -> (String, Option<f64>) {
+        let answer = grainbench(
+            path,
+            &[&["fields", run, "--cell", "5,2.5,3.5", "--fewest", "1", "--surface", "0.01", "--json"], more].concat(),
+        );
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let summary: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+        let is_pressure = |mean: &&serde_json::Value| mean["quantity"] == "pressure";
+        let found =
+            summary["means"].as_array().unwrap().iter().find(is_pressure).and_then(|mean| mean["value"].as_f64());
+        (summary["which_stress"].as_str().unwrap().to_owned(), found)
+    };
+    let (mean, of_mean) = pressure(&["--from", "0.0001"], "run");
+    let (instant, of_instant) = pressure(&["--from", "0.0001", "--stress", "instant"], "run");
+    assert!(mean.contains("mean over the time") && instant.contains("instant"), "{mean}, {instant}");
+    let (of_mean, of_instant) = (of_mean.unwrap(), of_instant.unwrap());
+    assert!((of_mean / of_instant - 1.0).abs() > 0.02, "{of_mean} {of_instant}");
+    assert_eq!(pressure(&[], "run").1, Some(of_mean), "the first frame has no mean, and takes no other stress for it");
+    assert_eq!(pressure(&[], "bare").1, None);
+}
+
+/// An invalid column is an error with its place. A solver without mean stresses reports that.
+#[test]
+fn what_cannot_be_chosen_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let refusal = |output: &str, solver: &str| {
+        std::fs::write(path.join("scene.toml"), format!("{SCENE}{output}\n")).unwrap();
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver]);
+        assert_eq!(answer.code, Some(2), "{output}: {}{}", answer.out, answer.err);
+        answer.err
+    };
+    for (output, solver, says) in [
+        ("columns = ['sprin']", "dem", "sprin"),
+        ("digits = 0", "dem", "1 to 15 digits"),
+        ("digits = 16", "dem", "1 to 15 digits"),
+        ("columns = ['mean-virial']\nmean_every_cycles = 0", "dem", "one cycle or more"),
+        ("mean_every_cycles = 2", "dem", "`mean-virial` among the columns"),
+        ("columns = ['mean-virial']", "rigid", "mean over time"),
+        ("columns = ['mean-virial']", "lammps", "mean over time"),
+    ] {
+        let found = refusal(output, solver);
+        assert!(found.contains(says), "{output}: {found}");
+    }
+}

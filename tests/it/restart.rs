@@ -1,0 +1,383 @@
+//! A restarted run equals an uninterrupted one in all bits: for the scene of each case, and for a killed process.
+
+use crate::common::{bits, files, grainbench};
+use grainbench::cases::kept::{self, StorableRun};
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::harness::case::Case;
+use grainbench::harness::run::FinishedRun;
+use grainbench::resume::{self, Place};
+use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::end_state::EndState;
+use grainbench::scene::record::{Cost, Record};
+use grainbench::scene::scene::{Duration, Sampling, Scene};
+use grainbench::scene::solver::{Resolution, RunError, Watch};
+use rayon::prelude::*;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+/// Watch that keeps all checkpoints of a run.
+struct Keeper {
+    every: u64,
+    kept: Vec<Checkpoint>,
+}
+
+impl Watch for Keeper {
+    fn progress(&mut self, _done: u64, _total: u64) {}
+    fn checkpoint_interval(&self) -> Option<u64> {
+        Some(self.every)
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
+        Ok(())
+    }
+}
+
+/// Returns the beginning of a scene, with samples at odd steps.
+fn begun(mut scene: Scene) -> Scene {
+    let cycles = if scene.grains.len() > 1000 { 40 } else { 300 };
+    scene.duration = Duration::Cycles(cycles);
+    scene.sampling = Sampling::Cycles(7);
+    scene.snapshots = 3;
+    scene
+}
+
+/// Beds of more grains have the same contact laws as smaller beds of their case, so they are skipped.
+const MANY: usize = 20_000;
+
+/// Moving walls, periodic boundaries, Hertz contacts, rolling resistance, cohesion, spheres: all features of the cases,
+/// in each convention.
+#[test]
+fn every_case_continues_to_the_same_bits() {
+    // At most twelve variants of a case.
+    let variants = |case: &Case| -> Vec<Scene> {
+        let names = case.variants().unwrap();
+        names.iter().step_by(names.len().div_ceil(12)).map(|variant| case.variant(variant).unwrap()).collect()
+    };
+    let scenes: Vec<(&Case, Scene)> = CASES
+        .iter()
+        .flat_map(|case| variants(case).into_iter().map(move |scene| (*case, begun(scene))))
+        .filter(|(_, scene)| scene.grains.len() <= MANY)
+        .collect();
+    let compare = |(case, scene): &(&Case, Scene)| {
+        let mut compared = 0;
+        for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
+            let resolution = Resolution::CriticalFraction(0.1);
+            let mut keeper = Keeper { every: 19, kept: Vec::new() };
+            let whole = match solver.run(scene, &resolution, &mut ()) {
+                // Scenes with only deformable bodies, and scenes whose dashpots need a shorter step.
+                Err(RunError::Unsupported { .. } | RunError::Resolution { .. }) => continue,
+                run => bits(run.unwrap()),
+            };
+            let watched = bits(solver.run(scene, &resolution, &mut keeper).unwrap());
+            assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
+            let (first, last) = (keeper.kept.first().unwrap(), keeper.kept.last().unwrap());
+            for checkpoint in [first, last] {
+                let continued = bits(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
+                assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
+                compared += 1;
+            }
+        }
+        compared
+    };
+    let compared: u32 = scenes.par_iter().map(compare).sum();
+    assert!(compared > 100, "{compared}");
+}
+
+/// Watch that ends a run after some steps.
+struct RunInterrupter {
+    until: u64,
+    done: u64,
+    end: Option<EndState>,
+}
+
+impl Watch for RunInterrupter {
+    fn progress(&mut self, done: u64, _total: u64) {
+        self.done = done;
+    }
+    fn is_over(&self) -> bool {
+        self.done >= self.until
+    }
+    fn wants_end_state(&self) -> bool {
+        true
+    }
+    fn end_state(&mut self, state: EndState) {
+        self.end = Some(state);
+    }
+}
+
+/// The stored files of a run that was interrupted twice equal those of an uninterrupted run, except for the run time.
+#[test]
+fn a_run_that_is_kept_goes_on_to_the_same_files() {
+    let case = CASES.iter().find(|case| case.name == "impact-bed").unwrap();
+    let claim = (case.claims)().into_iter().find(|claim| claim.runs[0].variant == "thousand").unwrap();
+    let run = claim.runs[0].clone();
+    let scene = case.variant(run.variant).unwrap();
+    let solver = solvers::by_name(run.solver).unwrap();
+    let wanted = StorableRun { case, claim, run: run.clone(), wrong: false, id: "thousand".to_owned() };
+    let files = |record: Record| {
+        assert!(record.cost.wall_seconds > 0.0);
+        let record = Record { cost: Cost { wall_seconds: 1.0, ..record.cost }, ..record };
+        let done = FinishedRun::new(Arc::new(scene.clone()), Arc::new(record));
+        kept::files(&wanted, &done, &scene, ["commit", "2024-01-01"]).unwrap()
+    };
+    let straight = files(solver.run(&scene, &run.resolution, &mut ()).unwrap());
+
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.checkpoint");
+    let place = Place { path: &path, every: 300 };
+    let go = |from: Option<&Checkpoint>, until: u64| {
+        let mut watch = RunInterrupter { until, done: 0, end: None };
+        let record = resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch);
+        assert!(record.is_err() || watch.end.is_some(), "the final state of a resumed run");
+        record
+    };
+    let stored = || Checkpoint::from_bytes(&std::fs::read(&path).unwrap()).unwrap();
+    let mut from = None;
+    for until in [700, 1400] {
+        let ended = go(from.as_ref(), until);
+        assert!(matches!(ended, Err(RunError::Interrupted { .. })), "{ended:?}");
+        from = Some(stored());
+        assert!(from.as_ref().is_some_and(|from| from.step() <= until && from.step() + 300 >= until));
+    }
+    assert!(files(go(from.as_ref(), u64::MAX).unwrap()) == straight);
+
+    // The run time before a foreign checkpoint is unknown.
+    let theirs = stored().with_output(b"snapshots".to_vec());
+    assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
+    let mut other = scene.clone();
+    other.gravity *= 2.0;
+    let mut watch = RunInterrupter { until: u64::MAX, done: 0, end: None };
+    let refused = resume::run(solver.as_ref(), &other, &run.resolution, Some(&theirs), place, &mut watch);
+    assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
+}
+
+/// Discs that bounce in a box long enough to be killed in the middle.
+const LONG: &str = r#"title = "Discs in a box"
+dimension = 2
+duration_cycles = 1_000_000
+gravity = [0.0, -9.8]
+materials.rock = { density = 1000.0, bulk_modulus = 1e6, shear_modulus = 5e5 }
+
+[contacts.rock]
+between = ["rock", "rock"]
+normal_stiffness = 1e6
+tangential_stiffness = 5e5
+friction = 0.4
+
+[grains.all]
+material = "rock"
+radius = 0.1
+velocity = [1.0, 0.3]
+lattice = { origin = [0.15, 0.15], spacing = [0.25, 0.25], count = [3, 3] }
+
+[walls]
+left = { material = "rock", plane = { point = [0.0, 0.0], normal = [1.0, 0.0] } }
+right = { material = "rock", plane = { point = [1.0, 0.0], normal = [-1.0, 0.0] } }
+floor = { material = "rock", plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+lid = { material = "rock", plane = { point = [0.0, 1.0], normal = [0.0, -1.0] } }
+
+[output]
+every_cycles = 100_000
+snapshots = 2
+[probes]
+all = { system = true }
+"#;
+
+/// Returns the output of a run without its times.
+fn left(directory: &Path) -> Vec<(String, String)> {
+    let text = |name: &String| {
+        let text = std::fs::read_to_string(directory.join(name)).unwrap();
+        let mut parts = text.split("\"wall_seconds\":");
+        let first = parts.next().unwrap_or_default().to_owned();
+        let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
+        parts.fold(first, |all, part| all + part.trim_start_matches(is_number))
+    };
+    files(directory).iter().map(|name| (name.clone(), text(name))).collect()
+}
+
+/// Tests grains on springs and deformable grains.
+#[test]
+fn a_killed_run_continues_to_the_same_files() {
+    killed_and_continued(LONG, &["--solver", "dem"], "20000");
+    // A grid has no cycles of another method.
+    let timed =
+        LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
+    killed_and_continued(&timed, &["--solver", "mpm", "--cells", "2", "--points", "2"], "200");
+}
+
+/// With many snapshots, the snapshots are on disk: the checkpoint contains their names and not their data.
+#[test]
+fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
+    let many = LONG
+        .replace("count = [3, 3]", "count = [30, 30]")
+        .replace("[1.0, 0.0], normal = [-1.0", "[8.0, 0.0], normal = [-1.0")
+        .replace("[0.0, 1.0], normal = [0.0, -1.0]", "[0.0, 8.0], normal = [0.0, -1.0]")
+        .replace("duration_cycles = 1_000_000", "duration_cycles = 10_000")
+        .replace("every_cycles = 100_000\nsnapshots = 2", "every_cycles = 1_000\nsnapshots = 100");
+    let directory = killed_and_continued(&many, &["--solver", "dem", "--write", "dump,vtk"], "5000");
+    let (checkpoint, parts) = (directory.path().join("run.checkpoint"), directory.path().join("run.checkpoint.parts"));
+    let parts: Vec<_> = std::fs::read_dir(parts).unwrap().flatten().collect();
+    assert!(!parts.is_empty());
+    // Fifty snapshots of 900 discs are about fifteen megabytes.
+    let bytes = std::fs::metadata(checkpoint).unwrap().len();
+    assert!(bytes < 9 << 20, "{bytes}");
+}
+
+fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), scene).unwrap();
+    let simulate = [&["simulate", "scene.toml"], options].concat();
+    let straight = grainbench(path, &[&simulate[..], &["--out", "straight"]].concat());
+    assert_eq!(straight.code, Some(0), "{}", straight.err);
+
+    let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", every];
+    let mut victim = crate::common::program()
+        .current_dir(path)
+        .args(simulate.iter().chain(&checkpoints).chain(&["--out", "killed"]))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !path.join("run.checkpoint").exists() {
+        assert!(victim.try_wait().unwrap().is_none(), "{options:?}: it ended before its first checkpoint");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    victim.kill().unwrap();
+    victim.wait().unwrap();
+    assert!(!path.join("killed").exists(), "{options:?}: nothing half-written");
+
+    let restart = ["--restart", "run.checkpoint", "--out", "continued"];
+    let continued = grainbench(path, &[&simulate[..], &checkpoints, &restart].concat());
+    assert_eq!(continued.code, Some(0), "{}", continued.err);
+    assert_eq!(left(&path.join("straight")), left(&path.join("continued")), "{options:?}");
+    directory
+}
+
+/// A checkpoint with a correct hash and wrong numbers is refused before the run continues.
+#[test]
+fn a_checkpoint_with_wrong_numbers_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let scene = LONG.replace("1_000_000", "200").replace("100_000", "50");
+    std::fs::write(path.join("scene.toml"), scene).unwrap();
+    let simulate = ["simulate", "scene.toml", "--solver", "dem"];
+    let keep = ["--checkpoint", "kept", "--checkpoint-every", "100", "--out", "a"];
+    assert_eq!(grainbench(path, &[&simulate[..], &keep].concat()).code, Some(0));
+    let whole = std::fs::read(path.join("kept")).unwrap();
+    let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    let body = &whole[head + 40..];
+    // Length and hash are computed again for the changed numbers.
+    let resealed = |body: &[u8]| {
+        let hash = blake3::hash(body);
+        [&whole[..head], &(body.len() as u64).to_le_bytes(), hash.as_bytes(), body].concat()
+    };
+    let restarted = |body: &[u8]| {
+        std::fs::write(path.join("other"), resealed(body)).unwrap();
+        grainbench(path, &[&simulate[..], &["--restart", "other", "--out", "b"]].concat())
+    };
+    assert_eq!(restarted(body).code, Some(0));
+    let places = |number: f64| -> Vec<usize> {
+        let bytes = number.to_le_bytes();
+        (0..body.len() - 8).filter(|&at| body[at..at + 8] == bytes).collect()
+    };
+    // The radius of a grain is in the state, and in the snapshots of the record so far.
+    let wrong = |at: usize| [(at, 0.7), (at, -0.1), (at, f64::NAN), (at - 8, f64::INFINITY)];
+    let is_refused = |(at, wrong): (usize, f64)| {
+        let mut other = body.to_vec();
+        other[at..at + 8].copy_from_slice(&wrong.to_le_bytes());
+        let answer = restarted(&other);
+        answer.code != Some(0) && answer.err.contains("the checkpoint is damaged: it has ")
+    };
+    let refused = places(0.1).into_iter().filter(|&at| wrong(at).into_iter().all(is_refused)).count();
+    assert_eq!(refused, 9);
+}
+
+/// A run that crashes leaves its series, its snapshots, the state at the crash, and its reason.
+#[test]
+fn a_run_that_breaks_leaves_what_there_is() {
+    let timed =
+        LONG.replace("duration_cycles = 1_000_000", "duration = 3.0").replace("every_cycles = 100_000", "every = 0.01");
+    let breaking: [&[&str]; 3] = [
+        &["--solver", "dem", "--time-step-fraction", "3", "--allow-unstable"],
+        &["--solver", "mpm", "--cells", "2", "--points", "2", "--courant", "2.5", "--allow-unstable"],
+        &["--solver", "rigid", "--substeps", "1", "--set", "grains.all.velocity=[100.0, 50.0]"],
+    ];
+    for options in breaking {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path();
+        std::fs::write(path.join("scene.toml"), &timed).unwrap();
+        let run = grainbench(path, &[&["simulate", "scene.toml", "--out", "out"], options].concat());
+        assert_eq!(run.code, Some(1), "{options:?}: {}", run.err);
+        assert!(run.err.contains("what there is of the run"), "{}", run.err);
+        let broken = std::fs::read_to_string(path.join("out/broken.json")).unwrap();
+        let broken: serde_json::Value = serde_json::from_str(&broken).unwrap();
+        assert!(run.err.contains(broken["error"].as_str().unwrap()), "{broken}");
+        let dump = std::fs::read_to_string(path.join("out/snapshots.dump")).unwrap();
+        let last = dump.rsplit("ITEM: TIMESTEP\n").next().unwrap().lines().next().unwrap();
+        assert_eq!(last, broken["step"].to_string(), "the state that broke is the last");
+        assert!(!path.join("out/record.json").exists(), "it is no record of a run");
+        let report = grainbench(path, &["report", "out"]);
+        assert!(report.code == Some(2) && report.err.contains("the run did not come to its end"), "{}", report.err);
+    }
+}
+
+/// Memory does not depend on the number of snapshots: for 10,000 discs it is at most three times the memory of a run
+/// without snapshots. In memory, each snapshot would need five megabytes. The short test has sixty of them, the long
+/// one a thousand.
+#[test]
+#[cfg(target_os = "linux")]
+fn snapshots_and_checkpoints_take_no_memory() {
+    let snapshots = if std::env::var_os("GRAINBENCH_LONG").is_some() { "1000" } else { "60" };
+    let scene = |snapshots: &str| {
+        LONG.replace("count = [3, 3]", "count = [100, 100]")
+            .replace("[1.0, 0.0], normal = [-1.0", "[25.2, 0.0], normal = [-1.0")
+            .replace("[0.0, 1.0], normal = [0.0, -1.0]", "[0.0, 25.2], normal = [0.0, -1.0]")
+            .replace("duration_cycles = 1_000_000", "duration_cycles = 1_000")
+            .replace("snapshots = 2", &format!("snapshots = {snapshots}"))
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("none.toml"), scene("0")).unwrap();
+    std::fs::write(path.join("many.toml"), scene(snapshots)).unwrap();
+    let none = crate::common::peak_memory(path, &["simulate", "none.toml", "--solver", "dem", "--out", "none"]);
+    let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "50"];
+    let many = [&["simulate", "many.toml", "--solver", "dem", "--out", "many"], &checkpoints[..]].concat();
+    let many = crate::common::peak_memory(path, &many);
+    assert!(many < 3 * none, "{many} kB with {snapshots} snapshots, {none} kB without");
+}
+
+/// Ctrl-C leaves the finished results and reports it.
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interrupted_run_leaves_what_is_finished() {
+    let directory = tempfile::tempdir().unwrap();
+    let child = crate::common::program()
+        .args(["run", "--out", "out"])
+        .current_dir(directory.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Ctrl-C can be sent once the process catches the signal. The run of the registry takes much longer than that.
+    let catches = || {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();
+        u64::from_str_radix(&caught, 16).unwrap() & (1 << 1) != 0
+    };
+    while !catches() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let ended = child.wait_with_output().unwrap();
+    let message = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(1), "{message}");
+    assert!(message.contains("interrupted: ") && message.contains("the report holds what was finished"), "{message}");
+    let results = std::fs::read_to_string(directory.path().join("out/results.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let options = results["provenance"]["options"].to_string();
+    assert!(options.contains("interrupted: "), "{options}");
+}

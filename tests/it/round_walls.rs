@@ -1,0 +1,175 @@
+//! Cylinder and cone walls, compared with exact motions of grains in them.
+
+use grainbench::cases::solvers;
+use grainbench::scene::record::Record;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, RunError};
+use grainbench::scene::source::SceneSource;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Contact stiffness (N/m), gravity (m/s²), radius of the sphere (m), whose mass is one.
+const STIFFNESS: f64 = 1e6;
+const GRAVITY: f64 = 10.0;
+const RADIUS: f64 = 0.25;
+
+fn scene(duration: f64, friction: f64, grain: &str, wall: &str) -> Scene {
+    let density = 1.0 / (4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3));
+    let text = format!(
+        "title = 'round'\ndimension = 3\nduration = {duration:?}\ngravity = [0.0, 0.0, -{GRAVITY:?}]\n\
+         materials.m.density = {density:?}\n\
+         contacts.all = {{ between = ['m', 'm'], normal_stiffness = {STIFFNESS:?}, tangential_stiffness = {:?}, \
+         friction = {friction:?}, normal_damping = 10.0 }}\n\
+         output = {{ every_cycles = 100, snapshots = 0 }}\nprobes.ball = {{ grain = 'ball' }}\n\
+         [grains.ball]\nmaterial = 'm'\nradius = {RADIUS:?}\n{grain}\n[walls.round]\nmaterial = 'm'\n{wall}\n",
+        if friction > 0.0 { 2.0 / 7.0 * STIFFNESS } else { 0.0 },
+    );
+    let source = SceneSource::from_text("round", Path::new(""), &text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(scene: &Scene) -> Record {
+    let solver = solvers::by_name("dem").unwrap();
+    solver.run(scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Returns the times of zero crossings of a column (s).
+fn crossings(record: &Record, name: &str) -> Vec<f64> {
+    let (values, time) = (record.series.column(name).unwrap(), &record.series.time);
+    let between = |at: usize| {
+        let (a, b) = (values[at], values[at + 1]);
+        (a * b < 0.0).then(|| time[at] + (time[at + 1] - time[at]) * a / (a - b))
+    };
+    (0..values.len() - 1).filter_map(between).collect()
+}
+
+/// A sphere rolls to and fro at the bottom of a resting cylinder: (7/5)(R − r) θ″ = −g sin θ. Hence its period is 2π
+/// √(7(R − r)/5g) (1 + θ₀²/16).
+#[test]
+fn a_sphere_rolls_in_a_trough_at_its_period() {
+    const TROUGH: f64 = 2.0;
+    let (angle, overlap) = (0.05_f64, GRAVITY / STIFFNESS);
+    let (x, z) = (angle.sin() * (TROUGH - RADIUS + overlap), -angle.cos() * (TROUGH - RADIUS + overlap));
+    let grain = format!("position = [{x:?}, 0.1, {z:?}]");
+    let wall = format!("cylinder = {{ axis = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.0]], radius = {TROUGH:?} }}");
+    let period = |friction: f64| {
+        let crossings = crossings(&run(&scene(7.0, friction, &grain, &wall)), "ball.x");
+        crossings[2] - crossings[0]
+    };
+    let exact = |factor: f64| TAU * (factor * (TROUGH - RADIUS) / GRAVITY).sqrt() * (1.0 + angle * angle / 16.0);
+    let (rolling, sliding) = (period(1.0), period(0.0));
+    assert!((rolling / exact(7.0 / 5.0) - 1.0).abs() < 1e-4, "{rolling} for {}", exact(7.0 / 5.0));
+    // Control: without friction, the sphere slides like a pendulum, with another period.
+    assert!((sliding / exact(1.0) - 1.0).abs() < 1e-4, "{sliding} for {}", exact(1.0));
+}
+
+/// In a rotating drum, a sphere remains at the bottom if its surface velocity equals that of the drum: ω r = Ω R.
+#[test]
+fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
+    const DRUM: f64 = 2.0;
+    let overlap = GRAVITY / STIFFNESS;
+    let farthest = |part: f64| {
+        let spin = part * 3.0 * DRUM / RADIUS;
+        let grain = format!("position = [0.0, 0.0, {:?}]\nspin = [0.0, {spin:?}, 0.0]", -(DRUM - RADIUS + overlap));
+        let wall = format!(
+            "cylinder = {{ axis = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.0]], radius = {DRUM:?} }}\n\
+             motion = [{{ spin = [0.0, 3.0, 0.0], centre = [0.0, 0.0, 0.0] }}]"
+        );
+        let record = run(&scene(3.0, 0.5, &grain, &wall));
+        record.series.column("ball.x").unwrap().iter().fold(0.0_f64, |far, x| far.max(x.abs()))
+    };
+    // Half an overlap of the lever arm is 2e-5 of the spin.
+    assert!(farthest(1.0) < 1e-4, "{}", farthest(1.0));
+    // A slip of 0.01 ΩR starts rolling at 2/7 of this velocity v. The amplitude is v/ω with ω² = 5g/7(R − r).
+    let swing = 2.0 / 7.0 * 0.01 * 3.0 * DRUM / (5.0 / 7.0 * GRAVITY / (DRUM - RADIUS)).sqrt();
+    assert!((farthest(0.99) / swing - 1.0).abs() < 0.01, "{} for {swing}", farthest(0.99));
+}
+
+/// In a cone of 45°, a sphere moves on a circle at v² = g ρ, where the wall balances weight and centrifugal force.
+#[test]
+fn a_sphere_goes_round_in_a_cone() {
+    let (orbit, overlap) = (1.5_f64, GRAVITY * 2.0_f64.sqrt() / STIFFNESS);
+    let height = orbit + 2.0_f64.sqrt() * (RADIUS - overlap);
+    let spread = |part: f64| {
+        let speed = part * (GRAVITY * orbit).sqrt();
+        let grain = format!("position = [{orbit:?}, 0.0, {height:?}]\nvelocity = [0.0, {speed:?}, 0.0]");
+        let wall = "cone = { axis = [[0.0, 0.0, 0.0], [0.0, 0.0, 4.0]], radii = [0.0, 4.0] }";
+        let record = run(&scene(5.0, 0.0, &grain, wall));
+        let column = |name: &str| record.series.column(name).unwrap();
+        let away = column("ball.x").iter().zip(column("ball.y")).map(|(x, y)| (x.hypot(*y) / orbit - 1.0).abs());
+        away.fold(0.0, f64::max)
+    };
+    assert!(spread(1.0) < 1e-4, "{}", spread(1.0));
+    assert!(spread(1.02) > 1e-2, "{}", spread(1.02));
+}
+
+#[test]
+fn what_has_no_round_walls_says_so() {
+    let wall = "cylinder = { axis = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.0]], radius = 2.0 }";
+    let scene = scene(0.1, 0.5, "position = [0.0, 0.0, -1.7]", wall);
+    let rigid = solvers::by_name("rigid").unwrap();
+    let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations: 4 };
+    let refused = rigid.run(&scene, &resolution, &mut ());
+    assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("`round`")), "{refused:?}");
+}
+
+/// Grains in a rotating drum, between its ends, and in a funnel above it.
+const DRUM_AND_FUNNEL: &str = r#"title = "Grains in a drum and a funnel"
+dimension = 3
+duration = 0.5
+gravity = [0.0, 0.0, -10.0]
+domain = { low = [-4.0, -4.0, -4.0], high = [4.0, 4.0, 8.0] }
+materials.m.density = 1.909859317102744
+output = { every = 0.1, snapshots = 0 }
+probes = { all = { system = true }, drum = { wall = "drum" }, funnel = { wall = "funnel" } }
+
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 1e5
+tangential_stiffness = 2.8e4
+friction = 0.5
+normal_damping = 50.0
+tangential_damping = 25.0
+
+[grains.in-the-drum]
+material = "m"
+radius = 0.3
+lattice = { origin = [-0.9, -1.0, -0.9], spacing = [0.65, 0.66, 0.67], count = [4, 4, 4] }
+[grains.above]
+material = "m"
+radius = 0.3
+lattice = { origin = [-0.6, -0.5, 5.5], spacing = [0.65, 0.66, 0.67], count = [3, 3, 3] }
+
+[walls.drum]
+material = "m"
+cylinder = { axis = [[0.0, -3.0, 0.0], [0.0, 3.0, 0.0]], radius = 2.0 }
+motion = [{ spin = [0.0, 2.0, 0.0], centre = [0.0, 0.0, 0.0] }]
+[walls.funnel]
+material = "m"
+cone = { axis = [[0.0, 0.0, 3.2], [0.0, 0.0, 6.5]], radii = [0.5, 2.5] }
+"#;
+
+/// The live external solver with the deck of the scene has the same energy and the same forces on both walls, before
+/// chaos amplifies rounding. Without LAMMPS nothing is compared; CI has it.
+#[test]
+fn lammps_has_the_same_round_walls() {
+    let lammps = solvers::by_name("lammps").unwrap();
+    if let Err(reason) = lammps.available() {
+        assert!(std::env::var_os("CI").is_none(), "{reason}");
+        return;
+    }
+    let source = SceneSource::from_text("round", Path::new(""), DRUM_AND_FUNNEL);
+    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    let [ours, theirs] = ["dem:lammps", "lammps"].map(|name| {
+        let solver = solvers::by_name(name).unwrap();
+        solver.run(&scene, &Resolution::TimeStep(2e-4), &mut ()).unwrap_or_else(|error| panic!("{error}"))
+    });
+    for name in ["all.kinetic_energy", "all.rotational_energy", "drum.force_z", "funnel.force_z"] {
+        let [ours, theirs] = [&ours, &theirs].map(|record| record.series.column(name).unwrap());
+        let largest = ours.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        assert!(largest > 1.0 && ours.len() == theirs.len(), "{name}");
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            assert!((ours - theirs).abs() < 1e-8 * largest, "{name}: {ours} for {theirs}");
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! A scene that starts from the final state of a run.
+
+use crate::common::{files, grainbench};
+use std::path::Path;
+
+/// Returns a scene of spheres that are dropped into a box and come to rest with friction.
+fn scene(duration: f64, grains: &str) -> String {
+    format!(
+        r#"title = "Spheres in a box"
+dimension = 3
+duration = {duration:?}
+gravity = [0.0, 1.0, -10.0]
+largest_initial_overlap = 0.2
+domain = {{ low = [0.0, 0.0, 0.0], high = [5.0, 5.0, 10.0], periodic = [true, false, false] }}
+materials.m.density = 1.0
+
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 40.0
+tangential_damping = 20.0
+
+[output]
+every = 1.0
+snapshots = 0
+
+{grains}
+
+[walls.floor]
+material = "m"
+plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}
+[walls.front]
+material = "m"
+plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }}
+[walls.back]
+material = "m"
+plane = {{ point = [0.0, 5.0, 0.0], normal = [0.0, -1.0, 0.0] }}
+"#
+    )
+}
+
+const DROPPED: &str = "[grains.g]\nmaterial = 'm'\nradius = 0.5\n\
+    lattice = { origin = [0.55, 0.6, 0.6], spacing = [1.12, 1.16, 1.2], count = [4, 4, 5] }";
+
+fn simulate(path: &Path, name: &str, text: &str, further: &[&str]) {
+    std::fs::write(path.join(format!("{name}.toml")), text).unwrap();
+    let file = format!("{name}.toml");
+    let all = ["simulate", &file, "--solver", "dem", "--time-step", "1e-3", "--write", "dump", "--out", name];
+    let answer = grainbench(path, &[&all[..], further].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+}
+
+/// Returns the final and the initial positions of a run.
+fn ends(path: &Path, name: &str) -> [Vec<[f64; 3]>; 2] {
+    let dump = std::fs::read_to_string(path.join(name).join("snapshots.dump")).unwrap();
+    let snapshots: Vec<&str> = dump.split("ITEM: ATOMS").skip(1).collect();
+    let positions = |snapshot: &str| {
+        let heads: Vec<&str> = snapshot.lines().next().unwrap().split_whitespace().collect();
+        let at = ["x", "y", "z"].map(|axis| heads.iter().position(|head| *head == axis).unwrap());
+        let rows = snapshot.lines().skip(1).take_while(|line| !line.starts_with("ITEM"));
+        rows.map(|row| {
+            let numbers: Vec<&str> = row.split_whitespace().collect();
+            at.map(|column| numbers[column].parse().unwrap())
+        })
+        .collect()
+    };
+    [positions(snapshots[snapshots.len() - 1]), positions(snapshots[0])]
+}
+
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let between = a.iter().zip(b).flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
+    between.fold(0.0, f64::max)
+}
+
+/// A heap at rest continues unchanged if its state includes the springs. Without springs it moves.
+#[test]
+fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    simulate(path, "first", &scene(12.0, DROPPED), &["--state", "heap.state"]);
+    let taken =
+        |further: &str| scene(2.0, &format!("[grains.g]\nmaterial = 'm'\nstate = {{ path = 'heap.state'{further} }}"));
+    simulate(path, "whole", &scene(14.0, DROPPED), &[]);
+    simulate(path, "with", &taken(""), &["--state", "again.state"]);
+    simulate(path, "without", &taken(", springs = false"), &[]);
+    let [end, _] = ends(path, "first");
+    let [later, start] = ends(path, "with");
+    assert!(apart(&end, &start) == 0.0, "it begins where the other ended");
+    let [uninterrupted, _] = ends(path, "whole");
+    assert!(apart(&uninterrupted, &later) < 1e-10, "{}", apart(&uninterrupted, &later));
+    // A rounded state continues too, up to the effect of rounding.
+    simulate(path, "rounding", &scene(12.0, DROPPED), &["--state", "rounded.state", "--rounded"]);
+    let sizes = ["heap.state", "rounded.state"].map(|file| std::fs::metadata(path.join(file)).unwrap().len());
+    assert!(sizes[1] < sizes[0], "{sizes:?}");
+    simulate(path, "rounded", &taken("").replace("heap.state", "rounded.state"), &[]);
+    let [later, _] = ends(path, "rounded");
+    let moved = apart(&uninterrupted, &later);
+    assert!(0.0 < moved && moved < 1e-8, "{moved}");
+    // Behind another grain, which is held far above, the springs stay with their own.
+    let held = "[driven.a]\ngrains = 'a'\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 9.5]\n";
+    let behind = taken("").replace("[grains.g]", &format!("{held}[grains.g]"));
+    simulate(path, "behind", &behind, &[]);
+    let [later, _] = ends(path, "behind");
+    assert!(apart(&uninterrupted, &later[1..]) < 1e-10, "{}", apart(&uninterrupted, &later[1..]));
+    let [later, _] = ends(path, "without");
+    assert!(apart(&uninterrupted, &later) > 1e-5, "{}", apart(&uninterrupted, &later));
+    // At rest, the final state is the same again up to residual motion.
+    let [first, again] = ["heap.state", "again.state"].map(|file| {
+        let bytes = std::fs::read(path.join(file)).unwrap();
+        grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap()
+    });
+    assert!(first.springs.pairs.len() > 100 && first.springs.walls.len() > 10);
+    // Springs are in the order of the grains, independent of the neighbour lists.
+    assert!(first.springs.pairs.is_sorted_by_key(|pair| (pair.0, pair.1)));
+    assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
+}
+
+/// A grain that flies and spins goes on from where a run ended: with its spin to the bit, and its velocity v + g t. With friction
+/// grains turn, and without it their spins are known from the start.
+#[test]
+fn a_grain_that_spins_is_taken_over_with_its_spin() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let thrown = "[grains.g]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 5.0]\n\
+        velocity = [0.3, -0.2, 1.0]\nspin = [1.0, -2.0, 0.5]";
+    let taken = "[grains.g]\nmaterial = 'm'\nstate = { path = 'first.state' }";
+    for friction in ["friction = 0.4", "friction = 0.0"] {
+        for (name, time, grains) in [("first", 0.1, thrown), ("then", 0.2, taken)] {
+            let state = format!("{name}.state");
+            simulate(path, name, &scene(0.1, grains).replace("friction = 0.4", friction), &["--state", &state]);
+            let bytes = std::fs::read(path.join(state)).unwrap();
+            let grain = grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap().grains[0];
+            assert_eq!(grain.spin.as_slice(), [1.0, -2.0, 0.5], "{friction}, {name}");
+            let exact = [0.3, time - 0.2, 1.0 - 10.0 * time];
+            let off = grain.velocity.iter().zip(exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-12, "{friction}, {name}: off by {off} m/s");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_state_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    simulate(path, "first", &scene(0.5, DROPPED), &["--state", "heap.state"]);
+    let whole = std::fs::read(path.join("heap.state")).unwrap();
+    std::fs::write(path.join("cut.state"), &whole[..whole.len() / 2]).unwrap();
+    std::fs::write(path.join("empty.state"), "").unwrap();
+    std::fs::write(path.join("text.state"), "ITEM: TIMESTEP\n").unwrap();
+    let mut changed = whole.clone();
+    changed[whole.len() - 3] ^= 8;
+    std::fs::write(path.join("changed.state"), changed).unwrap();
+    let before = files(path);
+    let mut refusals = String::new();
+    let mut refuse = |what: &str, text: &str, solver: &str| {
+        std::fs::write(path.join("scene.toml"), text).unwrap();
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "out"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
+        std::fs::remove_file(path.join("scene.toml")).unwrap();
+        assert_eq!(files(path), before);
+        // The length of a file depends on its contents.
+        let lengths = |line: &str| line.replace(|digit: char| digit.is_ascii_digit(), "#");
+        let message = if what == "cut off" { lengths(&answer.err) } else { answer.err };
+        refusals += &format!("{what}\n    {message}");
+    };
+    let scene_with_state = |file: &str, further: &str| {
+        scene(1.0, &format!("[grains.g]\nmaterial = 'm'\nstate = {{ path = '{file}' }}\n{further}"))
+    };
+    for (what, file) in [
+        ("nothing there", "none.state"),
+        ("cut off", "cut.state"),
+        ("empty", "empty.state"),
+        ("another kind", "text.state"),
+        ("changed", "changed.state"),
+    ] {
+        refuse(what, &scene_with_state(file, ""), "dem");
+    }
+    refuse("a velocity too", &scene_with_state("heap.state", "velocity = [1.0, 0.0, 0.0]"), "dem");
+    refuse(
+        "two of them",
+        &scene_with_state("heap.state", "[grains.h]\nmaterial = 'm'\nstate = { path = 'heap.state' }"),
+        "dem",
+    );
+    refuse(
+        "springs of another law",
+        &scene_with_state("heap.state", "").replace("friction = 0.4", "friction = 0.0"),
+        "dem",
+    );
+    refuse("a solver without", &scene_with_state("heap.state", ""), "rigid");
+    let flat = scene_with_state("heap.state", "").replace("dimension = 3", "dimension = 2").replace(", -10.0]", "]");
+    let flat = flat.replace(", 0.0]", "]").replace(", 10.0]", "]").replace("false, false]", "false]");
+    refuse("another number of dimensions", flat.split("[walls").next().unwrap(), "dem");
+    std::fs::write(path.join("plain.toml"), scene(0.1, DROPPED)).unwrap();
+    let answer =
+        grainbench(path, &["simulate", "plain.toml", "--solver", "rigid", "--state", "x.state", "--out", "out"]);
+    assert_eq!(answer.code, Some(2));
+    refusals += &format!("a solver that tells none\n    {}", answer.err);
+    assert!(!path.join("x.state").exists());
+    insta::assert_snapshot!(refusals);
+}

@@ -1,0 +1,142 @@
+//! The initial states of cases have a provenance and are unchanged. Each has a file `NAME.state.toml` beside it, with
+//! the command that makes it again.
+
+use grainbench::cases::registry::{CASES, read_grains};
+use grainbench::fields::overlap::sphere_in_box;
+use grainbench::reference::deck::Stepping;
+use grainbench::reference::stored::scene_hash;
+use grainbench::scene::end_state::EndState;
+use grainbench::scene::solver::Resolution;
+use grainbench::scene::source::SceneSource;
+use serde::Deserialize;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Provenance of a state.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Origin {
+    /// Name and version of the program that made it.
+    program: String,
+    /// Commit that the program was built from.
+    commit: String,
+    /// Date (YYYY-MM-DD).
+    date: String,
+    machine: String,
+    /// Scene whose final state it is, in the same folder; its variant, and its changed keys.
+    scene: String,
+    variant: Option<String>,
+    #[serde(default)]
+    set: Vec<[String; 2]>,
+    /// BLAKE3 hash of everything in that scene that a run depends on, and the time step (s), which is part of it.
+    scene_blake3: String,
+    time_step: f64,
+    /// Command that makes it again, from the root of the project.
+    command: String,
+    /// Later changes to the state, or limits of its reproduction.
+    note: String,
+    grains: usize,
+    /// Packing fraction within a box with these lower and upper corners (m), away from sides, floor and surface.
+    packing_fraction: f64,
+    within: [[f64; 3]; 2],
+    /// BLAKE3 hash of the file.
+    blake3: String,
+}
+
+/// Returns the files of all states of all cases.
+fn states() -> Vec<PathBuf> {
+    let folders = CASES.iter().map(|case| case.directory());
+    let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
+    let mut states: Vec<PathBuf> =
+        files.filter(|path| path.extension().is_some_and(|ending| ending == "state")).collect();
+    states.sort();
+    states
+}
+
+fn origin(state: &Path) -> Origin {
+    let file = state.with_extension("state.toml");
+    let text = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+#[test]
+fn a_state_is_the_one_whose_origin_is_told() {
+    let states = states();
+    assert!(states.len() >= 3, "cases that begin with the end of another run");
+    let mut wrong = Vec::new();
+    for path in &states {
+        let (origin_of_state, bytes) = (origin(path), fs::read(path).unwrap());
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        if found != origin_of_state.blake3 {
+            wrong.push(format!("{}: another file: {found}", path.display()));
+        }
+        assert!(bytes.len() <= 10_000_000, "{} is too large to be kept", path.display());
+        let state = EndState::from_bytes(&bytes).unwrap();
+        let scene = scene_source(path, &origin_of_state).scene(&read_grains).unwrap();
+        assert_eq!(
+            (state.of[0].as_str(), state.grains.len()),
+            (&*scene.title, origin_of_state.grains),
+            "{}",
+            path.display()
+        );
+        let stepping = Stepping::new(&scene, &Resolution::TimeStep(origin_of_state.time_step)).unwrap();
+        let hash = scene_hash(&scene, &stepping);
+        if hash != origin_of_state.scene_blake3 {
+            wrong.push(format!("{}: of another scene: {hash}", path.display()));
+        }
+        for word in
+            [&*origin_of_state.scene, path.file_name().unwrap().to_str().unwrap(), "grainbench simulate", "--time-step"]
+        {
+            assert!(origin_of_state.command.contains(word), "{}: `{word}` in the command", path.display());
+        }
+        for part in [
+            &origin_of_state.program,
+            &origin_of_state.commit,
+            &origin_of_state.date,
+            &origin_of_state.machine,
+            &origin_of_state.note,
+        ] {
+            assert!(!part.trim().is_empty(), "{}: a part of its origin is empty", path.display());
+        }
+        for [key, value] in &origin_of_state.set {
+            assert!(
+                origin_of_state.command.contains(&format!("{key}={value}")),
+                "{}: `{key}` in the command",
+                path.display()
+            );
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Returns the scene whose final state a state is.
+fn scene_source(state: &Path, origin: &Origin) -> SceneSource {
+    let source = SceneSource::read(&state.with_file_name(&origin.scene)).unwrap();
+    let source = origin.variant.iter().fold(source, |source, variant| source.variant(variant));
+    origin.set.iter().fold(source, |source, [key, value]| source.set(key, value))
+}
+
+/// Solid volume over the volume of the box, which extends over the whole bed along y.
+#[test]
+fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
+    let mut wrong = Vec::new();
+    for path in &states() {
+        let (origin_of_state, state) = (origin(path), EndState::from_bytes(&fs::read(path).unwrap()).unwrap());
+        let [low, high] = origin_of_state.within;
+        let volume: f64 = (0..3).map(|axis| high[axis] - low[axis]).product();
+        let period = high[1] - low[1];
+        let overlap = |grain: &grainbench::scene::end_state::StateGrain, image: f64| {
+            let mut centre = grain.position;
+            centre.y += image * period;
+            let side = |corner: [f64; 3]| [0, 1, 2].map(|axis| corner[axis] - centre[axis]);
+            sphere_in_box(grain.size[0], side(low), side(high))
+        };
+        let solid: f64 =
+            state.grains.iter().flat_map(|grain| [-1.0, 0.0, 1.0].map(|image| overlap(grain, image))).sum();
+        let found = solid / volume;
+        if (found - origin_of_state.packing_fraction).abs() > 5.1e-5 {
+            wrong.push(format!("{}: {found:.6}", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,328 @@
+//! Insertion and removal of grains, and removal of walls.
+
+use crate::common::{files, grainbench};
+use grainbench::cases::solvers;
+use grainbench::scene::record::{Record, Snapshot};
+use grainbench::scene::scene::Scene;
+use grainbench::scene::solver::{Resolution, Threads};
+use grainbench::scene::source::SceneSource;
+use std::path::Path;
+
+/// Common part of the scenes: spheres of mass one and a floor.
+const HEAD: &str = r#"title = "Passing"
+dimension = 3
+duration = 2.0
+gravity = [0.0, 0.0, -1.0]
+domain = { low = [-3.0, 0.0, -50.0], high = [3.0, 4.0, 50.0], periodic = [false, true, false] }
+materials.m.density = 1.909859317102744
+contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
+output = { every_cycles = 100, snapshots = 3 }
+probes.grains = { count = true }
+"#;
+
+const FLOOR: &str = "walls.floor = { material = 'm', plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }\n";
+
+fn scene(text: &str) -> Scene {
+    let source = SceneSource::from_text("passing", Path::new(""), text);
+    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(text: &str, threads: usize) -> Record {
+    let solver = solvers::by_name("dem").unwrap();
+    solver
+        .run(&scene(text), &Resolution::TimeStep(1e-3), &mut Threads(threads))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn end(record: &Record) -> &Snapshot {
+    record.snapshots.last().unwrap()
+}
+
+/// Three grains without contacts. Each is in free fall from its own insertion, z₀ + vτ − gτ²/2, and absent before it.
+#[test]
+fn a_grain_that_is_poured_falls_from_when_it_comes() {
+    let feed = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.5, 0.0, -3.0]\n\
+        poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 40.0], high = [0.0, 4.0, 40.0], start = 0.25 }\n";
+    // Without grains at the start, the coordination number is zero.
+    let text = format!("{HEAD}probes.stress = {{ stress = true }}\n{feed}");
+    let record = run(&text, 1);
+    assert!(record.series.column("stress.coordination").unwrap().iter().all(|&number| number == 0.0));
+    let scene = scene(&text);
+    for snapshot in &record.snapshots {
+        let there: Vec<u32> = snapshot.grains.iter().map(|grain| grain.id).collect();
+        let come: Vec<u32> = (1..=3).filter(|&id| 0.25 + 0.5 * f64::from(id - 1) <= snapshot.time + 1e-9).collect();
+        assert_eq!(there, come, "at {}", snapshot.time);
+        for grain in &snapshot.grains {
+            let start = scene.grains[grain.id as usize - 1];
+            let fallen = snapshot.time - (0.25 + 0.5 * f64::from(grain.id - 1));
+            let exact = start.position + start.velocity * fallen + scene.gravity * (0.5 * fallen * fallen);
+            assert!((grain.position - exact).norm() < 1e-12, "{} for {exact}", grain.position);
+            assert!((grain.velocity - (start.velocity + scene.gravity * fallen)).norm() < 1e-12);
+        }
+    }
+    let column = |name: &str| record.series.column(name).unwrap().last().copied();
+    assert_eq!(
+        (column("grains.present"), column("grains.entered"), column("grains.left")),
+        (Some(3.0), Some(3.0), Some(0.0))
+    );
+}
+
+/// A grain is inserted at the position and velocity of a grain in flight. Both hit a grain on the floor in the same
+/// way.
+#[test]
+fn a_grain_that_comes_is_one_that_came_from_farther_up() {
+    let target = "[grains.target]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
+    // From z = 10 at −3 m/s: after one second at 10 − 3 − ½ with −4 m/s.
+    let ball =
+        "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\nposition = [-0.2, 2.1, 10.0]\n";
+    let poured = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -4.0]\n\
+        poured = { count = 1, rate = 1.0, seed = 1, low = [-0.2, 2.1, 6.5], high = [-0.2, 2.1, 6.5], start = 1.0 }\n";
+    let head = HEAD.replace("duration = 2.0", "duration = 2.5");
+    let [flown, poured] = [ball, poured].map(|ball| run(&format!("{head}{FLOOR}{target}{ball}"), 1));
+    assert_eq!([poured.snapshots[0].grains.len(), end(&poured).grains.len()], [1, 2]);
+    for (a, b) in end(&flown).grains.iter().zip(&end(&poured).grains) {
+        assert!((a.position - b.position).norm() < 1e-8, "{}: {} {}", a.id, a.position, b.position);
+        assert!(a.velocity.norm() > 0.1, "it was struck");
+    }
+}
+
+/// The removal of a grain beside a sliding bed, whose contacts have tangential springs, changes the bed only by the order of
+/// sums. In one second, rounding grows to less than 1e-8 in the moving bed, and to 1e-6 in the next.
+#[test]
+fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
+    let bed = "[grains.bed]\nmaterial = 'm'\nradius = 0.5\n\
+        lattice = { origin = [-1.4, 0.5, 0.499], spacing = [1.01, 0.999, 0.99], count = [3, 4, 3] }\n";
+    let thrown =
+        "[grains.a-thrown]\nmaterial = 'm'\nradius = 0.5\nposition = [-2.5, 0.1, 0.6]\nvelocity = [-4.0, 0.0, 2.0]\n";
+    let removal = "removal = { low = [-4.0, -1.0, -1.0], high = [4.0, 5.0, 50.0], every_cycles = 50 }\n";
+    let head = HEAD.replace("gravity = [0.0, 0.0, -1.0]", "gravity = [0.0, 0.2, -1.0]");
+    let head = head.replace("duration = 2.0", "duration = 1.0");
+    let alone = run(&format!("{head}{FLOOR}{bed}"), 1);
+    let record = run(&format!("{head}{removal}{FLOOR}{bed}{thrown}"), 1);
+    assert_eq!((record.snapshots[0].grains.len(), end(&record).grains.len()), (37, 36));
+    // It leaves the box at (4 − 2.5)/4 s; removal is tested every fiftieth step.
+    let left = record.series.column("grains.left").unwrap();
+    let when = left.iter().position(|&left| left == 1.0).map(|at| record.series.time[at]);
+    assert_eq!(when, Some(0.4));
+    for (a, b) in end(&alone).grains.iter().zip(&end(&record).grains) {
+        let off = (a.position - b.position).norm().max((a.velocity - b.velocity).norm()).max((a.spin - b.spin).norm());
+        assert!(a.id == b.id && off < 1e-8, "{}: off by {off}", a.id);
+    }
+}
+
+/// A grain on a wall that is removed falls ½g(t − t₀)² afterwards, up to the last spring force.
+#[test]
+fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
+    let floor = FLOOR.replace("material = 'm',", "material = 'm', until = 1.2,");
+    let ball = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
+    let record = run(&format!("{HEAD}{floor}{ball}"), 1);
+    let z = |at: usize| record.snapshots[at].grains[0].position.z;
+    assert!((z(2) - 0.49995).abs() < 1e-12, "at rest on mg/k until then: {}", z(2));
+    let fallen = end(&record).time - 1.2;
+    // The last force belongs to the previous step and acts for half a step.
+    assert!((end(&record).grains[0].position.z - (0.49995 - 0.5 * fallen * fallen)).abs() < 1e-3);
+    assert!(record.snapshots[0].walls[0].corners.len() == 2 && end(&record).walls[0].corners.is_empty());
+    let stays = run(&format!("{HEAD}{FLOOR}{ball}"), 1);
+    assert!((end(&stays).grains[0].position.z - 0.49995).abs() < 1e-12);
+}
+
+/// Returns the scene of a silo that is filled and drained.
+fn silo() -> String {
+    format!(
+        "{HEAD}{}{}",
+        "removal = { low = [-4.0, -1.0, -3.0], high = [4.0, 5.0, 60.0], every_cycles = 50 }\n",
+        r#"
+[grains.feed]
+material = "m"
+radius = 0.5
+velocity = [0.0, 0.0, -6.0]
+poured = { count = 90, rate = 90.0, seed = 1, low = [-2.4, 0.0, 6.0], high = [2.4, 4.0, 7.0] }
+[walls.left]
+material = "m"
+plane = { point = [-3.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
+[walls.right]
+material = "m"
+plane = { point = [3.0, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }
+[walls.ledge]
+material = "m"
+rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[2.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }
+[walls.plug]
+material = "m"
+rectangle = { corner = [-1.0, -1.0, 0.0], edges = [[4.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }
+until = 1.3
+"#
+    )
+    .replace("duration = 2.0", "duration = 5.0")
+}
+
+/// The number of threads and checkpoints do not change any bit.
+#[test]
+fn threads_and_checkpoints_leave_no_trace() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("silo.toml"), silo()).unwrap();
+    let with = |further: &[&str]| {
+        let all = ["simulate", "silo.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
+        let answer = grainbench(path, &[&all[..], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    with(&["--out", "one", "--threads", "1"]);
+    with(&["--out", "two", "--threads", "2", "--checkpoint", "half", "--checkpoint-every", "2400"]);
+    with(&["--out", "three", "--threads", "1", "--restart", "half"]);
+    let same = |file: &str| {
+        let file_bytes = |folder: &str| std::fs::read(path.join(folder).join(file)).unwrap();
+        assert!(file_bytes("one") == file_bytes("two"), "{file}, threads");
+        assert!(file_bytes("one") == file_bytes("three"), "{file}, restarted");
+    };
+    ["series.csv", "snapshots.dump"].into_iter().for_each(same);
+    let record = run(&silo(), 1);
+    let last = |name: &str| record.series.column(name).unwrap().last().copied().unwrap();
+    assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
+}
+
+/// Grains on a floor. The left ones are fixed and then lifted for some time.
+const LIFTED: &str = r#"title = "Lifted for a while"
+dimension = 3
+duration = 1.0
+gravity = [0.0, 0.0, -1.0]
+[materials.m]
+density = 2.0
+young_modulus = 1e4
+poisson_ratio = 0.3
+[contacts.all]
+between = ["m", "m"]
+normal_stiffness = 2e3
+tangential_stiffness = 1e3
+friction = 0.4
+normal_damping = 10.0
+[grains.heap]
+material = "m"
+radius = 0.5
+lattice = { origin = [0.0, 0.0, 0.49], spacing = [0.99, 0.99, 0.98], count = [5, 4, 3] }
+[walls.floor]
+material = "m"
+plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
+[driven.lifted]
+region = { low = [-0.5, -1.0, 0.0], high = [1.2, 9.0, 9.0] }
+velocity = [0.0, 0.0, 0.8]
+start = 0.3
+stop = 0.7
+[output]
+every = 0.1
+snapshots = 3
+[probes]
+lifted = { driven = "lifted" }
+all = { system = true }
+"#;
+
+/// Threads and checkpoints do not change any bit, also for a checkpoint during the prescribed motion. Only `dem`
+/// supports it.
+#[test]
+fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("scene.toml"), LIFTED).unwrap();
+    let with = |further: &[&str]| {
+        let all = ["simulate", "scene.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
+        let answer = grainbench(path, &[&all[..], further].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    let file_text = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
+    with(&["--out", "whole", "--threads", "2"]);
+    // Checkpoints before the prescribed motion, at its start, during it, at its end, and after it.
+    for every in ["200", "300", "400", "600", "700", "900"] {
+        with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
+        with(&["--out", "two", "--restart", "half"]);
+        for file in ["series.csv", "snapshots.dump"] {
+            assert!(
+                file_text("whole", file) == file_text("one", file) && file_text("one", file) == file_text("two", file),
+                "{file}, {every}"
+            );
+        }
+    }
+    with(&["--out", "always", "--set", "driven.lifted.start=0.0", "--set", "driven.lifted.stop=1.0"]);
+    assert!(file_text("whole", "series.csv") != file_text("always", "series.csv"));
+    for solver in ["mpm", "rigid"] {
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "none"]);
+        let says = "grains that are driven for a while";
+        assert!(answer.code == Some(2) && answer.err.contains(says), "{solver}: {}", answer.err);
+    }
+}
+
+#[test]
+fn what_cannot_come_or_go_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let before = files(path);
+    let mut refusals = String::new();
+    let mut refuse = |what: &str, text: String, solver: &str| {
+        std::fs::write(path.join("scene.toml"), text).unwrap();
+        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "out"]);
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
+        std::fs::remove_file(path.join("scene.toml")).unwrap();
+        assert_eq!(files(path), before);
+        refusals += &format!("{what}\n    {}", answer.err);
+    };
+    let silo = silo();
+    let with = |from: &str, to: &str| {
+        assert!(silo.contains(from), "{from}");
+        silo.replace(from, to)
+    };
+    refuse("another solver", silo.clone(), "mpm");
+    refuse("rigid grains", silo.clone(), "rigid");
+    refuse("no rate", with("rate = 90.0", "rate = 0.0"), "dem");
+    refuse("no room", with("rate = 90.0", "rate = 9e5"), "dem");
+    refuse("none", with("count = 90", "count = 0"), "dem");
+    refuse("a box upside down", with("high = [2.4, 4.0, 7.0]", "high = [2.4, 4.0, 5.0]"), "dem");
+    refuse("spin", with("velocity = [0.0, 0.0, -6.0]", "spin = [1.0, 0.0, 0.0]"), "dem");
+    refuse("a negative start", with("seed = 1", "seed = 1, start = -1.0"), "dem");
+    refuse("another place too", with("radius = 0.5\n", "radius = 0.5\nposition = [0.0, 0.0, 1.0]\n"), "dem");
+    refuse("removal of nothing", with("low = [-4.0, -1.0, -3.0]", "low = [-4.0, -1.0, 61.0]"), "dem");
+    refuse("removal never", with("every_cycles = 50 }", "every_cycles = 0 }"), "dem");
+    refuse("a wall that never was", with("until = 1.3", "until = 0.0"), "dem");
+    refuse("a probe of a grain", with("{ count = true }", "{ grain = 'feed.1' }"), "dem");
+    refuse("a budget", with("{ count = true }", "{ budget = true }"), "dem");
+    refuse("driven", silo.clone() + "[driven.d]\ngrains = 'feed'\nvelocity = [0.0, 0.0, 1.0]\n", "dem");
+    insta::assert_snapshot!(refusals);
+}
+
+/// Two groups from one box, a heap that grows into the box, and a box that a wall crosses. Each ends with an error that
+/// names both grains or the wall, and never with an overlap.
+#[test]
+fn nothing_is_poured_into_what_stands_there() {
+    let feed = |name: &str, seed: u32, count: u32, z: f64| {
+        format!(
+            "[grains.{name}]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
+             [grains.{name}.poured]\nstart = 0.1\ncount = {count}\nrate = 2.5\nseed = {seed}\n\
+             low = [0.0, 2.0, {z}]\nhigh = [0.2, 2.2, {z}]\n"
+        )
+    };
+    let broken = |text: &str| {
+        let solver = solvers::by_name("dem").unwrap();
+        solver.run(&scene(text), &Resolution::TimeStep(1e-3), &mut ()).unwrap_err().to_string()
+    };
+    let two = broken(&format!("{HEAD}{}{}", feed("a", 1, 2, 9.0), feed("b", 2, 2, 9.0)));
+    assert!(two.contains("it was poured into grain") && two.contains("of the smaller radius"), "{two}");
+    let heap = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 10, 1.0)));
+    assert!(heap.contains("it was poured into grain") && heap.contains("pour at a lower rate"), "{heap}");
+    let wall = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3)));
+    assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
+    // A grain with insertion time zero exists from the start and is checked then.
+    let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
+    let source = SceneSource::from_text("passing", Path::new(""), &text);
+    let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+    assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
+}
+
+/// A grain that is inserted outside of the box of `removal` would be removed at once.
+#[test]
+fn a_pour_outside_of_the_box_of_removal_is_refused() {
+    let text = format!(
+        "{HEAD}removal = {{ low = [-3.0, -1.0, -5.0], high = [3.0, 5.0, 5.0] }}\n\
+         [grains.feed]\nmaterial = 'm'\nradius = 0.5\n\
+         poured = {{ count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 6.0], high = [0.0, 4.0, 6.0] }}\n"
+    );
+    let source = SceneSource::from_text("passing", Path::new(""), &text);
+    let error = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+    assert!(error.contains("grains.feed.poured: expected a box within that of `removal`"), "{error}");
+}

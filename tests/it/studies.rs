@@ -1,0 +1,249 @@
+//! The three studies as a user runs them. Their properties hold, also after an interruption at any time.
+
+use crate::common::grainbench;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers::Registry;
+use grainbench::harness::case::Case;
+use grainbench::reports::study::stability::Hardness;
+use grainbench::scene::effect::Effect;
+use grainbench::studies::effects::ledger::Ledger;
+use grainbench::studies::result_cache::ResultCache;
+use grainbench::studies::stability::assembly;
+use grainbench::studies::stability::hard;
+use grainbench::studies::stability::limit::of_assembly;
+use rayon::prelude::*;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::sync::Arc;
+use std::time::Duration;
+
+#[test]
+fn exact_limits_are_found_to_half_a_hundredth() {
+    for assembly in assembly::all().unwrap() {
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
+        let error = limit.error.unwrap_or_else(|| panic!("{}: {}", limit.scene, limit.detail));
+        assert!(error.abs() < 0.005, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
+    }
+}
+
+/// Control: springs 5 % stiffer have a limit 2.5 % smaller, which the test distinguishes from the exact limit.
+#[test]
+fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
+    for mut assembly in assembly::all().unwrap() {
+        assembly.scene.change_laws(|law| {
+            law.scale_normal(1.05);
+            law.scale_tangential(1.05);
+        });
+        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
+        assert!(limit.error.is_none_or(|error| error < -0.012), "{} {:?}: {:?}", limit.scene, limit.at, limit.error);
+    }
+}
+
+/// None of our solvers is wrong without an error. Springs hold at some step, except for cases without a solution.
+#[test]
+fn hard_cases_hold_or_say_why_not() {
+    // A million steps are too long for this test.
+    for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
+        for solver in ["dem", "rigid", "mpm"] {
+            let row = hard::judge(case, &Registry, solver);
+            let quiet = row.standing == Hardness::QuietlyWrong || row.detail.starts_with("quietly");
+            assert!(!quiet, "{} · {solver}: {}", row.case, row.detail);
+            let holds = matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
+            let must = solver.starts_with("dem") && row.case != "exactly-coincident-grains";
+            assert!(holds || !must, "{} · {solver}: {}", row.case, row.detail);
+        }
+    }
+}
+
+/// Effects of a case whose absence no claim detects. For each other active effect, a claim must fail when it is off.
+/// The blocks are so long that grains that roll on them stay away from their periodic ends. The metal ring spins far
+/// below its yield stress: it tests the rotation of stresses in the plastic law.
+const NOT_FELT: &[(&str, Effect)] = &[
+    ("rolling-on-block", Effect::PeriodicAxes),
+    ("sphere-on-block", Effect::PeriodicAxes),
+    ("spinning-ring", Effect::Plasticity),
+    // Walls or bodies that move with the frame, and effects of variants whose claims are about something else.
+    ("border", Effect::MovingWalls),
+    ("driven-disc", Effect::Friction),
+    ("driven-disc", Effect::Gravity),
+    ("free-block", Effect::PeriodicAxes),
+    ("piston", Effect::Gravity),
+    ("rolling-spring", Effect::PeriodicAxes),
+    ("sheared-layer", Effect::Friction),
+];
+
+#[test]
+fn an_effect_that_is_needed_is_caught_when_it_is_off() {
+    let wrong = |case: &&'static Case| {
+        let mut wrong = Vec::new();
+        let mut ledger = Ledger::new(case, Arc::new(Registry));
+        let mut effects: Vec<Effect> =
+            ledger.pieces().iter().filter(|piece| piece.key.is_some()).map(|piece| piece.effect).collect();
+        effects.sort_unstable();
+        effects.dedup();
+        for effect in effects {
+            let caught = ledger.catches(effect);
+            if caught.is_none() != NOT_FELT.contains(&(case.name, effect)) {
+                wrong.push(format!("{}: {:?}, {}", case.name, effect, caught.unwrap_or_else(|| "not felt".to_owned())));
+            }
+        }
+        wrong
+    };
+    let wrong: Vec<String> = CASES.par_iter().flat_map_iter(wrong).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Returns `results.json` of a directory without the values that vary between runs.
+fn results(out: &Path) -> Value {
+    let mut results: Value = serde_json::from_str(&fs::read_to_string(out.join("results.json")).unwrap()).unwrap();
+    results["provenance"] = Value::Null;
+    for point in results["points"].as_array_mut().unwrap() {
+        for key in ["wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds", "repetitions"] {
+            point[key] = Value::Null;
+        }
+    }
+    results
+}
+
+const COST: [&str; 5] = ["cost", "squash", "collision", "--solver", "dem"];
+
+#[test]
+fn ended_at_any_moment_it_goes_on_to_the_same_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = grainbench(folder.path(), &[&COST[..], &["--out", "whole"]].concat());
+    assert_eq!(whole.code, Some(0), "{}", whole.err);
+    let out = folder.path().join("out");
+    let mut state = 12345_u64;
+    for _ in 0..10 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let mut child = crate::common::program()
+            .args(COST)
+            .args(["--out", "out"])
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(5 + (state >> 33) % 400));
+        let _ = child.kill();
+        child.wait().unwrap();
+        // Each file is complete.
+        for name in crate::common::files(folder.path())
+            .iter()
+            .filter(|name| name.starts_with("out/") && name.ends_with(".json"))
+        {
+            if !name.contains(".grainbench-") {
+                let text = fs::read_to_string(folder.path().join(name)).unwrap();
+                serde_json::from_str::<Value>(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+            }
+        }
+    }
+    let last = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
+    assert_eq!(last.code, Some(0), "{}", last.err);
+    assert_eq!(results(&out), results(&folder.path().join("whole")));
+    assert!(
+        !crate::common::files(&out).iter().any(|name| name.contains(".grainbench-")),
+        "{:?}",
+        crate::common::files(&out)
+    );
+    let again = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
+    assert!(again.out.contains("24 of 24 points were measured before"), "{}", again.out);
+}
+
+/// Sets the times of each finished point: those of a quiet machine times a factor.
+fn retime(out: &Path, factor: f64) {
+    for entry in fs::read_dir(out.join("points")).unwrap() {
+        let path = entry.unwrap().path();
+        let mut point: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        point["wall_seconds"] = 1e-3.into();
+        for (at, timing) in point["repetitions"].as_array_mut().unwrap().iter_mut().enumerate() {
+            timing["cpu"] = (factor * 1e-3 * (1.0 + 0.02 * at as f64)).into();
+            timing["reference"] = 1e-3.into();
+        }
+        fs::write(path, point.to_string()).unwrap();
+    }
+}
+
+#[test]
+fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let cost = |more: &[&str]| grainbench(folder.path(), &[&COST[..], &["--out", "out"], more].concat());
+    assert_eq!(cost(&[]).code, Some(0));
+    retime(&out, 1.0);
+    assert_eq!(cost(&[]).code, Some(0));
+    let old = fs::read_to_string(out.join("results.json")).unwrap();
+    fs::write(folder.path().join("old.json"), &old).unwrap();
+    let against = || cost(&["--against", "old.json"]);
+    let answer = against();
+    assert!(answer.code == Some(0) && answer.out.contains("counts are the same to the last"), "{}", answer.out);
+    // A machine slower by 5 % is not reported; a kernel slower by 25 % is.
+    retime(&out, 1.05);
+    assert_eq!(against().code, Some(0));
+    retime(&out, 1.25);
+    let answer = against();
+    assert!(answer.code == Some(1) && answer.out.contains("slower by a factor 1.25"), "{}", answer.out);
+    retime(&out, 1.0);
+    fs::write(folder.path().join("old.json"), old.replacen("\"steps\": ", "\"steps\": 1", 1)).unwrap();
+    let answer = against();
+    assert!(answer.code == Some(1) && answer.out.contains("steps 1"), "{}", answer.out);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("damaged.json"), "{\"points\": [{\"case\": 3}]}").unwrap();
+    fs::write(folder.path().join("file"), "").unwrap();
+    for arguments in [
+        &["cost", "no-such-case"][..],
+        &["cost", "squash/no-such-variant"],
+        &["cost", "squash", "--solver", "nobody"],
+        &["cost", "squash", "--against", "missing.json"],
+        &["cost", "squash", "--against", "damaged.json"],
+        &["cost", "squash", "--levels", "some"],
+        &["cost", "squash", "--out", "file"],
+        &["stability", "no-such-case"],
+        &["stability", ""],
+        &["stability", "--solver", "nobody"],
+        &["stability", "--out", "file"],
+        &["effects", "no-such-case"],
+        &["effects", "--out", "file"],
+    ] {
+        let answer = grainbench(folder.path(), arguments);
+        assert_eq!(answer.code, Some(2), "{arguments:?}: {}{}", answer.out, answer.err);
+        assert!(answer.err.starts_with("error: ") && !answer.err.contains("panicked"), "{arguments:?}: {}", answer.err);
+    }
+    assert_eq!(crate::common::files(folder.path()), ["damaged.json", "file"], "nothing is left behind");
+}
+
+#[test]
+fn a_study_is_drawn_again_from_its_directory() {
+    let folder = tempfile::tempdir().unwrap();
+    let answer = grainbench(
+        folder.path(),
+        &["stability", "free-pair", "mass-ratio", "--solver", "dem", "--out", "out", "--json"],
+    );
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(results["stability"]["limits"].as_array().unwrap().len(), 1);
+    assert_eq!(results["stability"]["hard"][0]["standing"], "holds");
+    let page = fs::read_to_string(folder.path().join("out/index.html")).unwrap();
+    assert_eq!(grainbench(folder.path(), &["report", "out"]).code, Some(0));
+    assert_eq!(fs::read_to_string(folder.path().join("out/index.html")).unwrap(), page);
+}
+
+/// An absent effect has no influence.
+#[test]
+fn an_absent_effect_is_inert() {
+    let folder = tempfile::tempdir().unwrap();
+    let answer =
+        grainbench(folder.path(), &["effects", "collision/gamma-zeta.1", "backspin/disc", "--out", "out", "--json"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.out);
+    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let worth =
+        |name: &str| results["effects"].as_array().unwrap().iter().filter(|entry| entry["worth"] == name).count();
+    assert!(worth("inert") >= 5 && worth("not-inert") == 0 && worth("needed") >= 3, "{}", answer.out);
+}

@@ -1,0 +1,451 @@
+//! Rules for the whole repository.
+
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use grainbench::harness::case::PLAIN;
+use grainbench::harness::evidence::Evidence;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Returns all text files of the repository as relative path and text. Build products, programs installed beside their
+/// adapters and hidden folders except `.ci` are omitted.
+fn texts() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut open = vec![root().to_path_buf()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let shown = path.strip_prefix(root()).unwrap().display().to_string();
+            let hidden = shown.starts_with('.') && !shown.starts_with(".ci") && !shown.starts_with(".gitignore");
+            let is_installed = shown.starts_with("peers/") && shown.ends_with("/venv");
+            if hidden || is_installed || shown == "target" || shown == "grainbench-out" {
+                continue;
+            }
+            if path.is_dir() {
+                open.push(path);
+            } else if let Ok(text) = fs::read_to_string(&path) {
+                found.push((shown, text));
+            }
+        }
+    }
+    found.sort();
+    assert!(found.len() > 50, "{}", found.len());
+    found
+}
+
+fn rust() -> Vec<(String, String)> {
+    texts().into_iter().filter(|(name, _)| name.ends_with(".rs")).collect()
+}
+
+/// Returns code without comments and without the text after `#[cfg(test)]`. Strings with `//` in them are truncated,
+/// which does not affect these tests.
+fn code(text: &str) -> String {
+    let lines = text.lines().take_while(|line| line.trim() != "#[cfg(test)]");
+    lines.map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
+}
+
+/// Returns true if `word` occurs in `text` and is not part of another name.
+fn has_word(text: &str, word: &str) -> bool {
+    let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+    text.match_indices(word).any(|(at, _)| {
+        !text[..at].chars().next_back().is_some_and(is_name)
+            && !text[at + word.len()..].chars().next().is_some_and(is_name)
+    })
+}
+
+#[test]
+fn crates_depend_in_one_direction() {
+    // Allowed dependencies of each crate. A new crate needs a line here.
+    let scene: &[&str] = &["scene"];
+    let lanes: &[&str] = &["scene", "lanes"];
+    let allowed: &[(&str, &[&str])] = &[
+        ("solvers/lanes", &[]),
+        ("solvers/scene", &[]),
+        ("solvers/dem", lanes),
+        ("solvers/mpm", lanes),
+        ("solvers/rigid", scene),
+        ("harness", scene),
+        ("reference", scene),
+        ("fields", &["scene", "harness"]),
+        ("cases", &["scene", "harness", "dem", "mpm", "rigid", "reference", "fields"]),
+        ("reports", &["scene", "harness", "fields"]),
+        ("studies", &["lanes", "scene", "harness", "reports"]),
+        ("campaign", &["scene", "harness", "cases", "reports", "studies"]),
+        (
+            ".",
+            &[
+                "lanes",
+                "scene",
+                "harness",
+                "dem",
+                "mpm",
+                "rigid",
+                "reference",
+                "fields",
+                "cases",
+                "reports",
+                "studies",
+                "campaign",
+            ],
+        ),
+    ];
+    // Additional dependencies of a crate's tests: solver tests use the harness, and tests of the studies use one
+    // solver.
+    let tested: &[(&str, &str)] =
+        &[("solvers/dem", "harness"), ("solvers/mpm", "harness"), ("solvers/rigid", "harness"), ("studies", "dem")];
+    let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let members = manifest["workspace"]["members"].as_array().unwrap();
+    assert_eq!(Some(members), manifest["workspace"]["default-members"].as_array(), "`cargo test` runs all crates");
+    for member in members {
+        let member = member.as_str().unwrap();
+        let (_, known) = allowed.iter().find(|(name, _)| *name == member).unwrap_or_else(|| panic!("{member} is new"));
+        let manifest: toml::Table =
+            fs::read_to_string(root().join(member).join("Cargo.toml")).unwrap().parse().unwrap();
+        for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            let names = manifest.get(section).and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+            for name in names.filter_map(|name| name.strip_prefix("grainbench-")) {
+                let is_tested = section == "dev-dependencies" && tested.contains(&(member, name));
+                assert!(known.contains(&name) || is_tested, "{member} must not depend on {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_unsafe_unfinished_or_left_from_debugging() {
+    // In pieces, so that this file does not match.
+    let banned = [
+        concat!("un", "safe"),
+        concat!("todo", "!("),
+        concat!("unimplemented", "!("),
+        concat!("dbg", "!("),
+        concat!("#[ig", "nore"),
+    ];
+    for (name, text) in rust() {
+        for word in banned {
+            let text: String = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+            let found =
+                if word.ends_with('(') || word.starts_with('#') { text.contains(word) } else { has_word(&text, word) };
+            assert!(!found, "{name} has `{word}`");
+        }
+    }
+}
+
+/// Returns the body of a function, from its name to the closing brace.
+fn body<'a>(code: &'a str, function: &str) -> Option<&'a str> {
+    let start = code.find(&format!("fn {function}"))?;
+    let open = start + code[start..].find('{')?;
+    let mut depth = 0_usize;
+    for (at, letter) in code[open..].char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' if depth == 1 => return Some(&code[open..open + at]),
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Contact laws and neighbour lists use no hash map, string or trait object. The loops over particles and contacts do
+/// not allocate. (The only exception is the growing list of contacts for a snapshot.)
+#[test]
+fn no_hash_map_string_or_allocation_in_hot_loops() {
+    let source = root().join("solvers/dem/src");
+    let apart = [
+        "neighbours.rs",
+        "cells.rs",
+        "walls.rs",
+        "grains.rs",
+        "geometry.rs",
+        "motion.rs",
+        "forces.rs",
+        "laws.rs",
+        "pairs.rs",
+        "touching.rs",
+    ];
+    let mut files: Vec<PathBuf> = apart.map(|name| source.join(name)).into();
+    files.extend(fs::read_dir(source.join("contact")).unwrap().map(|entry| entry.unwrap().path()));
+    assert!(files.len() > 6);
+    for path in &files {
+        let code = code(&fs::read_to_string(path).unwrap());
+        for word in ["HashMap", "HashSet", "BTreeMap", "BTreeSet", "String", "format", "to_string", "to_owned", "dyn"] {
+            assert!(!has_word(&code, word), "{} has `{word}`", path.display());
+        }
+    }
+    let allocations =
+        ["HashMap", "BTreeMap", "String", "format!", "vec!", "Vec::", "Box", "dyn ", "collect", "clone()", "to_vec"];
+    let refuse = |file: &str, function: &str| {
+        let code = code(&fs::read_to_string(source.join(file)).unwrap());
+        let body = body(&code, function).unwrap_or_else(|| panic!("{file} has no `fn {function}` to look at"));
+        // Cloning a range for a second use costs nothing.
+        let body = body.replace("slots.clone()", "slots").replace("block.clone()", "block");
+        for word in allocations {
+            assert!(!body.contains(word), "`{function}` in {file} has `{word}`");
+        }
+    };
+    for (file, function) in [
+        ("simulation.rs", "evaluate_forces"),
+        ("motion.rs", "run<"),
+        ("motion.rs", "push<"),
+        ("motion.rs", "carry<"),
+        ("touching.rs", "run<"),
+        ("pairs.rs", "run<"),
+        ("pairs.rs", "pair<"),
+        ("pairs.rs", "add<"),
+        ("share.rs", "evaluate<"),
+        ("forces.rs", "at_wall"),
+        ("laws.rs", "gather<"),
+        ("laws.rs", "places<"),
+        ("walls.rs", "facing"),
+        ("contact/pair.rs", "respond<"),
+        ("contact/at_wall.rs", "respond<"),
+        ("contact/chain.rs", "stages<"),
+    ] {
+        refuse(file, function);
+    }
+    for entry in fs::read_dir(source.join("contact")).unwrap() {
+        let code = code(&fs::read_to_string(entry.unwrap().path()).unwrap());
+        for word in ["vec", "Vec", "Box", "collect"] {
+            assert!(!has_word(&code, word), "a contact law has `{word}`");
+        }
+    }
+}
+
+/// Applies the same rules to the material point method: its loops over points, nodes, tracers and contacts.
+#[test]
+fn no_hash_map_string_or_allocation_in_loops_over_points() {
+    let source = root().join("solvers/mpm/src");
+    let mut files: Vec<PathBuf> = [
+        "basis.rs",
+        "gather.rs",
+        "gradients.rs",
+        "grid.rs",
+        "../../lanes/src/number.rs",
+        "../../lanes/src/plain.rs",
+        "../../lanes/src/avx2.rs",
+        "../../lanes/src/avx512.rs",
+        "../../lanes/src/logarithm.rs",
+        "nodes.rs",
+        "patch.rs",
+        "runs.rs",
+        "scatter.rs",
+        "share.rs",
+        "stress.rs",
+        "surface.rs",
+        "transfer.rs",
+    ]
+    .map(|name| source.join(name))
+    .into();
+    for folder in ["contact", "material"] {
+        files.extend(fs::read_dir(source.join(folder)).unwrap().map(|entry| entry.unwrap().path()));
+    }
+    assert!(files.len() > 19);
+    for path in &files {
+        let code = code(&fs::read_to_string(path).unwrap());
+        for word in ["HashMap", "HashSet", "BTreeMap", "BTreeSet", "String", "format", "to_string", "to_owned", "dyn"] {
+            assert!(!has_word(&code, word), "{} has `{word}`", path.display());
+        }
+    }
+    let loops: &[(&str, &[&str])] = &[
+        ("transfer.rs", &["scatter_force<"]),
+        ("scatter.rs", &["scatter<", "run<", "give<"]),
+        ("gather.rs", &["gather<", "run<", "bring<", "give<"]),
+        ("gradients.rs", &["run<"]),
+        ("runs.rs", &["find<", "first_batch<", "four<"]),
+        ("stress.rs", &["follow<", "follow_piece<", "run<"]),
+        ("surface.rs", &["run<", "gone_through"]),
+        ("contact/penalty.rs", &["at_walls", "between", "run<"]),
+        ("contact/friction.rs", &["respond", "stretch"]),
+        ("contact/grip.rs", &["bear<", "new<", "push<"]),
+        ("contact/nodal.rs", &["apply<", "apply_pairs<"]),
+        ("nodes.rs", &["step", "find_changes", "divide_projected"]),
+        ("share.rs", &["move_points", "find_runs<", "cut_points<"]),
+        ("simulation.rs", &["step_nodes", "gather", "move_on"]),
+    ];
+    for (file, functions) in loops {
+        let code = code(&fs::read_to_string(source.join(file)).unwrap());
+        for function in *functions {
+            let body = body(&code, function).unwrap_or_else(|| panic!("{file} has no `fn {function}` to look at"));
+            for word in ["vec!", "Vec::", "Box", "collect", "to_vec", ".clone().collect"] {
+                assert!(!body.contains(word), "`{function}` in {file} has `{word}`");
+            }
+        }
+    }
+}
+
+/// Results of a system library may differ in the last bit between processors, because it selects a version by the
+/// processor's features. The solvers use logarithms and other functions in Rust.
+#[test]
+fn solvers_compute_the_same_bits_on_every_processor() {
+    const OF_THE_SYSTEM: [&str; 21] = [
+        ".ln()",
+        ".log2()",
+        ".log10()",
+        ".ln_1p()",
+        ".exp()",
+        ".exp2()",
+        ".exp_m1()",
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".sin_cos()",
+        ".asin()",
+        ".acos()",
+        ".atan()",
+        ".atan2(",
+        ".sinh()",
+        ".cosh()",
+        ".tanh()",
+        ".powf(",
+        ".cbrt()",
+        ".hypot(",
+    ];
+    for (name, text) in rust().into_iter().filter(|(name, _)| name.starts_with("solvers/") && name.contains("/src/")) {
+        let code = code(&text);
+        let shipped = code.split("#[cfg(test)]").next().unwrap_or_default();
+        let found = OF_THE_SYSTEM.iter().find(|call| shipped.contains(*call));
+        assert!(found.is_none() || name.ends_with("/tests.rs"), "{name}: {found:?}: expected it from `libm`");
+    }
+}
+
+#[test]
+fn every_case_folder_is_whole() {
+    let mut folders = BTreeSet::new();
+    for entry in fs::read_dir(root().join("cases")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if !path.is_dir() || name == "src" || name == "tests" || name == "benches" {
+            continue;
+        }
+        assert!(path.join("scene.toml").is_file(), "cases/{name} has no scene.toml, so it is in no registry");
+        // Two cases may share a derivation, which one includes from the other.
+        let code = fs::read_to_string(path.join("case.rs")).unwrap_or_default();
+        assert!(!code.is_empty() || path.join("claims.toml").is_file(), "cases/{name} has no claims");
+        let derived = path.join("derivation.md").is_file() || code.contains("derivation.md\")");
+        assert!(derived, "cases/{name} has no derivation");
+        folders.insert(name);
+    }
+    assert_eq!(CASES.iter().map(|case| case.name.to_owned()).collect::<BTreeSet<_>>(), folders);
+}
+
+#[test]
+fn every_case_and_claim_says_what_it_claims_and_why() {
+    CASES.par_iter().for_each(|case| {
+        let words = [case.title, case.claim, case.derivation, case.weakness];
+        assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
+        // Claims in a file state their resolutions; the program leaves out the claims of a wrong file.
+        let of_file = fs::read_to_string(case.directory().join("claims.toml"));
+        match of_file {
+            Ok(text) => assert_eq!(text.matches("[[claims]]").count(), (case.claims)().len(), "{}", case.name),
+            Err(_) => assert!(!case.levels.is_empty(), "{} has no level", case.name),
+        }
+        let mut variants = case.variants().unwrap();
+        for variant in &variants {
+            case.variant(variant).unwrap_or_else(|error| panic!("{error}"));
+        }
+        variants.push(PLAIN.to_owned());
+        let claims = (case.claims)();
+        assert!(!claims.is_empty(), "{} has no claim", case.name);
+        for claim in claims {
+            let place = format!("{} · {}", case.name, claim.quantity);
+            let (source, because) = (claim.source.words(), &claim.tolerance.because);
+            let words = [claim.quantity.as_str(), claim.unit, &source, because, claim.control.name];
+            assert!(
+                words.iter().all(|text| !text.trim().is_empty()),
+                "{place}: quantity, unit, source, because, control"
+            );
+            let allowed = claim.tolerance.allowed(&[]);
+            assert!(allowed.is_finite() && allowed >= 0.0, "{place}: allowed {allowed}");
+            assert!(!claim.runs.is_empty(), "{place} reads no run");
+            if let Some(work) = claim.source.work() {
+                let folder = root().join("reference").join(work.id);
+                assert!(folder.join("provenance.toml").is_file(), "{place}: {} has no provenance", work.id);
+            }
+            // Values of an external solver come from a stored or live run and are never typed.
+            let has_program = claim.runs.iter().any(|run| solvers::is_program(run.solver));
+            assert!(claim.evidence() != Evidence::OtherCode || has_program, "{place}: no program ran it");
+            for run in &claim.runs {
+                assert!(variants.iter().any(|variant| variant == run.variant), "{place}: no variant {}", run.variant);
+            }
+        }
+    });
+}
+
+/// Returns the formatting errors of some files. `cargo fmt` does not find files that are only in a generated list, for
+/// example those of the cases.
+fn badly_formatted(files: &[PathBuf]) -> Option<String> {
+    let settings = root().join("rustfmt.toml");
+    let mut command = std::process::Command::new("rustfmt");
+    command.args(["--check", "--edition", "2024", "--config-path"]).arg(settings).args(files);
+    let Ok(output) = command.output() else {
+        assert!(std::env::var_os("CI").is_none(), "rustfmt is not installed: nothing was looked at");
+        return None;
+    };
+    Some(String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr))
+}
+
+#[test]
+fn every_rust_file_of_the_tree_is_formatted() {
+    let files: Vec<PathBuf> = rust().into_iter().map(|(name, _)| root().join(name)).collect();
+    if let Some(found) = badly_formatted(&files) {
+        assert!(found.is_empty(), "{found}");
+    }
+}
+
+#[test]
+fn a_badly_formatted_file_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("case.rs");
+    fs::write(&file, "fn  claims( )  { }\n").unwrap();
+    if let Some(found) = badly_formatted(&[file]) {
+        assert!(found.contains("fn claims() {}"), "{found}");
+    }
+}
+
+/// rustfmt does not shorten comments and long strings.
+#[test]
+fn lines_are_short_enough_to_read() {
+    const MOST: usize = 130;
+    for (name, text) in rust() {
+        let long = text.lines().position(|line| line.chars().count() > MOST);
+        assert!(long.is_none(), "{name}:{} has more than {MOST} characters", long.unwrap_or_default() + 1);
+    }
+}
+
+#[test]
+fn files_are_short_enough_to_read() {
+    for (name, text) in texts() {
+        let is_lock = name.ends_with("-lock.json");
+        let is_ours =
+            [".rs", ".md", ".toml"].iter().any(|end| name.ends_with(end)) || name.starts_with(".ci") && !is_lock;
+        let lines = text.lines().count();
+        assert!(!is_ours || lines <= 700, "{name} has {lines} lines");
+    }
+}
+
+#[test]
+fn no_path_of_one_machine() {
+    let folders = [["/wo", "rk/"].concat(), ["/ro", "ot/"].concat(), ["/ho", "me/"].concat(), ["/Us", "ers/"].concat()];
+    for (name, text) in texts() {
+        for folder in &folders {
+            if let Some(line) = text.lines().position(|line| line.contains(folder.as_str())) {
+                panic!("{name}:{} has {folder}", line + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_readme_has_the_two_commands() {
+    let Ok(text) = fs::read_to_string(root().join("README.md")) else { return };
+    for command in ["cargo run --release", "cargo test --release"] {
+        assert!(text.contains(command), "README.md says nothing of `{command}`");
+    }
+}

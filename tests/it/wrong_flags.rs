@@ -1,0 +1,159 @@
+//! Wrong values for every option of every command. Each is an error before any run, with its whole message in a
+//! snapshot. The options come from the command's own help, so that none is missing.
+
+use crate::common::{files, grainbench_alone};
+use grainbench::cases::registry::CASES;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Commands with their required arguments.
+const COMMANDS: [&[&str]; 26] = [
+    &["list"],
+    &["run", "squash"],
+    &["simulate", "scene.toml", "--solver", "dem"],
+    &["deck", "nine-discs/kappa-0", "--for", "lammps"],
+    &["check", "nine-discs/kappa-0", "--dump", "table.csv"],
+    &["fields", "table.csv", "--cell", "1"],
+    &["compare", "table.csv", "table.csv"],
+    &["cost", "collision"],
+    &["stability", "two-discs"],
+    &["effects", "collision"],
+    &["plan", "run", "squash"],
+    &["work", "a-plan"],
+    &["status", "a-plan"],
+    &["collect", "a-plan"],
+    &["race", "nine-discs/kappa-1"],
+    &["reference", "build"],
+    &["reference", "verify"],
+    &["reference", "keep", "squash"],
+    &["reference", "uncertainty", "squash"],
+    &["reference", "import", "dosta-2024", "a-directory"],
+    &["conform", "dem"],
+    &["scene", "collision"],
+    &["schema"],
+    &["report", "a-directory"],
+    &["completions", "bash"],
+    &["man"],
+];
+
+/// An option in the help: its long name and the name of its value.
+struct HelpOption {
+    name: String,
+    value: Option<String>,
+}
+
+/// Returns the options in a help text.
+fn options(help: &str) -> Vec<HelpOption> {
+    let read = |line: &str| {
+        let line = line.trim_start();
+        let long = line
+            .starts_with("--")
+            .then_some(line)
+            .or_else(|| line.split_once(", ").filter(|(short, _)| short.len() == 2)?.1.into());
+        let long = long.filter(|long| long.starts_with("--"))?;
+        let mut words = long.split_whitespace();
+        let name = words.next()?.to_owned();
+        let value = words
+            .next()
+            .and_then(|word| word.strip_prefix('<'))
+            .map(|word| word.trim_end_matches(['.', '>']).to_owned());
+        Some(HelpOption { name, value })
+    };
+    help.lines().filter_map(read).filter(|shown| !["--help", "--version"].contains(&shown.name.as_str())).collect()
+}
+
+/// Returns values that are invalid for all options with this name of the value.
+fn wrong(option: &HelpOption) -> Vec<&'static str> {
+    match (option.name.as_str(), option.value.as_deref()) {
+        (_, None) => vec!["yes"],
+        ("--low" | "--high", _) => vec!["1,2", "wrong"],
+        ("--to", _) => vec!["wrong", "nan"],
+        (_, Some("DIR")) => vec!["table.csv"],
+        ("--checkpoint" | "--state", _) => vec!["no-directory/file"],
+        (_, Some("FILE" | "DIR|results.json" | "OLD.json")) => vec!["missing", "empty"],
+        (_, Some("N")) => vec!["-1", "1.5", "many"],
+        _ => vec!["wrong", "-1"],
+    }
+}
+
+/// Writes the files of the directory: a scene, a table, an empty file, a directory.
+fn prepare(directory: &Path) {
+    let scene = "title = \"One\"
+dimension = 2
+duration = 1.0
+[materials.rock]
+density = 1.0
+[grains.one]
+material = \"rock\"
+radius = 1.0
+position = [0.0, 0.0]
+";
+    for (name, text) in [("scene.toml", scene), ("table.csv", "step,id,x\n0,1,0\n"), ("empty", "")] {
+        std::fs::write(directory.join(name), text).unwrap();
+    }
+    std::fs::create_dir(directory.join("a-directory")).unwrap();
+}
+
+/// Removes the names of all cases, which this test does not depend on.
+fn without_cases(message: &str) -> String {
+    let cases: String = CASES.iter().map(|case| format!("  {}\n", case.name)).collect();
+    message.replace(&cases, "  [cases]\n")
+}
+
+/// Returns a command without one of its options and its value.
+fn without<'a>(command: &[&'a str], option: &str) -> Vec<&'a str> {
+    let place = command.iter().position(|word| *word == option).unwrap_or(command.len());
+    command.iter().enumerate().filter(|(at, _)| *at != place && *at != place + 1).map(|(_, word)| *word).collect()
+}
+
+/// Returns the messages of a command for wrong values of each of its options.
+fn answers(command: &[&str]) -> String {
+    let directory = tempfile::tempdir().unwrap();
+    let directory = directory.path();
+    prepare(directory);
+    let before = files(directory);
+    let help =
+        grainbench_alone(directory, &[&command[..if command[0] == "reference" { 2 } else { 1 }], &["--help"]].concat());
+    let mut messages = String::new();
+    let mut ask = |words: &[&str]| {
+        let option = words[0].split('=').next().unwrap_or_default();
+        let given = [without(command, option), words.to_vec()].concat();
+        let answer = grainbench_alone(directory, &given);
+        writeln!(messages, "$ grainbench {}\n{}", given.join(" "), without_cases(answer.err.trim_end())).unwrap();
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{messages}");
+        assert_eq!(files(directory), before, "{messages}");
+    };
+    for option in options(&help.out) {
+        for value in wrong(&option) {
+            ask(&[&format!("{}={value}", option.name)]);
+        }
+        if option.value.is_some() {
+            ask(&[&option.name]);
+        }
+    }
+    ask(&["--no-such-option"]);
+    messages
+}
+
+#[test]
+fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
+    for command in COMMANDS {
+        let name =
+            command.iter().take(if command[0] == "reference" { 2 } else { 1 }).copied().collect::<Vec<_>>().join("_");
+        insta::assert_snapshot!(name, answers(command));
+    }
+}
+
+/// The commands are those that the program lists.
+#[test]
+fn no_command_is_left_out() {
+    let directory = tempfile::tempdir().unwrap();
+    for (words, skip) in [(&["--help"][..], "help"), (&["reference", "--help"], "help")] {
+        let help = grainbench_alone(directory.path(), words).out;
+        let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+        for name in listed.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != skip) {
+            let place = words.len() - 1;
+            assert!(COMMANDS.iter().any(|command| command.get(place) == Some(&name)), "{name}");
+        }
+    }
+}
