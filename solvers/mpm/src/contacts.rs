@@ -16,7 +16,7 @@ use crate::off::AbsentEffect;
 use crate::options::{Contact, StressUpdate};
 use crate::scheme::Scheme;
 use crate::state::State;
-use crate::surface::{Carry, Tracers};
+use crate::surface::{TracerMotion, Tracers};
 use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
@@ -266,11 +266,11 @@ impl<S: Space> Contacts<S> {
                     match velocities {
                         Velocities::Stepped => {
                             let velocity = |node: &Node<S>| node.velocity;
-                            processor.run_by_four(Carry { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
+                            processor.run_by_four(TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
                         }
                         Velocities::Projected => {
                             let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                            processor.run_by_four(Carry { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
+                            processor.run_by_four(TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
                         }
                     }
                 });

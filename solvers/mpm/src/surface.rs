@@ -345,7 +345,7 @@ impl<S: Space> TracersMut<'_, S> {
 /// Kernel that moves the tracers of a body for `elapsed` (s) and updates the boxes of their chunks.
 ///
 /// The node `velocity` (m/s) is interpolated over nodes with mass.
-pub(crate) struct Carry<'a, S: Space, B, N, V> {
+pub(crate) struct TracerMotion<'a, S: Space, B, N, V> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     /// Tracers to move.
@@ -358,7 +358,7 @@ pub(crate) struct Carry<'a, S: Space, B, N, V> {
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Carry<'_, S, B, N, V> {
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerMotion<'_, S, B, N, V> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
         let Self { lattice, part, of: tracers, nodes, most, velocity, elapsed, .. } = self;
