@@ -361,9 +361,9 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     };
     let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
     for out in ["p", "new"] {
-        let (code, said) = plan(out, "ulimit -f 1;");
-        assert!(code == Some(1) || code == Some(2), "{said}");
-        assert!(said.contains("cannot write"), "{said}");
+        let (code, message) = plan(out, "ulimit -f 1;");
+        assert!(code == Some(1) || code == Some(2), "{message}");
+        assert!(message.contains("cannot write"), "{message}");
     }
     assert_eq!(kept, ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap()));
     assert!(!here.join("new").exists());
