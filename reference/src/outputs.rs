@@ -67,7 +67,10 @@ pub enum OutputError {
         given: f64,
     },
     /// No file contains the time step.
-    #[error("{}: expected times in the file (`ITEM: TIME`), a log that tells the time step, or --time-step, found none", one_line(.0))]
+    #[error(
+        "{}: expected times in the file (`ITEM: TIME`), a log with the time step, or --time-step, found none",
+        one_line(.0)
+    )]
     NoTime(String),
     /// The units are not supported by scenes.
     #[error(

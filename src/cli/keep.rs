@@ -1,5 +1,6 @@
-//! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and `--expect-stored` compares
-//! with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the source tree.
+//! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and
+//! `--expect-stored` compares with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the
+//! source tree.
 
 use super::exit::Fault;
 use super::select::CaseSelection;

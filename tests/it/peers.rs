@@ -1,8 +1,8 @@
 //! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of
 //! `peers/README.md`.
 //!
-//! `UPDATE_README=1 cargo test --release --test it peers` rewrites the tables. `grainbench run --solver PATH --update-stored` makes
-//! new results.
+//! `UPDATE_README=1 cargo test --release --test it peers` rewrites the tables.
+//! `grainbench run --solver PATH --update-stored` makes new results.
 
 use crate::common::{expect_file, root, with_generated};
 use grainbench::cases::registry;

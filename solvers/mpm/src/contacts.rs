@@ -266,11 +266,13 @@ impl<S: Space> Contacts<S> {
                     match velocities {
                         Velocities::Stepped => {
                             let velocity = |node: &Node<S>| node.velocity;
-                            processor.run_by_four(TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
+                            let motion = TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis };
+                            processor.run_by_four(motion);
                         }
                         Velocities::Projected => {
                             let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                            processor.run_by_four(TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis });
+                            let motion = TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis };
+                            processor.run_by_four(motion);
                         }
                     }
                 });
