@@ -1,6 +1,6 @@
 //! Top of the page: counts, failures, three questions, one card per solver, and the matrix of cases and solvers.
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::{cards, matrix, questions, sign, summary};
 use crate::headline::{Headline, OUTCOMES};
@@ -38,7 +38,16 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
         (questions::render(report))
         (cards::render(report, anchors, is_there))
         (tools())
-        (matrix::render(report, anchors))
+        div.overview {
+            (matrix::render(report, anchors))
+            @if let Some(costs) = &report.measured.cost {
+                div {
+                    h2 id="costs" { "What accuracy costs" }
+                    div.plot.small { (PreEscaped(summary::picture(costs))) }
+                    (summary::factors(costs))
+                }
+            }
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_harness::verdict::Outcome;
 use maud::{Markup, PreEscaped, html};
 
-use super::{scrolling, summary};
+use super::scrolling;
 use crate::measured::{AT, Costs, Effects, Hold, Measurements, Stability, Stamp, TARGETS};
 use crate::number;
 use crate::plot::graph::{self, Form};
@@ -16,7 +16,7 @@ use crate::study::stability::{Hardness, distinct, sign};
 use crate::study::{cost, effects, stability};
 
 /// Size of a graph of the first screen (drawing units).
-const FORM: Form = Form { width: 480.0, height: 360.0, legend: false };
+const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
 /// Least and largest change of an answer in the picture of the effects; others are at its ends.
 const CHANGES: [f64; 2] = [1e-5, 10.0];
 
@@ -50,24 +50,19 @@ pub(crate) fn render(report: &Report) -> Markup {
     }
 }
 
-/// Renders the sections with all numbers of the three questions.
+/// Renders the sections with all numbers on stability and effects. Those on costs stand beside the matrix.
 ///
 /// # Errors
 /// When a figure cannot be drawn.
 pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
     let stable = measured.stability.as_ref().map(stability::tables).transpose()?;
+    let effects = measured.effects.as_ref().map(|effects| effects::heat(&effects.ledger));
     Ok(html! {
-        @for (id, heading) in links(measured) {
-            section id=(id) {
-                h2 { (heading) }
-                @match id {
-                    "costs" => {
-                        @if let Some(costs) = &measured.cost {
-                            div.overview { div.plot.small { (PreEscaped(summary::picture(costs))) } div { (summary::factors(costs)) } }
-                        }
-                    }
-                    "stability" => { @if let Some(stable) = &stable { (stable) } }
-                    _ => { @if let Some(study) = &measured.effects { details { summary { "Every scene" } (effects::heat(&study.ledger)) } } }
+        @if stable.is_some() || effects.is_some() {
+            section {
+                @for ((id, heading), all) in QUESTIONS[1..].iter().zip([stable, effects]) {
+                    // A link to a place within a closed part opens it, without a script too.
+                    @if let Some(all) = all { details { summary { (heading) ": all numbers" } div id=(id) { (all) } } }
                 }
             }
         }
@@ -180,7 +175,7 @@ fn steps(stability: &Stability) -> Markup {
         @if let Some(figure) = &figure { (drawn(figure)) }
         p { (limits(&lines)) }
         (scrolling("Hard cases by solver", &table))
-        p.note { "✓ holds · ▲ at a smaller step or error message · ✗ quietly wrong · – cannot express it" }
+        p.note { "✓ holds · ▲ smaller step or error · ✗ quietly wrong · – cannot" }
     }
 }
 

@@ -250,13 +250,13 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
         (totals(&stability.lines))
         @if !stability.hard.is_empty() {
             h3 { "Hard cases" }
-            details { summary { "Every case" } (matrix(&stability.hard)) }
+            (matrix(&stability.hard))
             (details_of(&stability.hard))
         }
         @if !stability.limits.is_empty() {
             h3 { "Largest stable steps" }
             div.figures { @for picture in &pictures { (picture) } }
-            details { summary { "Every limit" } (limits(&stability.limits)) }
+            (limits(&stability.limits))
         }
     })
 }
