@@ -58,7 +58,8 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
         pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
     }
     let head = overview::render(report, counts, &anchors, &|_| true).into_string();
-    let foot = html! { (questions::sections(&report.measured)?) (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
+    let studies = questions::sections(&report.measured)?;
+    let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
     pieces.push(budget::Piece::Fixed(foot));
     pieces[0] = budget::Piece::Fixed(head.clone());
     let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();

@@ -27,7 +27,11 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
                 @for outcome in OUTCOMES.into_iter().filter(|outcome| outcome.severity() != Severity::Green) {
                     @let (symbol, class) = sign(outcome);
                     @if counts.count(outcome) > 0 {
-                        li class=(class) { b { (counts.count(outcome)) } " " span { (symbol) " " (outcome.word()) } (by_solver(report, outcome)) }
+                        li class=(class) {
+                            b { (counts.count(outcome)) } " "
+                            span { (symbol) " " (outcome.word()) }
+                            (by_solver(report, outcome))
+                        }
                     }
                 }
                 @if counts.regression > 0 { li { b { (counts.regression) } " of the passed compare with earlier values only" } }

@@ -224,18 +224,24 @@ fn changes(effects: &Effects) -> Markup {
                 text x="480" y="17" text-anchor="end" fill="#666" { "cost of the effect" }
                 @for tick in scale.ticks().iter().filter(|tick| tick.label.is_some()) {
                     path d=(format!("M{:.1} 26V{bottom}", across(tick.value))) stroke="#ddd" {}
-                    text x=(format!("{:.1}", across(tick.value))) y=(bottom + 20.0) text-anchor="middle" { (tick.label.as_deref().unwrap_or_default()) }
+                    text x=(format!("{:.1}", across(tick.value))) y=(bottom + 20.0) text-anchor="middle" {
+                        (tick.label.as_deref().unwrap_or_default())
+                    }
                 }
                 path d=(format!("M{} {bottom}H{}", FRAME[0], FRAME[1])) stroke="#222" {}
                 @for (at, name) in names.iter().enumerate() {
                     @let (y, entries) = (34.0 + ROW * at as f64, entries_of(name));
                     text x="0" y=(y + 9.0) { (name) }
-                    text x="0" y=(y + 24.0) font-size="12" fill="#666" { "needed in " (needed(&entries).0) " of " (needed(&entries).1) }
+                    text x="0" y=(y + 24.0) font-size="12" fill="#666" {
+                        "needed in " (needed(&entries).0) " of " (needed(&entries).1)
+                    }
                     path d=(marks(&entries, EffectResult::Needed, y)) stroke="#222" stroke-width="2" stroke-opacity=".55" {}
                     path d=(marks(&entries, EffectResult::NotWorthSimulating, y + 8.0)) stroke="#d55e00" stroke-width="2" {}
                     text x="480" y=(y + 13.0) text-anchor="end" { (expense(&entries)) }
                 }
-                text x=(0.5 * (FRAME[0] + FRAME[1])) y=(bottom + 43.0) text-anchor="middle" font-size="15" { "|change| / scale of the answer" }
+                text x=(0.5 * (FRAME[0] + FRAME[1])) y=(bottom + 43.0) text-anchor="middle" font-size="15" {
+                    "|change| / scale of the answer"
+                }
                 }
             }
         }
