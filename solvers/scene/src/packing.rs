@@ -158,7 +158,10 @@ fn made(
         packing.scale = SMALL + (1.0 - SMALL) * f64::from(stage) / f64::from(STAGES);
         packing.list();
         for _ in 0..SWEEPS_PER_STAGE {
-            if packing.visits == 0 || packing.sweep() == 0.0 {
+            if packing.visits == 0 {
+                return None;
+            }
+            if packing.sweep() == 0.0 {
                 break;
             }
         }
