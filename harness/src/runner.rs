@@ -218,8 +218,9 @@ impl Runner {
     /// Returns the reason why an external solver cannot run the wrong physics of a claim.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
         let asked = self.controlled && self.stranger.is_some();
-        let wrong = |run: &Run| match self.run_wrong(claim, run) {
-            Err(error @ RunError::Unsupported { .. }) => Some(error.to_string()),
+        // A panic is no refusal: the control is tried and is broken.
+        let wrong = |run: &Run| match unless_panicked(|| self.run_wrong(claim, run)) {
+            Ok(Err(error @ RunError::Unsupported { .. })) => Some(error.to_string()),
             _ => None,
         };
         if asked { claim.runs.iter().find_map(wrong) } else { None }

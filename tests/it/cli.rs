@@ -205,11 +205,24 @@ fn run_prints_what_it_writes_as_json() {
 }
 
 #[test]
-fn no_command_is_run_with_its_options() {
+fn without_a_command_nothing_runs() {
     let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &["--solver", "dem:no-such"]);
+    let answer = grainbench(directory.path(), &[]);
     assert_eq!(answer.code, Some(2));
-    assert!(answer.err.contains("did you mean `dem`?"), "{}", answer.err);
+    assert!(answer.err.contains("Judge solvers with the cases:\n  run "), "{}", answer.err);
+    assert_eq!(grainbench(directory.path(), &["--solver", "dem"]).code, Some(2));
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+}
+
+/// Old spellings are accepted with a note until the next version.
+#[test]
+fn an_old_spelling_is_reported() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &["run", "squash/plain", "--rungs=dt=0.05", "--fresh", "--no-controls"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    for [old, new] in [["--rungs", "--levels"], ["--fresh", "--no-cache"]] {
+        assert!(answer.err.contains(&format!("`{old}` is now `{new}`")), "{}", answer.err);
+    }
 }
 
 #[test]
