@@ -10,7 +10,6 @@ use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_
 use crate::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns};
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::ExpectedOutcome;
 use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{next_value, spread};
 use grainbench_scene::motion::Moment;
