@@ -6,16 +6,16 @@
 //! ```
 //! # use grainbench_harness::claim::claim;
 //! # use grainbench_harness::control::Control;
-//! # use grainbench_harness::expect::Measured;
+//! # use grainbench_harness::expect::Measurement;
 //! # use grainbench_harness::run::Run;
 //! # use grainbench_harness::source::Source;
 //! # use grainbench_harness::tolerance::computed;
 //! # use grainbench_scene::solver::Resolution;
 //! let fall = claim("speed after 1 s of free fall", "m/s")
-//!     .of(Run::new("plain", "dem", Resolution::TimeStep(1e-3)))
+//!     .run(Run::new("plain", "dem", Resolution::TimeStep(1e-3)))
 //!     .equals(Source::Derived("v = gt"), |done| {
 //!         let exact = done[0].scene.gravity.norm();
-//!         Ok(Measured::new(-done[0].last("grain.vy")?, exact, exact))
+//!         Ok(Measurement::new(-done[0].last("grain.vy")?, exact, exact))
 //!     })
 //!     .within(computed(1000.0 * f64::EPSILON, "every one of 1000 steps rounds by ε"))
 //!     .refuses(Control::scene("gravity a hundredth too large", |scene| scene.gravity *= 1.01));

@@ -187,14 +187,14 @@ fn shells_and_readers_of_manuals_are_served() {
     let here = directory.path();
     for shell in ["bash", "zsh", "fish"] {
         let script = grainbench(here, &["completions", shell]);
-        assert!(script.code == Some(0) && script.out.contains("rerun-failed"), "{shell}");
+        assert!(script.code == Some(0) && script.out.contains("retry-failed"), "{shell}");
     }
     assert_eq!(grainbench(here, &["completions", "sh"]).code, Some(2));
     let page = grainbench(here, &["man"]);
     assert!(page.code == Some(0) && page.out.contains(".TH"), "{}", page.out);
     assert_eq!(grainbench(here, &["man", "--out", "man"]).code, Some(0));
     let run = fs::read_to_string(here.join("man/grainbench-run.1")).unwrap();
-    assert!(run.contains(".TH grainbench-run") && run.contains("rerun"), "{run}");
+    assert!(run.contains(".TH grainbench-run") && run.contains("retry"), "{run}");
 }
 
 /// The shell steps of the GitHub action, as a job runs them.
