@@ -34,6 +34,9 @@ pub(super) struct ClaimEntry {
     /// Resolution of the solver.
     #[serde(default)]
     pub(super) resolution: ResolutionParameters,
+    /// Tier of the claim: `quick`, or `standard` if its run takes more than a few seconds.
+    #[serde(default)]
+    pub(super) tier: Tier,
     /// Expression over columns of the record.
     pub(super) value: String,
     /// Time (s) at which the value is read; the end of the run by default.
@@ -78,6 +81,17 @@ fn dem() -> String {
 pub(super) enum Formula {
     Number(f64),
     Text(String),
+}
+
+/// Tier of a claim.
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Tier {
+    /// `run` judges the claim.
+    #[default]
+    Quick,
+    /// The tests judge the claim, and `run --levels all`.
+    Standard,
 }
 
 /// Parameters of the resolution.

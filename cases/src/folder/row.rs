@@ -1,7 +1,7 @@
 //! Conversion of a claim in a file to a claim of the harness.
 
 use super::claims_file::{
-    ClaimEntry, ControlEntry, CourseFile, DEM, Formula, Place, ResolutionParameters, SampleReduction,
+    ClaimEntry, ControlEntry, CourseFile, DEM, Formula, Place, ResolutionParameters, SampleReduction, Tier,
 };
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
@@ -52,6 +52,7 @@ impl Reader<'_> {
         }
         let resolution = resolution(&claimed.resolution, &claimed.solver, &scene)?;
         let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
+        let run = if matches!(claimed.tier, Tier::Standard) { run.slow() } else { run };
         let course = claimed.follows.as_ref().map(|file| self.course(file, &scene)).transpose()?;
         // The claim covers only the times of the table, and its result states these times.
         let words = match course.as_deref() {
