@@ -43,7 +43,7 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let section = section(&arguments.solver, None)?;
     let section = section.ok_or_else(|| {
         let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
-        let expected = "the path of a manifest (`SOLVER.toml`) or a solver of ours";
+        let expected = "the path of a manifest (`SOLVER.toml`) or a built-in solver";
         Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str))
     })?;
     let mut words = vec!["conform".to_owned()];

@@ -19,7 +19,7 @@ const UNKNOWN: &str = "not told";
 pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {
     let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
-        return Err(Fault::input("--update-stored: expected one program by its manifest, found a solver of ours"));
+        return Err(Fault::input("--update-stored: expected one program by its manifest, found a built-in solver"));
     };
     let is_it =
         |other: Option<&ExternalProgram>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
