@@ -4,6 +4,7 @@
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
 use grainbench::harness::claim::Claim;
+use grainbench::harness::control::Control;
 use grainbench::harness::run::{ExpectedOutcome, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::verdict::Outcome;
@@ -65,5 +66,18 @@ fn refuse(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
         return Ok(());
     }
     let control = runner.control(claim);
-    if control.turned_red { Ok(()) } else { Err(grainbench::reports::line::control(&control).into()) }
+    if !control.turned_red {
+        return Err(grainbench::reports::line::control(&control).into());
+    }
+    // The wrong physics must be the reason for the failure, and not the coarser resolution of the control.
+    if let (Some(resolution), Some(wrong)) = (claim.control.resolution, control.error) {
+        let same = Control::scene("right physics", |_| ()).coarser(resolution);
+        let right = runner.control(&Claim { control: same, ..claim.clone() }).error;
+        if !right.is_some_and(|right| right.abs() < (0.5 * wrong.abs()).max(control.allowed)) {
+            return Err(
+                format!("at {resolution}, right physics is off by {right:?}, wrong physics by {wrong:e}").into()
+            );
+        }
+    }
+    Ok(())
 }

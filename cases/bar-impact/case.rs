@@ -107,7 +107,7 @@ fn claims() -> Vec<Claim> {
                     "what comes ahead of a front that the grid's dispersion has drawn out, when it is due: 2 (−Ai'(0)) δ/2L \
                      (derivation); in units of v",
                 ))
-                .refuses(softer())
+                .refuses(softer().coarser(LEVELS[0].resolution))
                 .fair_to_any_continuum()
                 .drawn(&VELOCITY, level.name),
         );
@@ -122,7 +122,7 @@ fn claims() -> Vec<Claim> {
                     "bars part when half of the drawn-out front has come, before all that the contact owes has been given: \
                      .447 δ/2L (derivation); in units of v",
                 ))
-                .refuses(Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0))
+                .refuses(Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0).coarser(LEVELS[0].resolution))
                 .fair_to_any_continuum(),
         );
     }

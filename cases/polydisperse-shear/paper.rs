@@ -160,11 +160,14 @@ fn on_springs() -> Vec<Claim> {
             .runs([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::new(bands(done)?, slower, slower)))
             .within(judged(0.4, "packings, and contacts of another kind: the prototype's grains deform"))
-            .refuses(Control::scene("grains of three hundredths of the mass", |scene| {
-                for grain in &mut scene.grains {
-                    (grain.mass, grain.inertia) = (0.03 * grain.mass, 0.03 * grain.inertia);
-                }
-            })),
+            .refuses(
+                Control::scene("grains of three hundredths of the mass", |scene| {
+                    for grain in &mut scene.grains {
+                        (grain.mass, grain.inertia) = (0.03 * grain.mass, 0.03 * grain.inertia);
+                    }
+                })
+                .coarser(Resolution::CriticalFraction(0.1)),
+            ),
     ]
 }
 

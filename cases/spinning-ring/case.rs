@@ -111,7 +111,7 @@ fn claims() -> Vec<Claim> {
                 ))
                 .refuses(Control::scene("five per cent denser", |scene| {
                     scene.bodies.iter_mut().for_each(|body| body.density *= 1.05);
-                }))
+                }).coarser(Resolution::grid(2.0, 3)))
         })
         .collect();
     claims.push(

@@ -59,17 +59,26 @@ pub struct Control {
     pub red: FailureMode,
     /// Smallest tier in which a stored run is repeated under this control.
     pub set: Set,
+    /// Resolution of the run with wrong physics, if not that of the claim.
+    pub resolution: Option<Resolution>,
 }
 
 impl Control {
     const fn new(name: &'static str, wrong: WrongPhysics) -> Self {
-        Self { name, wrong, red: FailureMode::Value, set: Set::Main }
+        Self { name, wrong, red: FailureMode::Value, set: Set::Main, resolution: None }
     }
 
     /// Repeats stored runs under this control only in the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
+    }
+
+    /// Runs the wrong physics at a coarser resolution, which costs less. The tolerance of the claim still applies. The
+    /// right physics must pass at this resolution, or have less than half the error of the wrong one.
+    #[must_use]
+    pub fn coarser(self, resolution: Resolution) -> Self {
+        Self { resolution: Some(resolution), ..self }
     }
 
     /// Returns a control that changes the tables read from snapshots, such as swapped stresses or rotated angles.

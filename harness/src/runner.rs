@@ -249,7 +249,8 @@ impl Runner {
     /// When the solver does not support the scene or fails.
     pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<FinishedRun, RunError> {
         let control = Some(&claim.control);
-        let mut by = SolverChoice { solver: run.solver, defect: None, resolution: &run.resolution, control };
+        let resolution = claim.control.resolution.as_ref().unwrap_or(&run.resolution);
+        let mut by = SolverChoice { solver: run.solver, defect: None, resolution, control };
         match &claim.control.wrong {
             _ if run.aside => self.run(run),
             // Only our own side gets the wrong physics.

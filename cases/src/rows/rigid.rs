@@ -338,10 +338,11 @@ pub fn gas_energy(
                   approach velocity after the other, and the second undoes a part of the first. It happens \
                   once in this run: finer steps make it rarer, not smaller",
         ))
-        .refuses(Control::scene("dashpots of a hundredth of critical", |scene| {
+        .refuses(Control::scene("dashpots of a hundredth of critical", move |scene| {
             let law = scene.laws[0].unwrap_or_default();
             let rate = 2e-2 * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
             scene.change_laws(|law| law.normal_damping = rate);
+            scene.duration = Duration::Seconds(0.2 * seconds);
         }))
 }
 

@@ -128,7 +128,10 @@ impl FreeVibration {
 
     /// Claims the force at rest, the frequency, and the frequency over the frequency of rigid discs on springs.
     pub(crate) fn claims(self, case: &Case, set: impl Fn(Run) -> Run) -> Vec<Claim> {
-        let softer = || Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75));
+        let softer = |cells: f64| {
+            Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75))
+                .coarser(Resolution::grid(0.5 * cells, 3))
+        };
         let exact = Source::Derived(self.source);
         let softened = |cells| {
             computed(
@@ -145,7 +148,7 @@ impl FreeVibration {
                     Ok(Measurement::new(self.frequency(&done[0])?, expected, expected))
                 })
                 .within(softened(cells))
-                .refuses(softer())
+                .refuses(softer(cells))
         };
         vec![
             claim("force at the wall of elastic discs, mean after the walls have stopped", "N/m")
@@ -156,7 +159,7 @@ impl FreeVibration {
                     Ok(Measurement::new(found.iter().sum::<f64>() / found.len() as f64, force, force))
                 })
                 .within(estimated(self.allowed, self.because))
-                .refuses(softer()),
+                .refuses(softer(self.cells)),
             rings(set(self.discs(self.cells)), self.cells),
             rings(self.discs(self.fine).long(), self.fine),
             claim("frequency of elastic discs over that of rigid ones on springs with their force at rest", "1")
@@ -170,7 +173,7 @@ impl FreeVibration {
                     Ok(Measurement::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))
                 })
                 .within(softened(self.cells))
-                .refuses(softer()),
+                .refuses(softer(self.cells)),
         ]
     }
 }

@@ -169,7 +169,7 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
                 changed(scene_error(&runner, judged.claim, control.clone()), by_scene[place])
             }
             Mistake::Control(name) if judged.claim.control.name == *name && is_own(judged.claim) => {
-                scene_error(&runner, judged.claim, judged.claim.control.clone())
+                scene_error(&runner, judged.claim, Control { resolution: None, ..judged.claim.control.clone() })
             }
             _ => None,
         };
