@@ -34,6 +34,26 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
     }
 }
 
+/// A driven grain pushes like a body of infinite mass: in nodal contact, eight times the density and moduli have no effect.
+#[test]
+fn the_density_of_a_driven_grain_has_no_effect() {
+    let light = pushed(0.5, 0.5, false);
+    let heavy = light
+        .replace(
+            "contacts.m =",
+            "materials.h = { density = 8.0, bulk_modulus = 80.0, shear_modulus = 48.0 }\ncontacts.m =",
+        )
+        .replace("contacts.m =", "contacts.h = { between = ['m', 'h'], law = 'coulomb', friction = 0.5 }\ncontacts.m =")
+        .replacen("[grains.a]\nmaterial = 'm'", "[grains.a]\nmaterial = 'h'", 1);
+    for name in ["mpm:2000", "mpm:2001"] {
+        let [light, heavy] = [&light, &heavy].map(|text| run(name, text, 8.0, 2));
+        for probe in ["b.vx", "b.vy", "b.omega"] {
+            let [light, heavy] = [&light, &heavy].map(|record| last(record, probe));
+            assert!(light != 0.0 && (heavy / light - 1.0).abs() < 1e-9, "{name}: {probe} {light} and {heavy}");
+        }
+    }
+}
+
 #[test]
 fn the_budget_of_a_push_closes() {
     // Yielding points take the spin of the field around them and lose their own spin energy.
