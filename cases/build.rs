@@ -158,7 +158,7 @@ const KINDS: [&str; 2] = ["literature", "prototype"];
 
 /// Returns the code of a module for each kind. It contains a module for each work, with the work and its values.
 fn sources(references: &Path) -> Result<String, Failure> {
-    let mut code = String::new();
+    let (mut code, mut all) = (String::new(), String::new());
     for kind in KINDS {
         writeln!(code, "/// Works of this kind.\npub mod {kind} {{")?;
         for name in folders_with(&references.join(kind), "provenance.toml")? {
@@ -166,9 +166,11 @@ fn sources(references: &Path) -> Result<String, Failure> {
             let table: toml::Table =
                 fs::read_to_string(&path)?.parse().map_err(|error| format!("{}: {error}", path.display()))?;
             work(&mut code, kind, &name, &table).map_err(|error| format!("{}: {error}", path.display()))?;
+            write!(all, "&{kind}::{}::WORK, ", name.replace('-', "_"))?;
         }
         writeln!(code, "}}")?;
     }
+    writeln!(code, "/// All works.\npub const WORKS: &[&grainbench_harness::source::Work] = &[{all}];")?;
     Ok(code)
 }
 

@@ -60,6 +60,8 @@ pub(super) struct ClaimEntry {
     pub(super) printed: Option<Place>,
     /// Measurement on real grains.
     pub(super) measured: Option<Place>,
+    /// Result of an independent program, which is not the solver.
+    pub(super) prototype: Option<Place>,
     /// Largest error that passes, in units of the scale.
     pub(super) allowed: Formula,
     /// Reason for the tolerance.

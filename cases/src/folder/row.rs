@@ -9,6 +9,7 @@ use super::read::{RecordExpression, follow, interpolated};
 use super::{ClaimError, kept, wrong};
 use crate::registry::read_grains;
 use crate::solvers;
+use crate::sources::WORKS;
 use grainbench_harness::case::PLAIN;
 use grainbench_harness::claim::{Claim, ClaimWithExpectation, Quantity, claim};
 use grainbench_harness::control::Control;
@@ -234,17 +235,19 @@ fn source(claimed: &ClaimEntry) -> Result<Source, ClaimError> {
     let printed = |kind: Kind, place: &Place| {
         in_words("work", &place.work)?;
         in_words("place", &place.place)?;
-        let work = Work { kind, id: "", cited: kept(place.work.clone()) };
-        Ok(Source::Printed(Box::leak(Box::new(work)), kept(place.place.clone())))
+        let known = WORKS.iter().copied().find(|known| known.cited == place.work);
+        let work = known.unwrap_or_else(|| Box::leak(Box::new(Work { kind, id: "", cited: kept(place.work.clone()) })));
+        Ok(Source::Printed(work, kept(place.place.clone())))
     };
-    match (&claimed.derived, &claimed.printed, &claimed.measured) {
-        (Some(words), None, None) => {
+    match (&claimed.derived, &claimed.printed, &claimed.measured, &claimed.prototype) {
+        (Some(words), None, None, None) => {
             in_words("derived", words)?;
             Ok(Source::Derived(kept(words.clone())))
         }
-        (None, Some(place), None) => printed(Kind::Literature, place),
-        (None, None, Some(place)) => printed(Kind::Experiment, place),
-        _ => Err(wrong("derived", "one source: `derived`, `printed` or `measured`", "none or several")),
+        (None, Some(place), None, None) => printed(Kind::Literature, place),
+        (None, None, Some(place), None) => printed(Kind::Experiment, place),
+        (None, None, None, Some(place)) => printed(Kind::Prototype, place),
+        _ => Err(wrong("derived", "one source: `derived`, `printed`, `measured` or `prototype`", "none or several")),
     }
 }
 
