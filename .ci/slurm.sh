@@ -91,16 +91,16 @@ SWEEP
 # The plan has its own small disk, so that the script can fill it.
 mkdir small
 mount -t tmpfs -o size=$((4 + tasks / 200))m tmpfs small
-chunks=12
-"$program" plan sweep.toml --out here >/dev/null
-"$program" plan sweep.toml --out small/plan --chunks $chunks
+shards=12
+"$program" simulate sweep.toml --plan here >/dev/null
+"$program" simulate sweep.toml --plan small/plan --shards $shards
 plan=small/plan
 # Time until the tasks of a killed worker are free (s).
 sed -i 's/^lease_seconds = .*/lease_seconds = 6.0/' $plan/plan.toml
-"$program" work here
-"$program" collect here >/dev/null
+"$program" run --resume here
+"$program" report here >/dev/null
 
-told() { "$program" status $plan --json | python3 -c "import json, sys; print(json.load(sys.stdin)['$1'])"; }
+told() { "$program" report $plan --progress --json | python3 -c "import json, sys; print(json.load(sys.stdin)['$1'])"; }
 wait_for_queue() { while [[ -n "$(squeue --noheader)" ]]; do sleep 0.3; done; }
 wait_for_done() { for _ in $(seq 300); do (($(told done) >= $1)) && return; sleep 0.1; done; }
 # Process ids of the workers, from their leases.
@@ -111,7 +111,7 @@ for path in glob.glob('$plan/running/*.json'):
     except (OSError, ValueError): pass"; }
 
 # Killed workers, a cancelled half, a drained node.
-"$program" work $plan --on slurm -- --time=10
+"$program" run --resume $plan --on slurm -- --time=10
 killed=0
 for _ in $(seq 200); do
     for process in $(workers); do kill -9 "$process" 2>/dev/null && killed=$((killed + 1)); done
@@ -120,7 +120,7 @@ for _ in $(seq 200); do
 done
 ((killed >= 3)) || { echo "Only $killed workers could be killed." >&2; exit 1; }
 job="$(tail -n 1 $plan/slurm/jobs.jsonl | python3 -c "import json, sys; print(json.load(sys.stdin)['job'])")"
-scancel "${job}_[$((chunks / 2 + 1))-$chunks]"
+scancel "${job}_[$((shards / 2 + 1))-$shards]"
 scontrol update NodeName=n2 State=DRAIN Reason=trial
 wait_for_queue
 echo "after $killed kills, half cancelled and a node drained: $(told done) of $tasks"
@@ -128,7 +128,7 @@ echo "after $killed kills, half cancelled and a node drained: $(told done) of $t
 
 # A full disk while two workers run. Then the drained node returns.
 before="$(told done)"
-"$program" work $plan --on slurm --resubmit
+"$program" run --resume $plan --on slurm --resubmit
 wait_for_done $((before + 1))
 dd if=/dev/zero of=small/full bs=4k status=none || true
 wait_for_queue
@@ -140,26 +140,26 @@ rounds=0
 while (($(told done) < tasks)); do
     rounds=$((rounds + 1))
     ((rounds < 6)) || { echo "Not whole after $rounds rounds." >&2; exit 1; }
-    "$program" work $plan --on slurm --resubmit
+    "$program" run --resume $plan --on slurm --resubmit
     wait_for_queue
     echo "after round $rounds: $(told done) of $tasks"
 done
-"$program" work $plan --on slurm --resubmit | grep -qx "nothing is missing that is not queued or somebody's"
+"$program" run --resume $plan --on slurm --resubmit | grep -qx "every missing task is queued or running"
 
 # A controller that does not answer must not count as an empty queue.
 kill "$(cat "$place/run/slurmctld.pid")"
 for _ in $(seq 50); do squeue >/dev/null 2>&1 || break; sleep 0.2; done
 before="$(wc -l <$plan/slurm/jobs.jsonl)"
-"$program" status $plan | grep -q '^queued    not known: squeue failed' ||
+"$program" report $plan --progress | grep -q '^queued    not known: squeue failed' ||
     { echo "A queue that does not answer is taken for empty." >&2; exit 1; }
-if "$program" work $plan --on slurm --resubmit 2>/dev/null || (($(wc -l <$plan/slurm/jobs.jsonl) != before)); then
+if "$program" run --resume $plan --on slurm --resubmit 2>/dev/null || (($(wc -l <$plan/slurm/jobs.jsonl) != before)); then
     echo "Something was submitted though the queue is not known." >&2
     exit 1
 fi
 
 # No task is lost or done twice, and the results are equal.
-"$program" collect $plan --out collected >/dev/null
-[[ "$(told done)" == "$tasks" && "$(told twice)" == 0 ]] || { "$program" status $plan >&2; exit 1; }
+"$program" report $plan --out collected >/dev/null
+[[ "$(told done)" == "$tasks" && "$(told twice)" == 0 ]] || { "$program" report $plan --progress >&2; exit 1; }
 # The last column is a time.
 if ! cmp <(sed 's/,[^,]*$//' here/report/rows.csv) <(sed 's/,[^,]*$//' collected/rows.csv); then
     echo "Rows differ from those of a local run." >&2

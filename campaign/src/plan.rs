@@ -1,7 +1,7 @@
 //! Plans: a directory with the tasks (`tasks.jsonl`) and their origin (`plan.toml`).
 
-use crate::chunk;
 use crate::fault::Fault;
+use crate::shard;
 use crate::task::{self, Task};
 use grainbench_reports::{StagedDir, WriteError, is_scratch};
 use grainbench_scene::text::line_of;
@@ -49,8 +49,9 @@ pub struct Head {
     pub tasks: usize,
     /// Hash of the file of tasks.
     pub hash: String,
-    /// Recommended number of chunks.
-    pub chunks: u32,
+    /// Recommended number of shards.
+    #[serde(alias = "chunks")]
+    pub shards: u32,
     /// Expected time of all tasks on one core (s).
     pub seconds: f64,
     /// True if wall times are measured: then nothing else may run at the same time.
@@ -86,7 +87,7 @@ impl Head {
             kind,
             tasks: 0,
             hash: String::new(),
-            chunks: 1,
+            shards: 1,
             seconds: 0.0,
             timed,
             lease_seconds: LEASE,
@@ -112,6 +113,12 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Returns true if a directory holds a plan.
+    #[must_use]
+    pub fn is_in(path: &Path) -> bool {
+        path.join(HEAD).is_file()
+    }
+
     /// Writes a plan to a directory that is new, empty, or already has a plan.
     ///
     /// Results of an earlier plan in the directory are kept. They count for tasks with equal ids.
@@ -124,8 +131,8 @@ impl Plan {
         head.tasks = tasks.len();
         head.hash = hash(&text);
         head.seconds = tasks.iter().map(|task| task.seconds).sum();
-        if head.chunks == 0 {
-            head.chunks = chunk::count(&tasks);
+        if head.shards == 0 {
+            head.shards = shard::count(&tasks);
         }
         let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
         // The head is moved first: a directory with a head takes a new plan after a kill between the two moves.
@@ -161,19 +168,23 @@ impl Plan {
     pub fn head(path: &Path) -> Result<Head, Fault> {
         let file = path.join(HEAD);
         if !file.is_file() {
-            return Err(Fault::in_file(path, "a directory that `grainbench plan` left", format!("no {HEAD} in it")));
+            return Err(Fault::in_file(
+                path,
+                "a directory with a plan, which `--plan DIR` writes",
+                format!("no {HEAD} in it"),
+            ));
         }
         let text = text_of(&file)?;
         let head: Head = toml::from_str(&text).map_err(|error| {
             let place = format!("{}:{}", file.display(), line_of(&text, &error).unwrap_or(1));
-            Fault::expected(place, "a plan as `grainbench plan` leaves it", error.message().replace('\n', ", "))
+            Fault::expected(place, "a plan as `--plan DIR` writes it", error.message().replace('\n', ", "))
         })?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
         if head.format != FORMAT {
             return wrong("format = 1", head.format.to_string());
         }
-        if !(1..=chunk::MOST).contains(&head.chunks) {
-            return wrong("`chunks` from 1 to a million", head.chunks.to_string());
+        if !(1..=shard::MOST).contains(&head.shards) {
+            return wrong("`shards` from 1 to a million", head.shards.to_string());
         }
         if !(head.lease_seconds.is_finite() && head.lease_seconds > 0.0) {
             return wrong("`lease_seconds` above zero", head.lease_seconds.to_string());

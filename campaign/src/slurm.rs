@@ -1,13 +1,13 @@
-//! Slurm: a job array over the chunks of a plan that have unfinished tasks.
+//! Slurm: a job array over the shards of a plan that have unfinished tasks.
 //!
 //! Slurm only starts workers. A task is finished when it has a result; accounting data are not used. If `squeue` does
 //! not answer, the state of the queue is unknown, not empty.
 
-use crate::chunk::{self, MOST};
 use crate::fault::Fault;
 use crate::finished::FinishedTasks;
 use crate::lease;
 use crate::plan::Plan;
+use crate::shard::{self, MOST};
 use grainbench_reports::{WriteError, write_file};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,9 +28,10 @@ const OURS: [&str; 4] = ["--array", "-a", "--wrap", "--output"];
 pub struct Job {
     /// Job number of the array.
     pub job: u64,
-    /// Number of chunks of the plan in this submission.
-    pub chunks: u32,
-    /// Submitted chunk numbers, as ranges.
+    /// Number of shards of the plan in this submission.
+    #[serde(alias = "chunks")]
+    pub shards: u32,
+    /// Submitted shard numbers, as ranges.
     pub indexes: String,
 }
 
@@ -39,13 +40,13 @@ pub struct Job {
 pub struct SubmitRequest<'a> {
     /// Path of the program on the nodes.
     pub program: &'a Path,
-    /// True to submit the remaining chunks of a plan that was submitted before.
+    /// True to submit the remaining shards of a plan that was submitted before.
     pub again: bool,
     /// Options for `sbatch`.
     pub options: &'a [String],
 }
 
-/// Submits the chunks with unfinished tasks; returns `None` if there are none.
+/// Submits the shards with unfinished tasks; returns `None` if there are none.
 ///
 /// # Errors
 /// When Slurm does not answer or rejects the job, or when an option would change the job array. A plan that was
@@ -54,7 +55,7 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected(
             "options for sbatch",
-            "none that says which chunks there are",
+            "none that says which shards there are",
             format!("`{option}`"),
         ));
     }
@@ -65,9 +66,9 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
         return Err(Fault::in_file(&plan.path, "a plan that was not submitted, or `--resubmit`", found));
     }
     let most = most_in_array()?;
-    let chunks = before.last().map_or(plan.head.chunks.min(most), |job| job.chunks);
+    let shards = before.last().map_or(plan.head.shards.min(most), |job| job.shards);
     let queued = queued()?;
-    let open = left(plan, chunks, &before, &queued)?;
+    let open = left(plan, shards, &before, &queued)?;
     if open.is_empty() {
         return Ok(None);
     }
@@ -75,7 +76,7 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
     let indexes = ranges(&open);
     let script = folder.join(format!("submit-{}.sh", before.len() + 1));
-    write_file(&script, text(plan, asked.program, chunks, &indexes))?;
+    write_file(&script, text(plan, asked.program, shards, &indexes))?;
     let mut command = Command::new("sbatch");
     let output = fs::canonicalize(&folder).unwrap_or(folder.clone()).join("%A_%a.out");
     command.arg("--parsable").arg(format!("--output={}", output.display())).args(asked.options).arg(&script);
@@ -84,7 +85,7 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     let number = answer.trim().split(';').next().and_then(|number| number.parse().ok());
     let job = number
         .ok_or_else(|| Fault::Batch(format!("sbatch: expected the number of a job, found `{}`", answer.trim())))?;
-    let job = Job { job, chunks, indexes };
+    let job = Job { job, shards, indexes };
     let path = folder.join(JOBS);
     let line = serde_json::to_string(&job).map_err(|error| Fault::Input(error.to_string()))? + "\n";
     let added =
@@ -106,7 +107,7 @@ pub fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
     };
     let read = |(at, line): (usize, &str)| {
         let job: Result<Job, _> = serde_json::from_str(line);
-        job.ok().filter(|job| (1..=MOST).contains(&job.chunks)).ok_or_else(|| {
+        job.ok().filter(|job| (1..=MOST).contains(&job.shards)).ok_or_else(|| {
             Fault::expected(
                 format!("{}:{}", path.display(), at + 1),
                 "a submission as this program leaves it",
@@ -130,12 +131,12 @@ pub fn in_queue(plan: &Path) -> Result<usize, Fault> {
     Ok(jobs.iter().filter_map(|job| queued.get(&job.job)).map(BTreeSet::len).sum())
 }
 
-/// Returns the numbers of the chunks that are not queued and have a task that is neither finished nor leased.
-fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<u32>>) -> Result<Vec<u32>, Fault> {
+/// Returns the numbers of the shards that are not queued and have a task that is neither finished nor leased.
+fn left(plan: &Plan, shards: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<u32>>) -> Result<Vec<u32>, Fault> {
     let finished = FinishedTasks::read(&plan.path, false)?;
     let is_queued = |index: u32| {
         jobs.iter()
-            .any(|job| job.chunks == chunks && queued.get(&job.job).is_some_and(|of_job| of_job.contains(&index)))
+            .any(|job| job.shards == shards && queued.get(&job.job).is_some_and(|of_job| of_job.contains(&index)))
     };
     // A worker whose job is not in the queue has ended, although its lease may not have expired yet.
     let is_there = |name: &str| {
@@ -145,7 +146,7 @@ fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<
     let mut held = lease::held(&plan.path, plan.head.lease_seconds)?;
     held.retain(|holder| holder.job.as_deref().is_none_or(is_there));
     let mut open = Vec::new();
-    for (index, range) in (1..).zip(chunk::all(&plan.tasks, chunks)) {
+    for (index, range) in (1..).zip(shard::all(&plan.tasks, shards)) {
         let is_open = |place: usize| {
             !finished.entries.contains_key(&plan.tasks[place].id) && !held.iter().any(|holder| holder.has(place))
         };
@@ -157,7 +158,7 @@ fn left(plan: &Plan, chunks: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<
 }
 
 /// Returns the script of a job array.
-fn text(plan: &Plan, program: &Path, chunks: u32, indexes: &str) -> String {
+fn text(plan: &Plan, program: &Path, shards: u32, indexes: &str) -> String {
     let place = fs::canonicalize(&plan.path).unwrap_or_else(|_| plan.path.clone());
     let name = place.file_name().map_or_else(|| "plan".to_owned(), |name| name.to_string_lossy().into_owned());
     // Options in a script end at a space.
@@ -169,7 +170,7 @@ fn text(plan: &Plan, program: &Path, chunks: u32, indexes: &str) -> String {
         if plan.head.timed { ("#SBATCH --exclusive\n", "1") } else { ("", "\"${SLURM_CPUS_PER_TASK:-1}\"") };
     format!(
         "#!/bin/sh\n#SBATCH --job-name=grainbench-{name}\n#SBATCH --array={indexes}\n#SBATCH --ntasks=1\n{alone}\
-         exec {program} work {plan_path} --chunk \"$SLURM_ARRAY_TASK_ID/{chunks}\" --jobs {jobs}\n"
+         exec {program} run --resume {plan_path} --shard \"$SLURM_ARRAY_TASK_ID/{shards}\" --jobs {jobs}\n"
     )
 }
 

@@ -112,7 +112,7 @@ pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     for (at, line) in text.lines().enumerate() {
         let task: Task = serde_json::from_str(line).map_err(|error| {
             let found = tamed(&error.to_string(), |_| false);
-            Fault::expected(format!("{}:{}", path.display(), at + 1), "a task as `grainbench plan` leaves it", found)
+            Fault::expected(format!("{}:{}", path.display(), at + 1), "a task as `--plan DIR` writes it", found)
         })?;
         if !(task.seconds.is_finite() && task.seconds >= 0.0) {
             let place = format!("{}:{}", path.display(), at + 1);

@@ -1,12 +1,12 @@
-//! Worker: runs the tasks of a chunk that are neither finished nor leased, until the whole chunk is finished.
+//! Worker: runs the tasks of a shard that are neither finished nor leased, until the whole shard is finished.
 
-use crate::chunk::{self, Chunk};
 use crate::fault::Fault;
 use crate::finished::FinishedTasks;
 use crate::lease::{Lease, LeaseContents};
 use crate::log::{Line, Log, State, Worker};
 use crate::machine;
 use crate::plan::{Plan, RESULTS};
+use crate::shard::{self, Shard};
 use crate::task::{Id, Task};
 use grainbench_reports::WriteError;
 use serde::Serialize;
@@ -26,8 +26,8 @@ const SHARE: u32 = 20;
 /// Request for a worker.
 #[derive(Clone, Debug)]
 pub struct WorkRequest {
-    /// Chunk to run.
-    pub chunk: Chunk,
+    /// Shard to run.
+    pub shard: Shard,
     /// True to repeat failed tasks.
     pub again: bool,
 }
@@ -52,10 +52,10 @@ pub trait Watch: Send + Sync {
 
 impl Watch for () {}
 
-/// Outcome of a chunk.
+/// Outcome of a shard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Number of tasks in the chunk.
+    /// Number of tasks in the shard.
     pub tasks: usize,
     /// Number of tasks that were finished before.
     pub before: usize,
@@ -139,7 +139,7 @@ fn quoted(words: &str) -> String {
 /// Function that runs tasks and writes their results to the sink.
 pub type TaskFunction<'a> = &'a dyn Fn(&[&Task], &Arc<ResultSink>) -> Result<(), Fault>;
 
-/// Runs a chunk of a plan; `does` runs the tasks.
+/// Runs a shard of a plan; `does` runs the tasks.
 ///
 /// # Errors
 /// When the disk rejects a write; results written before are kept.
@@ -150,7 +150,7 @@ pub fn work(
     watch: Arc<dyn Watch>,
     does: TaskFunction<'_>,
 ) -> Result<Summary, Fault> {
-    let range = chunk::task_range(&plan.tasks, asked.chunk);
+    let range = shard::task_range(&plan.tasks, asked.shard);
     let seconds = plan.head.lease_seconds;
     let contents = LeaseContents {
         worker: worker.name.clone(),

@@ -1,5 +1,7 @@
 //! `grainbench cost`: measures error against computing time.
 
+use super::campaign;
+use super::campaign::plan::{PlanOptions, plan};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::keep::keep_study;
 use super::progress::Progress;
@@ -41,7 +43,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_cache: bool,
     /// Compare with an earlier `results.json`: counts exactly, times within their spread.
-    #[arg(long, value_name = "OLD.json")]
+    #[arg(long, value_name = "OLD.json", conflicts_with = "plan")]
     against: Option<PathBuf>,
     /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
@@ -52,6 +54,11 @@ pub(crate) struct Arguments {
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
+    /// Measure only errors and counts in a plan; without timing, tasks can share a machine.
+    #[arg(long, requires = "plan", conflicts_with = "prices")]
+    counts: bool,
+    #[command(flatten)]
+    plan: PlanOptions,
 }
 
 /// Rounds of the measurement of a step.
@@ -59,6 +66,11 @@ pub(crate) const ROUNDS: u32 = 5;
 
 /// Measures the points and writes the report. The report is updated after each target quantity.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
+    if let Some(planned) = arguments.plan.arguments("cost", &arguments.cases, &arguments.solver) {
+        let levels = if arguments.levels == "all" { vec![arguments.levels.clone()] } else { Vec::new() };
+        let &Arguments { prices, counts, json, .. } = arguments;
+        return plan(&campaign::plan::Arguments { levels, prices, counts, json, ..planned });
+    }
     let subjects = subjects(&arguments.cases)?;
     let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;

@@ -80,13 +80,17 @@ enum Command {
     Stability(stability::Arguments),
     /// Measure the influence of each physical effect by switching it off or compiling it in.
     Effects(effects::Arguments),
-    /// Write a plan of many runs: claims, costs, stability limits, or a parameter sweep.
+    /// Old spelling of `--plan DIR`.
+    #[command(hide = true)]
     Plan(campaign::plan::Arguments),
-    /// Do the unfinished tasks of a plan, here or with a batch system.
+    /// Old spelling of `run --resume DIR`.
+    #[command(hide = true)]
     Work(campaign::work::Arguments),
-    /// Show the progress of a plan.
+    /// Old spelling of `report DIR --progress`.
+    #[command(hide = true)]
     Status(campaign::status::Arguments),
-    /// Make the report of a plan.
+    /// Old spelling of `report DIR`.
+    #[command(hide = true)]
     Collect(campaign::collect::Arguments),
     /// Measure throughput beside LAMMPS and LIGGGHTS: particle steps per second of processor time.
     Race(race::Arguments),
@@ -99,7 +103,7 @@ enum Command {
     Scene(scene::Arguments),
     /// Print the JSON schema of scene files or of resolved scenes.
     Schema(schema::Arguments),
-    /// Make the page and figures of a stored report or simulation, without running a solver.
+    /// Make the page and figures of a stored report, simulation or plan, without running a solver.
     Report(report::Arguments),
     /// Print the completion script of a shell.
     #[command(hide = true)]
@@ -115,7 +119,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Judge output of other programs", &["check", "compare", "deck", "fields"]),
     ("Simulate", &["simulate", "scene", "schema", "report"]),
     ("Cost, stability, effects", &["cost", "stability", "effects", "race"]),
-    ("Long work and stored runs", &["plan", "work", "status", "collect", "reference"]),
+    ("Stored runs", &["reference"]),
 ];
 
 /// Returns the command line, whose help lists the commands by task.
@@ -149,7 +153,7 @@ pub(crate) fn main() -> ExitCode {
     }
     let done = match cli.command {
         Command::List(arguments) => list::list(&arguments),
-        Command::Run(arguments) => run::run(&arguments.cases, &arguments.options),
+        Command::Run(arguments) => run::command(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Deck(arguments) => deck::deck(&arguments),
         Command::Check(arguments) => check::check(&arguments),
@@ -158,10 +162,22 @@ pub(crate) fn main() -> ExitCode {
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Stability(arguments) => stability::stability(&arguments),
         Command::Effects(arguments) => effects::effects(&arguments),
-        Command::Plan(arguments) => campaign::plan::plan(&arguments),
-        Command::Work(arguments) => campaign::work::work(&arguments),
-        Command::Status(arguments) => campaign::status::status(&arguments),
-        Command::Collect(arguments) => campaign::collect::collect(&arguments),
+        Command::Plan(arguments) => {
+            spelling::say_command("plan", "run|cost|stability … --plan DIR` or `simulate SWEEP.toml --plan DIR");
+            campaign::plan::plan(&arguments)
+        }
+        Command::Work(arguments) => {
+            spelling::say_command("work", "run --resume DIR");
+            campaign::work::old(&arguments)
+        }
+        Command::Status(arguments) => {
+            spelling::say_command("status", "report DIR --progress");
+            campaign::status::status(&arguments.plan, arguments.json)
+        }
+        Command::Collect(arguments) => {
+            spelling::say_command("collect", "report DIR");
+            campaign::collect::collect(&arguments.plan, &arguments.options)
+        }
         Command::Race(arguments) => race::race(&arguments),
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),

@@ -1,11 +1,14 @@
 //! `grainbench report`: writes a page from stored results.
 
+use super::campaign::collect::{CollectOptions, collect};
+use super::campaign::status::status;
 use super::cost;
 use super::effects;
 use super::exit::{Fault, Outcome, RED, print};
 use super::run;
 use super::stability;
 use super::value::{positive, whole};
+use grainbench::campaign::plan::Plan;
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
@@ -20,8 +23,13 @@ use std::process::ExitCode;
 /// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`.
+    /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`, or directory of a plan.
     dir: PathBuf,
+    /// Show the finished, running and failed tasks of a plan instead.
+    #[arg(long)]
+    progress: bool,
+    #[command(flatten)]
+    collect: CollectOptions,
     /// Another directory written by `simulate`, shown beside the first one at equal times; repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
@@ -59,8 +67,22 @@ fn window(text: &str) -> Result<(f64, f64), String> {
     if from <= to { Ok((from, to)) } else { Err(format!("expected a time and a later one, found `{text}`")) }
 }
 
-/// Reads a directory and writes page, figures and result files again. The exit code is that of the run.
+/// Reads a directory and writes page, figures and result files again. The exit code is that of the run. For a plan, makes the
+/// report of the finished tasks.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
+    if Plan::is_in(&arguments.dir) {
+        return if arguments.progress {
+            status(&arguments.dir, arguments.collect.json)
+        } else {
+            collect(&arguments.dir, &arguments.collect)
+        };
+    }
+    if let Some(option) = arguments.collect.given().or_else(|| arguments.progress.then_some("--progress")) {
+        let there = arguments.dir.display();
+        return Err(Fault::input(format!(
+            "{option}: expected the directory of a plan, found {there}, which has no plan"
+        )));
+    }
     let page = format!("{}\n", arguments.dir.join("index.html").display());
     for dir in std::iter::once(&arguments.dir).chain(&arguments.beside) {
         refuse_mixed(dir).map_err(Fault::input)?;

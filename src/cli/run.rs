@@ -1,6 +1,9 @@
 //! `grainbench run`: evaluates the claims of cases and writes the report.
 
 use super::cache;
+use super::campaign;
+use super::campaign::plan::PlanOptions;
+use super::campaign::work::WorkOptions;
 use super::conform;
 use super::cores::{MOST_THREADS, at_once, share};
 use super::earlier::EarlierReport;
@@ -49,9 +52,20 @@ pub(crate) struct Arguments {
     pub(crate) cases: Vec<String>,
     #[command(flatten)]
     pub(crate) options: Options,
+    #[command(flatten)]
+    plan: PlanOptions,
+    /// Do the unfinished tasks of a plan.
+    #[arg(
+        long,
+        value_name = "DIR",
+        conflicts_with_all = ["plan", "cases", "solver", "levels", "filter", "live", "no_controls", "json", "out", "no_cache"]
+    )]
+    resume: Option<PathBuf>,
+    #[command(flatten)]
+    work: WorkOptions,
 }
 
-/// Options of a run, which are those of the bare command too.
+/// Options of a run.
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Select the claims of this solver; repeatable. A manifest runs the solver-independent claims with this program.
@@ -64,11 +78,12 @@ pub(crate) struct Options {
     /// by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
-    /// Repeat only the failed claims and controls of the report in `--out`, and what an interrupted run left out.
-    #[arg(long, conflicts_with = "update_stored")]
+    /// Repeat only the failed claims and controls of the report in `--out`, and what an interrupted run left out; with
+    /// `--resume`, the failed tasks of the plan.
+    #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
     retry_failed: bool,
     /// Print the rows and controls whose outcome differs from this earlier report.
-    #[arg(long, value_name = "DIR|results.json")]
+    #[arg(long, value_name = "DIR|results.json", conflicts_with_all = ["plan", "resume"])]
     against: Option<PathBuf>,
     /// Directory for the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
@@ -77,17 +92,17 @@ pub(crate) struct Options {
     #[arg(long)]
     json: bool,
     /// Write `rows.parquet` in addition to `rows.csv`.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["plan", "resume"])]
     parquet: bool,
     /// Run `lammps` and `liggghts` even if a stored run exists.
     #[arg(long)]
     pub(crate) live: bool,
     /// Directory with your copy of third-party data, as for `reference import`; without it the claims that need the data are
     /// `not-available`.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "resume"])]
     pub(crate) data: Option<PathBuf>,
     /// Treat amber results as red, including programs that are not installed.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["plan", "resume"])]
     pub(crate) strict: bool,
     /// Ignore the cache of finished runs.
     #[arg(long)]
@@ -99,24 +114,50 @@ pub(crate) struct Options {
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     update_stored: bool,
     /// Expect the outcomes stored next to the manifest: only a different outcome is red.
-    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored"])]
+    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored", "plan"])]
     expect_stored: bool,
     /// Threads of each run; the results have the same bits for any number.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        value_parser = whole(1, MOST_THREADS),
+        conflicts_with_all = ["plan", "resume"]
+    )]
     threads: u16,
-    /// Number of simultaneous runs; as many as the cores allow by default.
-    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
+    /// Number of simultaneous runs or tasks; as many as the cores allow by default, and one if a plan measures times.
+    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with_all = ["plan", "on"])]
     jobs: Option<u16>,
     /// Print only the counts and the failed rows.
-    #[arg(short, long, conflicts_with = "verbose")]
+    #[arg(short, long, conflicts_with_all = ["verbose", "plan", "resume"])]
     quiet: bool,
     /// Print each row to standard error as soon as it is judged.
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with_all = ["plan", "resume"])]
     verbose: bool,
 }
 
+/// Runs the cases, plans their runs, or does the tasks of a plan.
+pub(crate) fn command(arguments: &Arguments) -> Outcome {
+    let Arguments { cases, options, plan, resume, work } = arguments;
+    if let Some(plan) = resume {
+        return campaign::work::work(plan, work, options.jobs, options.retry_failed);
+    }
+    work.refuse_without_plan()?;
+    match plan.arguments("run", cases, &options.solver) {
+        Some(planned) => campaign::plan::plan(&campaign::plan::Arguments {
+            levels: options.levels.clone(),
+            filter: options.filter.clone(),
+            no_controls: options.no_controls,
+            live: options.live,
+            json: options.json,
+            ..planned
+        }),
+        None => run(cases, options),
+    }
+}
+
 /// Runs the named cases; all cases if none is named.
-pub(crate) fn run(cases: &[String], options: &Options) -> Outcome {
+fn run(cases: &[String], options: &Options) -> Outcome {
     let filters = Filters::read(&options.filter)?;
     // Without names, the cases of the earlier run are repeated.
     let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };

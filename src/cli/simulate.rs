@@ -1,5 +1,8 @@
 //! `grainbench simulate`: simulates one scene with one solver and writes its record.
 
+use super::campaign;
+use super::campaign::collect::{CollectOptions, collect};
+use super::campaign::work::WorkOptions;
 use super::checkpoint::{self, Store};
 use super::cores::{MOST_THREADS, cores};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
@@ -8,6 +11,8 @@ use super::progress::Progress;
 use super::solver;
 use super::step::Step;
 use super::value::{path_and_value, positive, whole};
+use grainbench::campaign::shard;
+use grainbench::campaign::sweep::Sweep;
 use grainbench::cases::registry::read_grains;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{SnapshotStore, StagedDir, number, write_file};
@@ -27,11 +32,11 @@ use std::process::ExitCode;
 /// Arguments of the command.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Scene file.
-    #[arg(value_name = "SCENE.toml")]
+    /// Scene file, or file of a sweep over parameters, which names its solvers.
+    #[arg(value_name = "SCENE.toml|SWEEP.toml")]
     scene: PathBuf,
     /// Name of a solver, or manifest of an external solver.
-    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    #[arg(long, value_name = "NAME|SOLVER.toml", default_value = "", hide_default_value = true)]
     solver: String,
     /// Variant of the scene.
     #[arg(long)]
@@ -90,9 +95,15 @@ pub(crate) struct Arguments {
     /// if the scene requests snapshots in addition to the first and the last, else none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
     write: Option<Vec<SnapshotOption>>,
-    /// Print provenance, cost and the final state as JSON.
+    /// Print provenance, cost and the final state as JSON; for a sweep, the results.
     #[arg(long)]
     json: bool,
+    /// Write the plan of a sweep to this directory instead of doing the work; `run --resume DIR` does it.
+    #[arg(long, value_name = "DIR", conflicts_with = "out")]
+    plan: Option<PathBuf>,
+    /// Number of shards of the plan; by default each shard lasts about a minute.
+    #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
+    shards: Option<u32>,
 }
 
 impl Arguments {
@@ -156,6 +167,12 @@ const MOST_OVERRIDES: usize = 1000;
 
 /// Simulates a scene and writes its record.
 pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
+    if arguments.plan.is_some() || Sweep::is_in(&arguments.scene) {
+        return sweep(arguments);
+    }
+    if arguments.solver.is_empty() {
+        return Err(Fault::input("--solver: expected a solver, such as `dem`, found none"));
+    }
     let mut source = SceneSource::read(&arguments.scene)?;
     if let Some(variant) = &arguments.variant {
         source = source.variant(variant);
@@ -241,6 +258,36 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         print(&footer(&record, &snapshots, &formats, arguments))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Plans a sweep. Without `--plan`, the plan is in `--out`, and its tasks are done and collected at once.
+fn sweep(arguments: &Arguments) -> Outcome {
+    let given = [
+        ("--solver", !arguments.solver.is_empty()),
+        ("--variant", arguments.variant.is_some()),
+        ("--set", !arguments.set.is_empty()),
+        ("--threads", arguments.threads.is_some()),
+        ("--write", arguments.write.is_some()),
+        ("--checkpoint", arguments.checkpoint.is_some()),
+        ("--restart", arguments.restart.is_some()),
+        ("--state", arguments.state.is_some()),
+        ("--allow-unstable", arguments.allow_unstable),
+    ];
+    if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        return Err(Fault::input(format!("{name}: expected none with a sweep, found one")));
+    }
+    [Method::Dem, Method::Grid].into_iter().try_for_each(|method| arguments.refuse_others(method))?;
+    let out = arguments.plan.as_ref().unwrap_or(&arguments.out).clone();
+    let what = arguments.scene.display().to_string();
+    let &Arguments { shards, json, .. } = arguments;
+    let planned =
+        campaign::plan::Arguments { what, shards, out: out.clone(), json, ..campaign::plan::Arguments::default() };
+    if arguments.plan.is_some() {
+        return campaign::plan::plan(&planned);
+    }
+    campaign::plan::write(&planned)?;
+    campaign::work::work(&out, &WorkOptions { quiet: json, ..WorkOptions::default() }, None, false)?;
+    collect(&out, &CollectOptions { json: arguments.json, ..CollectOptions::default() })
 }
 
 /// Returns the error of a run. The output of a crashed or interrupted run is written nevertheless.

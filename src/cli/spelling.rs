@@ -1,14 +1,16 @@
-//! Old spellings of options. They are accepted until the next version, with a note.
+//! Old spellings of options and commands. They are accepted until the next version, with a note.
 
 use super::exit;
 use std::ffi::OsString;
 
 /// Old and present spelling of each renamed option.
-const RENAMED: [(&str, &str); 9] = [
+const RENAMED: [(&str, &str); 11] = [
     ("--again", "--retry-failed"),
     ("--allow-missing", "--partial"),
     ("--anew", "--no-cache"),
     ("--as-kept", "--expect-stored"),
+    ("--chunk", "--shard"),
+    ("--chunks", "--shards"),
     ("--dt", "--time-step"),
     ("--fresh", "--no-cache"),
     ("--keep", "--update-stored"),
@@ -32,6 +34,15 @@ pub(super) fn present(arguments: impl Iterator<Item = OsString>) -> Vec<OsString
 fn renamed(argument: &str) -> Option<String> {
     let (option, value) = argument.split_at(argument.find('=').unwrap_or(argument.len()));
     let (old, new) = RENAMED.iter().find(|(old, _)| *old == option)?;
-    exit::say("note", &format!("`{old}` is now `{new}`; the next version will not accept the old spelling"));
+    say(old, new);
     Some(format!("{new}{value}"))
+}
+
+/// Prints a note for an old command.
+pub(super) fn say_command(old: &str, new: &str) {
+    say(old, &format!("grainbench {new}"));
+}
+
+fn say(old: &str, new: &str) {
+    exit::say("note", &format!("`{old}` is now `{new}`; the next version will not accept the old spelling"));
 }

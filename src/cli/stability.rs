@@ -1,5 +1,7 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
+use super::campaign;
+use super::campaign::plan::{PlanOptions, plan};
 use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::keep::keep_study;
@@ -49,6 +51,8 @@ pub(crate) struct Arguments {
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    plan: PlanOptions,
 }
 
 /// Work item: a limit or a hard case with its solver.
@@ -60,6 +64,9 @@ pub(crate) enum WorkItem<'a> {
 
 /// Finds the limits, runs the hard cases and writes the report. The report is updated from time to time.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
+    if let Some(planned) = arguments.plan.arguments("stability", &arguments.cases, &arguments.solver) {
+        return plan(&campaign::plan::Arguments { json: arguments.json, ..planned });
+    }
     let assemblies = assembly::all()?;
     let hard = hard::all();
     let (solvers, named) = NamedSolvers::read(&arguments.solver)?;

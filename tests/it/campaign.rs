@@ -47,7 +47,7 @@ fn ok(answer: &Answer) -> &Answer {
 fn planned() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
-    ok(&grainbench(directory.path(), &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(directory.path(), &["simulate", "sweep.toml", "--plan", "p"]));
     directory
 }
 
@@ -68,7 +68,7 @@ fn json(file: &Path) -> Value {
 
 /// Returns the output of `status` as JSON.
 fn status(directory: &Path, plan: &str) -> Value {
-    serde_json::from_str(&ok(&grainbench(directory, &["status", plan, "--json"])).out).unwrap()
+    serde_json::from_str(&ok(&grainbench(directory, &["report", plan, "--progress", "--json"])).out).unwrap()
 }
 
 /// Returns the ids of all lines of all results.
@@ -110,17 +110,17 @@ fn without_times(mut value: Value) -> Value {
 fn a_collected_plan_is_the_report_of_its_command() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    for (command, chunks, file) in [
+    for (command, shards, file) in [
         (&["run", "squash", "collision"][..], 3, "report.json"),
         (&["stability", "two-discs", "mass-ratio-1e6", "--solver=dem", "--solver=mpm"], 2, "study.json"),
         (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
     ] {
         let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
-        ok(&grainbench(here, &[&["plan"], command, &["--out", "p"]].concat()));
-        for chunk in 1..=chunks {
-            ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/{chunks}")]));
+        ok(&grainbench(here, &[command, &["--plan", "p"]].concat()));
+        for shard in 1..=shards {
+            ok(&grainbench(here, &["run", "--resume", "p", "--shard", &format!("{shard}/{shards}")]));
         }
-        let collected = grainbench(here, &["collect", "p", "--out", "collected"]);
+        let collected = grainbench(here, &["report", "p", "--out", "collected"]);
         assert_eq!(collected.code, direct.code, "{}", collected.err);
         let [direct, collected] = ["direct", "collected"].map(|out| without_times(json(&here.join(out).join(file))));
         assert_eq!(collected, direct, "{command:?}");
@@ -130,17 +130,46 @@ fn a_collected_plan_is_the_report_of_its_command() {
     }
 }
 
+/// A sweep without a plan does the same, and the old commands still work, with a note.
+#[test]
+fn a_sweep_at_once_is_its_plan() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    fs::write(here.join("sweep.toml"), SWEEP).unwrap();
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--out", "once"]));
+    for (old, arguments) in [
+        ("plan", &["sweep.toml", "--out", "old", "--chunks", "2"][..]),
+        ("work", &["old", "--chunk", "1/1"]),
+        ("status", &["old"]),
+        ("collect", &["old"]),
+    ] {
+        let answer = grainbench(here, &[&[old], arguments].concat());
+        assert!(ok(&answer).err.contains(&format!("note: `{old}` is now `grainbench ")), "{}", answer.err);
+    }
+    let [once, old] = ["once", "old"].map(|plan| rows(&here.join(plan).join("report/rows.csv")));
+    assert_eq!(once, old);
+    let both = grainbench(here, &["simulate", "sweep.toml", "--solver", "dem"]);
+    assert!(both.code == Some(2) && both.err.contains("--solver: expected none with a sweep"), "{}", both.err);
+    for (arguments, message) in [
+        (&["run", "--shard", "1/2"][..], "--shard: expected `--resume DIR` beside it"),
+        (&["report", ".", "--progress"], "--progress: expected the directory of a plan"),
+        (&["run", "squash", "--resume", "once"], "cannot be used with"),
+        (&["simulate", "sweep.toml", "--plan", "p", "--out", "q"], "cannot be used with"),
+    ] {
+        let answer = grainbench(here, arguments);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{arguments:?}: {}", answer.err);
+    }
+}
+
 #[test]
 fn counts_want_no_times_and_are_those_of_the_command() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     let plan =
-        ok(&grainbench(here, &["plan", "cost", "collision", "--solver=dem", "--counts", "--json", "--out", "p"]))
-            .out
-            .clone();
+        ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--counts", "--json", "--plan", "p"])).out.clone();
     assert_eq!(serde_json::from_str::<Value>(&plan).unwrap()["timed"], false);
-    ok(&grainbench(here, &["work", "p", "--jobs", "2"]));
-    ok(&grainbench(here, &["collect", "p", "--out", "collected"]));
+    ok(&grainbench(here, &["run", "--resume", "p", "--jobs", "2"]));
+    ok(&grainbench(here, &["report", "p", "--out", "collected"]));
     ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--out", "direct"]));
     let counts = |out: &str| -> Vec<Value> {
         let points = json(&here.join(out).join("results.json"))["points"].as_array().unwrap().clone();
@@ -151,24 +180,28 @@ fn counts_want_no_times_and_are_those_of_the_command() {
 }
 
 #[test]
-fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
+fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
     let directory = planned();
     let here = directory.path();
-    let chunks: usize = (1..=4)
-        .map(|chunk| {
-            let words = ok(&grainbench(here, &["work", "p", "--chunk", &format!("{chunk}/4"), "-j", "2"])).out.clone();
+    let shards: usize = (1..=4)
+        .map(|shard| {
+            let words = ok(&grainbench(here, &["run", "--resume", "p", "--shard", &format!("{shard}/4"), "-j", "2"]))
+                .out
+                .clone();
             words.split_whitespace().next().unwrap().parse::<usize>().unwrap()
         })
         .sum();
-    assert_eq!(chunks, POINTS);
+    assert_eq!(shards, POINTS);
     assert_eq!(done(&here.join("p")).len(), POINTS);
     // Another division into shards finds all tasks finished.
-    assert!(ok(&grainbench(here, &["work", "p", "--chunk", "1/1"])).out.contains("45 were finished, 0 done now"));
-    ok(&grainbench(here, &["collect", "p"]));
+    assert!(
+        ok(&grainbench(here, &["run", "--resume", "p", "--shard", "1/1"])).out.contains("45 were finished, 0 done now")
+    );
+    ok(&grainbench(here, &["report", "p"]));
     fs::rename(here.join("p"), here.join("first")).unwrap();
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
-    ok(&grainbench(here, &["work", "p"]));
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     let report = here.join("first/report");
     assert_eq!(rows(&report.join("rows.csv")), rows(&here.join("p/report/rows.csv")));
     assert_eq!(rows(&report.join("rows.csv")).len(), 2 * POINTS);
@@ -195,15 +228,15 @@ fn a_sweep_is_the_same_in_one_piece_and_in_chunks() {
 fn a_report_of_some_tasks_is_red_everywhere() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    ok(&grainbench(here, &["plan", "run", "collision", "--solver", "dem", "--out", "p", "--chunks", "4"]));
-    ok(&grainbench(here, &["work", "p", "--chunk", "1/4"]));
-    assert_eq!(grainbench(here, &["collect", "p"]).code, Some(1));
+    ok(&grainbench(here, &["run", "collision", "--solver", "dem", "--plan", "p", "--shards", "4"]));
+    ok(&grainbench(here, &["run", "--resume", "p", "--shard", "1/4"]));
+    assert_eq!(grainbench(here, &["report", "p"]).code, Some(1));
     let again = grainbench(here, &["report", "p/report"]);
     assert!(again.code == Some(1) && again.out.contains("✗ unfinished: "), "{}{}", again.out, again.err);
     let read = |name: &str| fs::read_to_string(here.join("p/report").join(name)).unwrap();
     assert!(read("badge.svg").contains("grainbench: unfinished<") && read("junit.xml").contains("errors=\"1\""));
-    ok(&grainbench(here, &["work", "p"]));
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     ok(&grainbench(here, &["report", "p/report"]));
     assert!(read("badge.svg").contains("pass"));
 }
@@ -216,15 +249,15 @@ fn a_sweep_shares_the_cache_of_runs() {
     // Long enough to be cached.
     fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
     let work = |plan: &str, cache: &str| {
-        ok(&grainbench(here, &["plan", "sweep.toml", "--out", plan]));
+        ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", plan]));
         let done = crate::common::program()
             .env("GRAINBENCH_CACHE", here.join(cache))
-            .args(["work", plan])
+            .args(["run", "--resume", plan])
             .current_dir(here)
             .output()
             .unwrap();
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        ok(&grainbench(here, &["collect", plan]));
+        ok(&grainbench(here, &["report", plan]));
         fs::read_dir(here.join(cache)).unwrap().count()
     };
     let kept = work("p1", "cache");
@@ -250,18 +283,20 @@ fn failures_keep_their_type() {
            [[solvers]]\nsolver = 'dem'\nlevels = ['dt=.1', 'dt=40']\n\
            [[solvers]]\nsolver = 'mpm'\nlevels = ['cells=4']\n";
     fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
-    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
     let progress = status(here, "p");
     assert_eq!((progress["tasks"].as_u64(), progress["failed"].as_u64()), (Some(3), Some(2)), "{progress}");
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     let results = json(&here.join("p/report/results.json"));
     let ended: Vec<&str> =
         results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert_eq!(ended, ["broken", "unsupported"], "{results}");
     // A failed task counts as finished, unless it is requested again.
-    assert!(ok(&grainbench(here, &["work", "p"])).out.contains("3 were finished, 0 done now"));
-    assert!(ok(&grainbench(here, &["work", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed"));
+    assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("3 were finished, 0 done now"));
+    assert!(
+        ok(&grainbench(here, &["run", "--resume", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed")
+    );
 }
 
 /// Workers are killed after a random number of results and a short time, and lines are truncated. The remaining tasks
@@ -273,18 +308,18 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     // Two hundred tasks of a few milliseconds.
     let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
     fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "whole"]));
-    ok(&grainbench(here, &["work", "whole"]));
-    ok(&grainbench(here, &["collect", "whole"]));
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "whole"]));
+    ok(&grainbench(here, &["run", "--resume", "whole"]));
+    ok(&grainbench(here, &["report", "whole"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
     let mut state = 7_u64;
     let (mut killed, mut at_work) = (0, 0);
     let results = || if here.join("p/results").is_dir() { done(&here.join("p")).len() } else { 0 };
     for round in 0..40 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let start = |chunk: &str| {
+        let start = |shard: &str| {
             let mut command = crate::common::program();
-            command.args(["work", "p", "--chunk", chunk]).current_dir(here);
+            command.args(["run", "--resume", "p", "--shard", shard]).current_dir(here);
             command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
         };
         let before = results();
@@ -313,7 +348,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
         killed > 10 && at_work > 10,
         "{killed} and {at_work}: too many end before they are killed, or begin nothing"
     );
-    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
     let ids = done(&here.join("p"));
     assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
     let progress = status(here, "p");
@@ -321,7 +356,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
         (progress["twice"].as_u64(), progress["waiting"].as_u64(), progress["running"].as_u64()),
         (Some(0), Some(0), Some(0))
     );
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     assert_eq!(rows(&here.join("p/report/rows.csv")), rows(&here.join("whole/report/rows.csv")));
     assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
 }
@@ -343,7 +378,7 @@ fn a_full_disk_loses_nothing() {
     let before = done(&here.join("p")).len();
     assert!((1..POINTS).contains(&before), "{before}");
     assert_eq!(status(here, "p")["damaged"], 0, "what the disk did not take whole is not there");
-    let rest = ok(&grainbench(here, &["work", "p"])).out.clone();
+    let rest = ok(&grainbench(here, &["run", "--resume", "p"])).out.clone();
     assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
 }
 
@@ -354,7 +389,7 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     let here = directory.path();
     // The head of the second plan is too long for the limit of a file: 512 bytes.
     let plan = |out: &str, limit: &str| {
-        let script = format!("trap '' XFSZ; {limit} exec \"$0\" plan run belt --out {out}");
+        let script = format!("trap '' XFSZ; {limit} exec \"$0\" run belt --plan {out}");
         let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
         let ended = std::process::Command::new("sh").args(command).current_dir(here).output().unwrap();
         (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
@@ -370,7 +405,7 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     fs::create_dir_all(here.join("new/.grainbench-1@elsewhere-x")).unwrap();
     for out in ["p", "new"] {
         assert_eq!(plan(out, ""), (Some(0), String::new()), "{out}");
-        ok(&grainbench(here, &["status", out]));
+        ok(&grainbench(here, &["report", out, "--progress"]));
     }
 }
 
@@ -379,8 +414,9 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
 fn two_at_once_do_each_task_once() {
     let directory = planned();
     let here = directory.path();
-    let start =
-        || crate::common::program().args(["work", "p"]).current_dir(here).stdout(Stdio::null()).spawn().unwrap();
+    let start = || {
+        crate::common::program().args(["run", "--resume", "p"]).current_dir(here).stdout(Stdio::null()).spawn().unwrap()
+    };
     for mut worker in [start(), start(), start()] {
         assert_eq!(worker.wait().unwrap().code(), Some(0));
     }
@@ -397,7 +433,12 @@ fn what_is_no_plan_is_refused() {
     let whole: Vec<(PathBuf, Vec<u8>)> =
         ["plan.toml", "tasks.jsonl"].map(|name| (plan.join(name), fs::read(plan.join(name)).unwrap())).into();
     let refused = |what: &str| {
-        for command in [&["work", "p"][..], &["status", "p"], &["collect", "p"], &["work", "p", "--on", "slurm"]] {
+        for command in [
+            &["run", "--resume", "p"][..],
+            &["report", "p", "--progress"],
+            &["report", "p"],
+            &["run", "--resume", "p", "--on", "slurm"],
+        ] {
             let answer = grainbench(here, command);
             assert_eq!(answer.code, Some(2), "{what}: {command:?}: {}{}", answer.out, answer.err);
             assert!(answer.err.contains("expected") && !answer.err.contains("panicked"), "{what}: {}", answer.err);
@@ -418,7 +459,7 @@ fn what_is_no_plan_is_refused() {
     let head = String::from_utf8(whole[0].1.clone()).unwrap();
     for (from, to) in [
         ("format = 1", "format = 2"),
-        ("chunks = 1", "chunks = 0"),
+        ("shards = 1", "shards = 0"),
         ("lease_seconds = 60.0", "lease_seconds = nan"),
         ("kind = \"sweep\"", "kind = \"sweet\""),
     ] {
@@ -432,7 +473,7 @@ fn what_is_no_plan_is_refused() {
     ] {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
-        let answer = grainbench(here, &["work", "p"]);
+        let answer = grainbench(here, &["run", "--resume", "p"]);
         assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     }
     fs::write(&whole[0].0, head).unwrap();
@@ -443,17 +484,17 @@ fn what_is_no_plan_is_refused() {
         fs::write(plan.join("results").join(name), text).unwrap();
     }
     fs::write(plan.join("running/x.json"), "{").unwrap();
-    ok(&grainbench(here, &["work", "p"]));
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     assert_eq!(status(here, "p")["damaged"], 2);
     assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
     // A plan is written only to an empty folder.
     fs::create_dir(here.join("full")).unwrap();
     fs::write(here.join("full/notes"), "").unwrap();
-    let answer = grainbench(here, &["plan", "sweep.toml", "--out", "full"]);
+    let answer = grainbench(here, &["simulate", "sweep.toml", "--plan", "full"]);
     assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
-    for chunk in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
-        assert_eq!(grainbench(here, &["work", "p", "--chunk", chunk]).code, Some(2), "{chunk}");
+    for shard in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
+        assert_eq!(grainbench(here, &["run", "--resume", "p", "--shard", shard]).code, Some(2), "{shard}");
     }
 }
 
@@ -509,14 +550,14 @@ fn what_is_no_sweep_is_refused() {
             SWEEP.replacen(from, to, 1)
         };
         fs::write(here.join("sweep.toml"), text).unwrap();
-        let answer = grainbench(here, &["plan", "sweep.toml", "--out", "p"]);
+        let answer = grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]);
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{to}: {}", answer.err);
         messages += &format!("{}\n{}\n", to.trim(), answer.err);
         assert!(!here.join("p").exists(), "{to}");
     }
     for text in ["", "\0", "title", "[", "title = 1"] {
         fs::write(here.join("sweep.toml"), text).unwrap();
-        assert_eq!(grainbench(here, &["plan", "sweep.toml", "--out", "p"]).code, Some(2), "{text}");
+        assert_eq!(grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]).code, Some(2), "{text}");
     }
     insta::assert_snapshot!("campaign_sweep_refused", messages);
 }
@@ -534,9 +575,9 @@ fn a_program_by_its_manifest_takes_part() {
         )
         .replace("count = 5", "count = 2");
     fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
-    ok(&grainbench(here, &["work", "p"]));
-    ok(&grainbench(here, &["collect", "p"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    ok(&grainbench(here, &["report", "p"]));
     let rows = rows(&here.join("p/report/rows.csv"));
     let theirs: Vec<&String> = rows.iter().filter(|row| row.contains(",one-grain,")).collect();
     assert_eq!(theirs.len(), 12);
@@ -547,8 +588,8 @@ fn a_program_by_its_manifest_takes_part() {
 fn a_trend_tells_which_rows_and_counts_changed() {
     let directory = planned();
     let here = directory.path();
-    ok(&grainbench(here, &["work", "p"]));
-    ok(&grainbench(here, &["collect", "p", "--out", "new"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    ok(&grainbench(here, &["report", "p", "--out", "new"]));
     // Results of an earlier commit, with a failed claim and a run of one step less.
     let mut old = json(&here.join("new/results.json"));
     old["verdicts"][0]["verdict"] = "fail".into();
@@ -556,7 +597,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     old["points"][0]["steps"] = (steps - 1).into();
     fs::create_dir(here.join("old")).unwrap();
     fs::write(here.join("old/results.json"), old.to_string()).unwrap();
-    ok(&grainbench(here, &["collect", "p", "--out", "new", "--against", "old", "--against", "new"]));
+    ok(&grainbench(here, &["report", "p", "--out", "new", "--against", "old", "--against", "new"]));
     let page = fs::read_to_string(here.join("new/trend.html")).unwrap();
     assert!(page.contains("The trend over 3 reports") && page.contains(&format!("{} → {steps}", steps - 1)), "{page}");
     assert_eq!(page.matches("scope=\"row\"").count(), 1, "one row changed");
@@ -565,7 +606,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
         if let Some(text) = text {
             fs::write(here.join(wrong), text).unwrap();
         }
-        assert_eq!(grainbench(here, &["collect", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
+        assert_eq!(grainbench(here, &["report", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
     }
 }
 
@@ -593,7 +634,7 @@ fn slurm_is_asked_for_what_is_missing() {
     let directory = planned();
     let here = directory.path();
     let path = fake_slurm(here);
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p", "--chunks", "9"]));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p", "--shards", "9"]));
     let ask = |words: &[&str]| {
         let output = crate::common::program()
             .args(words)
@@ -606,7 +647,7 @@ fn slurm_is_asked_for_what_is_missing() {
         Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
     };
     let asked = || fs::read_to_string(here.join("sbatch.txt")).unwrap_or_default().lines().count();
-    let submit = ["work", "p", "--on", "slurm"];
+    let submit = ["run", "--resume", "p", "--on", "slurm"];
     for wrong in ["--array=1-2", "-a1", "--wrap=true"] {
         assert_eq!(ask(&[&submit[..], &["--", wrong]].concat()).code, Some(2), "{wrong}");
     }
@@ -616,7 +657,7 @@ fn slurm_is_asked_for_what_is_missing() {
     fs::remove_file(here.join("broken")).unwrap();
     let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
     // Array indices are below MaxArraySize.
-    assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: chunks 1-3 of 3\n"), "{}", answer.err);
+    assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: shards 1-3 of 3\n"), "{}", answer.err);
     let submitted = fs::read_to_string(here.join("sbatch.txt")).unwrap();
     assert!(
         submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh"),
@@ -629,31 +670,31 @@ fn slurm_is_asked_for_what_is_missing() {
     let again = [&submit[..], &["--resubmit"]].concat();
     fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
     fs::write(here.join("number"), "8").unwrap();
-    assert_eq!(ask(&again).out, "job 8: chunks 1 of 3\n");
-    assert!(ask(&["status", "p"]).out.contains("queued    2 chunks"), "the job of another is not ours");
-    for chunk in ["1/3", "3/3"] {
-        ok(&ask(&["work", "p", "--chunk", chunk]));
+    assert_eq!(ask(&again).out, "job 8: shards 1 of 3\n");
+    assert!(ask(&["report", "p", "--progress"]).out.contains("queued    2 shards"), "the job of another is not ours");
+    for shard in ["1/3", "3/3"] {
+        ok(&ask(&["run", "--resume", "p", "--shard", shard]));
     }
     fs::write(here.join("queue"), "").unwrap();
-    assert_eq!(ask(&again).out, "job 8: chunks 2 of 3\n");
+    assert_eq!(ask(&again).out, "job 8: shards 2 of 3\n");
     fs::write(here.join("broken"), "").unwrap();
     let before = asked();
     assert!(ask(&again).code == Some(1) && asked() == before, "an unknown queue is no empty one");
-    assert!(ask(&["status", "p"]).out.contains("queued    not known: squeue failed"));
-    let status: Value = serde_json::from_str(&ask(&["status", "p", "--json"]).out).unwrap();
+    assert!(ask(&["report", "p", "--progress"]).out.contains("queued    not known: squeue failed"));
+    let status: Value = serde_json::from_str(&ask(&["report", "p", "--progress", "--json"]).out).unwrap();
     assert!(status["queued"].is_null() && status["waiting"].as_u64() > Some(0), "{status}");
     fs::remove_file(here.join("broken")).unwrap();
-    ok(&ask(&["work", "p"]));
-    assert!(ask(&again).out.starts_with("nothing is missing"));
+    ok(&ask(&["run", "--resume", "p"]));
+    assert!(ask(&again).out.starts_with("every missing task is queued or running"));
     // A timing run has exclusive use of its node.
-    ok(&ask(&["plan", "cost", "collision", "--solver=dem", "--out", "c"]));
-    ok(&ask(&["work", "c", "--on", "slurm"]));
+    ok(&ask(&["cost", "collision", "--solver=dem", "--plan", "c"]));
+    ok(&ask(&["run", "--resume", "c", "--on", "slurm"]));
     let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
-    assert_eq!(ask(&["work", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
+    assert_eq!(ask(&["run", "--resume", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
     // A reply without a job number is an error.
     fs::write(here.join("number"), "Submitted").unwrap();
-    ok(&ask(&["plan", "sweep.toml", "--out", "q"]));
-    let answer = ask(&["work", "q", "--on", "slurm"]);
+    ok(&ask(&["simulate", "sweep.toml", "--plan", "q"]));
+    let answer = ask(&["run", "--resume", "q", "--on", "slurm"]);
     assert!(answer.code == Some(1) && answer.err.contains("expected the number of a job"), "{}", answer.err);
 }

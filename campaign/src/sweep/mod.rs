@@ -102,6 +102,13 @@ impl Formula {
 }
 
 impl Sweep {
+    /// Returns true if a file is a sweep: it has a table of factors, which a scene has not.
+    #[must_use]
+    pub fn is_in(path: &Path) -> bool {
+        let table = written(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
+        table.is_some_and(|table| table.contains_key("factors"))
+    }
+
     /// Reads a sweep.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! `grainbench collect`: the report of the finished tasks of a plan, as if one machine had run all of them.
+//! `report` of a plan: the report of the finished tasks, as if one machine had run all of them.
 
 use super::plan::Arguments as Planned;
 use super::{enter, study};
@@ -10,28 +10,49 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of the old command `collect`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
-    plan: PathBuf,
+    pub(crate) plan: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: CollectOptions,
+}
+
+/// Options of the report of a plan.
+#[derive(Default, clap::Args)]
+pub(crate) struct CollectOptions {
     /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. A plan of costs compares its times
     /// with the last one.
     #[arg(long, value_name = "DIR|results.json")]
-    against: Vec<PathBuf>,
+    pub(crate) against: Vec<PathBuf>,
     /// Treat amber results as red.
     #[arg(long)]
-    strict: bool,
+    pub(crate) strict: bool,
     /// Write `rows.parquet` too, for a plan of `run`; sweeps always do.
     #[arg(long)]
-    parquet: bool,
+    pub(crate) parquet: bool,
     /// Directory for the report; by default inside the plan.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Print the results as JSON.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
+}
+
+impl CollectOptions {
+    /// Returns the name of an option that is given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--against", !self.against.is_empty()),
+            ("--strict", self.strict),
+            ("--parquet", self.parquet),
+            ("--out", self.out.is_some()),
+            ("--json", self.json),
+        ];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
+    }
 }
 
 /// Options of a report.
@@ -51,19 +72,19 @@ pub(crate) struct ReportOptions<'a> {
     pub(crate) seconds: f64,
 }
 
-/// Writes the report.
-pub(crate) fn collect(arguments: &Arguments) -> Outcome {
+/// Writes the report of a plan.
+pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
     // Paths of the command line are relative to the current directory, and paths of the plan to the directory in which
     // it was made.
     let from_here = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
-    let out = arguments.out.clone().unwrap_or_else(|| arguments.plan.join("report"));
+    let out = arguments.out.clone().unwrap_or_else(|| plan.join("report"));
     let out = from_here(&out);
     let against = arguments.against.last().map(|path| results_of(&from_here(path)));
     if let Some(out) = &arguments.out {
         check_writable(out)?;
     }
-    let plan = enter(&arguments.plan)?;
+    let plan = enter(plan)?;
     plan.check_program()?;
     check_writable(&out)?;
     let study = study::from_arguments(&Planned::read(&plan)?)?;

@@ -1,5 +1,4 @@
-//! `grainbench plan`, `work`, `status` and `collect`: many runs from one plan, on this machine or through a batch
-//! system.
+//! Many runs from one plan, on this machine or through a batch system: `--plan DIR`, `run --resume DIR` and `report DIR`.
 
 pub(crate) mod collect;
 mod of_cost;

@@ -95,7 +95,7 @@ impl ClaimStudy {
         words.extend(arguments.no_controls.then(|| "--no-controls".to_owned()));
         words.extend(arguments.live.then(|| "--live".to_owned()));
         let again = <RunParser as clap::Parser>::try_parse_from(words).map_err(Fault::input)?;
-        let run::Arguments { cases, options } = again.arguments;
+        let run::Arguments { cases, options, .. } = again.arguments;
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
             return Err(Fault::input("--filter: expected what is known beforehand, found `outcome`"));

@@ -1,17 +1,17 @@
-//! `grainbench plan`: writes a plan with one task per line.
+//! `--plan DIR`: writes a plan with one task per line.
 
 use super::study;
 use crate::cli::exit::{Fault, Outcome, print, print_json};
 use crate::cli::value::whole;
-use grainbench::campaign::chunk;
 use grainbench::campaign::plan::{Head, Plan, check_place};
+use grainbench::campaign::shard;
 use grainbench::reports::number;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Arguments of the command.
-#[derive(Clone, clap::Args)]
+#[derive(Clone, Default, clap::Args)]
 pub(crate) struct Arguments {
     /// Kind of plan: claims of cases, computing cost, stability limits, or a sweep file.
     #[arg(value_name = "run|cost|stability|SWEEP.toml")]
@@ -40,15 +40,36 @@ pub(crate) struct Arguments {
     /// Measure only errors and counts, for `cost`; without timing, tasks can share a machine.
     #[arg(long, conflicts_with = "prices")]
     pub(crate) counts: bool,
-    /// Number of chunks; by default each chunk lasts about a minute.
-    #[arg(long, value_name = "N", value_parser = whole(1, chunk::MOST))]
-    chunks: Option<u32>,
+    /// Number of shards; by default each shard lasts about a minute.
+    #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST))]
+    pub(crate) shards: Option<u32>,
     /// Directory for the plan; finished tasks of an existing plan stay finished.
     #[arg(long, value_name = "DIR", default_value = "grainbench-plan")]
-    out: PathBuf,
+    pub(crate) out: PathBuf,
     /// Print the plan as JSON.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
+}
+
+/// Options that write a plan instead of doing the work.
+#[derive(clap::Args)]
+pub(crate) struct PlanOptions {
+    /// Write a plan to this directory instead of doing the work; `run --resume DIR` does it. Finished tasks of an existing plan
+    /// stay finished.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
+    pub(crate) plan: Option<PathBuf>,
+    /// Number of shards of the plan; by default each shard lasts about a minute.
+    #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
+    shards: Option<u32>,
+}
+
+impl PlanOptions {
+    /// Returns the arguments of a plan; none if no plan is asked for.
+    pub(crate) fn arguments(&self, what: &str, cases: &[String], solver: &[String]) -> Option<Arguments> {
+        let out = self.plan.clone()?;
+        let (what, cases, solver) = (what.to_owned(), cases.to_vec(), solver.to_vec());
+        Some(Arguments { what, cases, solver, shards: self.shards, out, ..Arguments::default() })
+    }
 }
 
 /// Parser for the arguments of a stored plan.
@@ -111,18 +132,18 @@ impl Arguments {
 #[derive(Serialize)]
 struct Summary<'a> {
     tasks: usize,
-    chunks: u32,
+    shards: u32,
     seconds: f64,
     timed: bool,
     out: &'a PathBuf,
 }
 
 /// Writes a plan.
-pub(crate) fn plan(arguments: &Arguments) -> Outcome {
+pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
     let study = study::from_arguments(arguments)?;
     let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
-    head.chunks = arguments.chunks.unwrap_or(0);
+    head.shards = arguments.shards.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
     head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
     head.inputs = study.inputs();
@@ -133,10 +154,15 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
     if tasks.len() > u32::MAX as usize {
         return Err(Fault::input(format!("expected fewer tasks, found {}", tasks.len())));
     }
-    let plan = Plan::write(&arguments.out, head, tasks)?;
-    let Head { tasks, chunks, seconds, timed, .. } = plan.head;
+    Ok(Plan::write(&arguments.out, head, tasks)?)
+}
+
+/// Writes a plan and prints its size.
+pub(crate) fn plan(arguments: &Arguments) -> Outcome {
+    let plan = write(arguments)?;
+    let Head { tasks, shards, seconds, timed, .. } = plan.head;
     if arguments.json {
-        print_json(&Summary { tasks, chunks, seconds, timed, out: &arguments.out })?;
+        print_json(&Summary { tasks, shards, seconds, timed, out: &arguments.out })?;
         return Ok(ExitCode::SUCCESS);
     }
     let plural =
@@ -146,7 +172,7 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
         "{}, about {} on one core, in {}{times}\n{}\n",
         plural(tasks as u64, "task"),
         number::seconds(seconds),
-        plural(u64::from(chunks), "chunk"),
+        plural(u64::from(shards), "shard"),
         arguments.out.display()
     ))?;
     Ok(ExitCode::SUCCESS)

@@ -1,4 +1,4 @@
-//! `grainbench status`: shows the progress of a plan.
+//! `report --progress`: shows the progress of a plan.
 
 use crate::cli::exit::{Outcome, print, print_json};
 use grainbench::campaign::plan::Plan;
@@ -6,18 +6,18 @@ use grainbench::campaign::slurm;
 use grainbench::campaign::status::Status;
 use grainbench::reports::number;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of the old command `status`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
-    plan: PathBuf,
+    pub(crate) plan: PathBuf,
     /// Print the progress as JSON.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 /// JSON form of the progress.
@@ -30,11 +30,11 @@ struct StatusJson<'a> {
 }
 
 /// Prints the progress of a plan.
-pub(crate) fn status(arguments: &Arguments) -> Outcome {
-    let plan = Plan::read(&arguments.plan)?;
+pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
+    let plan = Plan::read(plan)?;
     let status = Status::from_plan(&plan)?;
     let queued = slurm::in_queue(&plan.path);
-    if arguments.json {
+    if json {
         print_json(&StatusJson { status: &status, queued: queued.ok() })?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -62,7 +62,7 @@ pub(crate) fn status(arguments: &Arguments) -> Outcome {
     }
     match queued {
         Ok(0) => {}
-        Ok(count) => text.push_str(&format!("queued    {} chunks\n", number::count(count as u64))),
+        Ok(count) => text.push_str(&format!("queued    {} shards\n", number::count(count as u64))),
         Err(fault) => text.push_str(&format!("queued    not known: {fault}\n")),
     }
     if !status.is_whole() {

@@ -1,4 +1,4 @@
-//! `grainbench work`: runs the tasks of a plan or of a chunk, here or through a batch system.
+//! `run --resume DIR`: does the tasks of a plan or of a shard, here or through a batch system.
 
 use super::plan::Arguments as Planned;
 use super::{enter, study};
@@ -8,55 +8,81 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::progress::Progress;
 use crate::cli::provenance::provenance;
 use crate::cli::value::whole;
-use grainbench::campaign::chunk::Chunk;
 use grainbench::campaign::lease::LeaseContents;
 use grainbench::campaign::log::Worker;
 use grainbench::campaign::plan::Plan;
-use grainbench::campaign::work::{Summary, Watch, WorkRequest, work as do_chunk};
+use grainbench::campaign::shard::Shard;
+use grainbench::campaign::work::{Summary, Watch, WorkRequest, work as do_shard};
 use grainbench::campaign::{machine, slurm};
 use grainbench::reference::has_ended_programs;
 use grainbench::reports::number;
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Arguments of the command.
+/// Arguments of the old command `work`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
     #[arg(value_name = "PLAN")]
-    plan: PathBuf,
-    /// Chunk and number of chunks; by default the whole plan.
-    #[arg(long, value_name = "i/n", conflicts_with = "on")]
-    chunk: Option<Chunk>,
+    pub(crate) plan: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: WorkOptions,
     /// Number of simultaneous tasks; by default one for each core, and one if times are measured.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with = "on")]
     jobs: Option<u16>,
     /// Repeat failed tasks.
     #[arg(long, conflicts_with = "on")]
     retry_failed: bool,
-    /// Submit the chunks to a batch system instead of working here.
+}
+
+/// Options of the work on a plan.
+#[derive(Default, clap::Args)]
+pub(crate) struct WorkOptions {
+    /// Shard and number of shards; by default the whole plan.
+    #[arg(long, value_name = "K/N", conflicts_with = "on")]
+    pub(crate) shard: Option<Shard>,
+    /// Submit the shards to a batch system instead of working here.
     #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
-    on: Option<String>,
-    /// Submit the missing chunks of a submitted plan.
+    pub(crate) on: Option<String>,
+    /// Submit the missing shards of a submitted plan.
     #[arg(long, requires = "on")]
-    resubmit: bool,
+    pub(crate) resubmit: bool,
     /// Options for `sbatch`, after `--`.
     #[arg(value_name = "OPTIONS OF sbatch", last = true, requires = "on")]
-    sbatch: Vec<String>,
+    pub(crate) sbatch: Vec<String>,
+    /// Omits the counts on standard output.
+    #[arg(skip)]
+    pub(crate) quiet: bool,
+}
+
+impl WorkOptions {
+    /// Rejects options of the work on a plan if there is no plan.
+    pub(crate) fn refuse_without_plan(&self) -> Result<(), Fault> {
+        let given = [("--shard", self.shard.is_some()), ("--on", self.on.is_some())];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) => Err(Fault::input(format!("{name}: expected `--resume DIR` beside it, found none"))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Does a plan as the old command `work`.
+pub(crate) fn old(arguments: &Arguments) -> Outcome {
+    work(&arguments.plan, &arguments.options, arguments.jobs, arguments.retry_failed)
 }
 
 /// Runs the tasks, or submits them.
-pub(crate) fn work(arguments: &Arguments) -> Outcome {
-    let plan = enter(&arguments.plan)?;
+pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_failed: bool) -> Outcome {
+    let plan = enter(plan)?;
     plan.check_program()?;
-    if arguments.on.is_some() {
-        return submit(&plan, arguments);
+    if options.on.is_some() {
+        return submit(&plan, options);
     }
     let study = study::from_arguments(&Planned::read(&plan)?)?;
-    let jobs = match (arguments.jobs, plan.head.timed) {
+    let jobs = match (jobs, plan.head.timed) {
         (Some(2..), true) => {
             return Err(Fault::input("--jobs: expected 1, for times are measured, found more"));
         }
@@ -65,15 +91,17 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
         (None, false) => cores(),
     };
     let observer = Arc::new(WorkObserver { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
-    let asked = WorkRequest { chunk: arguments.chunk.unwrap_or(Chunk::WHOLE), again: arguments.retry_failed };
+    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again: retry_failed };
     let worker = worker();
     let watch = Arc::<WorkObserver>::clone(&observer);
-    let done = do_chunk(&plan, &asked, &worker, watch, &|tasks, desk| {
+    let done = do_shard(&plan, &asked, &worker, watch, &|tasks, desk| {
         study.work(&plan, tasks, jobs, desk).map_err(|fault| grainbench::campaign::Fault::Input(fault.to_string()))
     });
     *observer.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
     let summary = done?;
-    print(&words(&summary))?;
+    if !options.quiet {
+        print(&words(&summary))?;
+    }
     if summary.left > 0 {
         exit::say("warning", &format!("{} tasks are left: the same command goes on with them", summary.left));
         return Ok(ExitCode::from(RED));
@@ -81,12 +109,12 @@ pub(crate) fn work(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-fn submit(plan: &Plan, arguments: &Arguments) -> Outcome {
+fn submit(plan: &Plan, options: &WorkOptions) -> Outcome {
     let program = env::current_exe().map_err(|error| Fault::input(format!("this program: {error}")))?;
-    let asked = slurm::SubmitRequest { program: &program, again: arguments.resubmit, options: &arguments.sbatch };
+    let asked = slurm::SubmitRequest { program: &program, again: options.resubmit, options: &options.sbatch };
     match slurm::submit(plan, &asked)? {
-        Some(job) => print(&format!("job {}: chunks {} of {}\n", job.job, job.indexes, job.chunks))?,
-        None => print("nothing is missing that is not queued or somebody's\n")?,
+        Some(job) => print(&format!("job {}: shards {} of {}\n", job.job, job.indexes, job.shards))?,
+        None => print("every missing task is queued or running\n")?,
     }
     Ok(ExitCode::SUCCESS)
 }

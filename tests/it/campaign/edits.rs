@@ -7,16 +7,16 @@ use super::*;
 fn another_number_is_another_task() {
     let directory = planned();
     let here = directory.path();
-    ok(&grainbench(here, &["work", "p"]));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
     fs::write(here.join("sweep.toml"), SWEEP.replace("0.5, 0.9", "0.5, 0.8")).unwrap();
-    let stale = grainbench(here, &["work", "p"]);
+    let stale = grainbench(here, &["run", "--resume", "p"]);
     assert!(
         stale.code == Some(2) && stale.err.contains("sweep.toml: expected the file that was planned with"),
         "{}",
         stale.err
     );
-    ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
-    assert!(ok(&grainbench(here, &["work", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
+    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+    assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
 }
 
 /// Copies `examples/python`, with the replacement in its program, to the folder `s`.
@@ -30,9 +30,9 @@ fn one_grain(here: &Path, replaced: (&str, &str)) {
 
 /// Returns the output of a plan that is made, done and collected.
 fn collected(here: &Path, plan: &[&str]) -> Answer {
-    ok(&grainbench(here, &[&["plan"], plan, &["--out", "p"]].concat()));
-    ok(&grainbench(here, &["work", "p"]));
-    grainbench(here, &["collect", "p"])
+    ok(&grainbench(here, &[plan, &["--plan", "p"]].concat()));
+    ok(&grainbench(here, &["run", "--resume", "p"]));
+    grainbench(here, &["report", "p"])
 }
 
 /// After an edit of a file that results depend on, the plan is refused, and a new plan runs its tasks again.
@@ -62,11 +62,11 @@ fn an_edited_input_is_run_again() {
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.contains(from), "{file}: {from}");
         fs::write(&path, text.replacen(from, to, 1)).unwrap();
-        let stale = grainbench(here, &["collect", "p"]);
+        let stale = grainbench(here, &["report", "p"]);
         let message = "expected the file that was planned with, found another";
         assert!(stale.code == Some(2) && stale.err.contains(message), "{file}: {}", stale.err);
-        ok(&grainbench(here, &[&["plan"], plan, &["--out", "p"]].concat()));
-        let again = ok(&grainbench(here, &["work", "p"])).out.clone();
+        ok(&grainbench(here, &[plan, &["--plan", "p"]].concat()));
+        let again = ok(&grainbench(here, &["run", "--resume", "p"])).out.clone();
         assert!(again.contains(" 0 were finished"), "{file}: {again}");
         fs::remove_dir_all(here.join("p")).unwrap();
     }
@@ -80,7 +80,7 @@ fn an_edited_program_owes_its_conformance_again() {
     let here = directory.path();
     one_grain(here, ("", ""));
     let owed = || -> Vec<Value> {
-        ok(&grainbench(here, &["plan", "run", "--solver", "s/SOLVER.toml", "--out", "p"]));
+        ok(&grainbench(here, &["run", "--solver", "s/SOLVER.toml", "--plan", "p"]));
         let text = fs::read_to_string(here.join("p/tasks.jsonl")).unwrap();
         let tasks = text.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
         tasks.filter(|task| task["scene"] == "conformance").map(|task| task["id"].clone()).collect()
@@ -103,7 +103,7 @@ fn another_executable_is_another_task() {
         fs::write(here.join("lmp"), text).unwrap();
         let done = crate::common::program()
             .env("GRAINBENCH_LAMMPS", here.join("lmp"))
-            .args([&["plan"], plan, &["--out", "p"]].concat())
+            .args([plan, &["--plan", "p"]].concat())
             .current_dir(here)
             .output()
             .unwrap();
@@ -111,7 +111,7 @@ fn another_executable_is_another_task() {
         fs::read_to_string(here.join("p/tasks.jsonl")).unwrap()
     };
     let plans: [&[&str]; 3] = [
-        &["sweep.toml"],
+        &["simulate", "sweep.toml"],
         &["run", "incline-disc/60deg-mu.9", "--solver", "lammps", "--live"],
         &["cost", "incline-disc/60deg-mu.9", "--solver", "lammps", "--counts"],
     ];
@@ -141,10 +141,10 @@ fn a_point_that_shows_nothing_is_not_green() {
     for (keys, counts) in cases {
         let text = format!("{head}{record}{keys}{solvers}levels = ['dt=.1']\n");
         fs::write(here.join("sweep.toml"), text).unwrap();
-        ok(&grainbench(here, &["plan", "sweep.toml", "--out", "p"]));
-        ok(&grainbench(here, &["work", "p"]));
-        let answer = grainbench(here, &["collect", "p", "--strict"]);
+        ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+        ok(&grainbench(here, &["run", "--resume", "p"]));
+        let answer = grainbench(here, &["report", "p", "--strict"]);
         assert!(answer.code == Some(1) && answer.out.contains(counts), "{keys}: {}{}", answer.out, answer.err);
-        ok(&grainbench(here, &["collect", "p"]));
+        ok(&grainbench(here, &["report", "p"]));
     }
 }

@@ -1,32 +1,32 @@
-//! Chunks: ranges of consecutive tasks with about equal expected run times.
+//! Shards: ranges of consecutive tasks with about equal expected run times.
 
 use crate::task::Task;
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Maximum number of chunks.
+/// Maximum number of shards.
 pub const MOST: u32 = 1_000_000;
-/// Shortest expected duration of a chunk (s): a batch system takes about a second to start one.
+/// Shortest expected duration of a shard (s): a batch system takes about a second to start one.
 pub const SECONDS: f64 = 60.0;
 /// Shortest duration that is assumed for a task (s); it covers the overhead beside the run.
 const LEAST: f64 = 1e-3;
 
-/// One chunk of a plan, counted from 1.
+/// One shard of a plan, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chunk {
-    /// Number of this chunk, from 1 to `count`.
+pub struct Shard {
+    /// Number of this shard, from 1 to `count`.
     pub index: u32,
-    /// Number of all chunks.
+    /// Number of all shards.
     pub count: u32,
 }
 
-impl Chunk {
-    /// The whole plan as one chunk.
+impl Shard {
+    /// The whole plan as one shard.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 }
 
-impl FromStr for Chunk {
+impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -39,15 +39,15 @@ impl FromStr for Chunk {
     }
 }
 
-impl fmt::Display for Chunk {
+impl fmt::Display for Shard {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}/{}", self.index, self.count)
     }
 }
 
-/// Returns the range of task indices of each of `count` chunks, in order.
+/// Returns the range of task indices of each of `count` shards, in order.
 ///
-/// A chunk may be empty. All tasks of a group are in one chunk.
+/// A shard may be empty. All tasks of a group are in one shard.
 #[must_use]
 pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
     let total: f64 = tasks.iter().map(length).sum();
@@ -58,7 +58,7 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
         let others = tasks[from + 1..].iter().take_while(|task| group.is_some() && task.group == group).count();
         let to = from + 1 + others;
         let long: f64 = tasks[from..to].iter().map(length).sum();
-        // A group belongs to the chunk that contains its midpoint.
+        // A group belongs to the shard that contains its midpoint.
         let place = ((before + 0.5 * long) / total * f64::from(count)) as usize;
         ends[place.min(count as usize - 1)] = to;
         (before, from) = (before + long, to);
@@ -73,13 +73,13 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// Returns the range of task indices of a chunk.
+/// Returns the range of task indices of a shard.
 #[must_use]
-pub fn task_range(tasks: &[Task], chunk: Chunk) -> Range<usize> {
-    all(tasks, chunk.count).swap_remove(chunk.index as usize - 1)
+pub fn task_range(tasks: &[Task], shard: Shard) -> Range<usize> {
+    all(tasks, shard.count).swap_remove(shard.index as usize - 1)
 }
 
-/// Returns the largest number of chunks, at least one, that each last [`SECONDS`] or longer on average.
+/// Returns the largest number of shards, at least one, that each last [`SECONDS`] or longer on average.
 #[must_use]
 pub fn count(tasks: &[Task]) -> u32 {
     let total: f64 = tasks.iter().map(length).sum();
@@ -113,36 +113,36 @@ mod tests {
     }
 
     #[test]
-    fn every_task_is_in_one_chunk() {
+    fn every_task_is_in_one_shard() {
         let seconds: Vec<f64> = (0..1000).map(|at| if at % 7 == 0 { 40.0 } else { 0.01 * f64::from(at) }).collect();
         let groups: Vec<Option<u32>> = (0..1000).map(|at| (at % 11 > 4).then_some(at / 11)).collect();
         let tasks = tasks(&seconds, &groups);
         for count in [1, 2, 3, 17, 999, 1000, 5000] {
-            let chunks = all(&tasks, count);
-            assert_eq!((chunks.len(), chunks[0].start, chunks[chunks.len() - 1].end), (count as usize, 0, 1000));
-            assert!(chunks.windows(2).all(|pair| pair[0].end == pair[1].start), "{count}");
-            for chunk in &chunks {
-                let inner = chunk.end == 1000 || chunk.end == 0 || groups[chunk.end - 1].is_none();
-                assert!(inner || groups[chunk.end - 1] != groups[chunk.end], "{count}: a group is torn");
+            let shards = all(&tasks, count);
+            assert_eq!((shards.len(), shards[0].start, shards[shards.len() - 1].end), (count as usize, 0, 1000));
+            assert!(shards.windows(2).all(|pair| pair[0].end == pair[1].start), "{count}");
+            for shard in &shards {
+                let inner = shard.end == 1000 || shard.end == 0 || groups[shard.end - 1].is_none();
+                assert!(inner || groups[shard.end - 1] != groups[shard.end], "{count}: a group is torn");
             }
         }
     }
 
     #[test]
-    fn chunks_last_about_as_long() {
+    fn shards_last_about_as_long() {
         let tasks = tasks(&[1.0; 1200], &[None; 1200]);
         assert_eq!(count(&tasks), 20);
-        assert!(all(&tasks, 20).iter().all(|chunk| chunk.len() == 60));
+        assert!(all(&tasks, 20).iter().all(|shard| shard.len() == 60));
         assert_eq!((count(&[]), all(&[], 3)), (1, vec![0..0, 0..0, 0..0]));
     }
 
     #[test]
-    fn what_is_no_chunk_is_refused() {
-        assert_eq!("2/3".parse(), Ok(Chunk { index: 2, count: 3 }));
+    fn what_is_no_shard_is_refused() {
+        assert_eq!("2/3".parse(), Ok(Shard { index: 2, count: 3 }));
         for text in
             ["", "1", "0/0", "0/3", "5/3", "-1/3", "1/3/5", "a/b", "1/1e9", "1/4294967297", "1 / 2", "1/2000000"]
         {
-            assert!(text.parse::<Chunk>().is_err(), "{text}");
+            assert!(text.parse::<Shard>().is_err(), "{text}");
         }
     }
 }
