@@ -147,7 +147,7 @@ class Scene:
     """Groups with prescribed motion: `grains` by number from 1, and `velocity` (m/s)."""
     steps: Steps
     raw: dict[str, Any]
-    """Complete content of the file; `grainbench schema --resolved` describes it."""
+    """Complete content of the file; `grainbench scene --schema=resolved` describes it."""
 
     def law(self, first: str, second: str) -> Law:
         """Returns the contact law of two materials."""

@@ -29,7 +29,6 @@ mod reference;
 mod report;
 mod run;
 mod scene;
-mod schema;
 mod select;
 mod simulate;
 mod solver;
@@ -99,10 +98,11 @@ enum Command {
     Reference(reference::Command),
     /// Test the conformance properties of solvers: conservation, symmetries, free flight, order, determinism.
     Conform(conform::Arguments),
-    /// Print the resolved scene that external solvers receive, in SI units.
+    /// Print the resolved scene that external solvers receive, in SI units, or the schema of scene files.
     Scene(scene::Arguments),
-    /// Print the JSON schema of scene files or of resolved scenes.
-    Schema(schema::Arguments),
+    /// Old spelling of `scene --schema`.
+    #[command(hide = true)]
+    Schema(scene::SchemaArguments),
     /// Make the page and figures of a stored report, simulation or plan, without running a solver.
     Report(report::Arguments),
     /// Print the completion script of a shell.
@@ -117,7 +117,7 @@ enum Command {
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Judge solvers with the cases", &["run", "conform", "list"]),
     ("Judge output of other programs", &["check", "compare", "deck", "fields"]),
-    ("Simulate", &["simulate", "scene", "schema", "report"]),
+    ("Simulate", &["simulate", "scene", "report"]),
     ("Cost, stability, effects", &["cost", "stability", "effects", "race"]),
     ("Stored runs", &["reference"]),
 ];
@@ -182,7 +182,10 @@ pub(crate) fn main() -> ExitCode {
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),
         Command::Scene(arguments) => scene::scene(&arguments),
-        Command::Schema(arguments) => schema::schema(&arguments),
+        Command::Schema(arguments) => {
+            spelling::say_command("schema", "scene --schema");
+            scene::old_schema(&arguments)
+        }
         Command::Report(arguments) => report::report(&arguments),
         Command::Completions(arguments) => completions::completions(&arguments, Cli::command()),
         Command::Man(arguments) => completions::man(&arguments, Cli::command()),

@@ -1,10 +1,10 @@
-//! `grainbench scene`: prints the resolved scene that external solvers receive.
+//! `grainbench scene`: prints the resolved scene that external solvers receive, or the schema of scene files.
 
-use super::exit::{Fault, Outcome, print};
+use super::exit::{Fault, Outcome, print, print_json};
 use super::step::Step;
 use super::subject;
 use super::value::{path_and_value, positive};
-use grainbench::reference::outside::{DiscretizedScene, Resolved, SceneFormat};
+use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneFormat};
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
@@ -12,8 +12,12 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.
-    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
-    scene: String,
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "schema")]
+    scene: Option<String>,
+    /// Print the JSON schema of scene files, or of resolved scenes, instead of a scene.
+    #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "file")]
+    #[arg(conflicts_with_all = ["scene", "set", "format", "time_step", "time_step_fraction", "cells"])]
+    schema: Option<Schema>,
     /// Override one key of the scene; repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
@@ -34,9 +38,40 @@ enum Format {
     Toml,
 }
 
-/// Prints the resolved scene.
+/// Kinds of schemas.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub(crate) enum Schema {
+    /// Scene files.
+    File,
+    /// Resolved scenes, as external solvers receive them.
+    Resolved,
+}
+
+/// Arguments of the old command `schema`.
+#[derive(clap::Args)]
+pub(crate) struct SchemaArguments {
+    /// Print the schema of resolved scenes.
+    #[arg(long)]
+    resolved: bool,
+}
+
+/// Prints a schema as the old command `schema`.
+pub(crate) fn old_schema(arguments: &SchemaArguments) -> Outcome {
+    print_schema(if arguments.resolved { Schema::Resolved } else { Schema::File })
+}
+
+fn print_schema(kind: Schema) -> Outcome {
+    match kind {
+        Schema::File => print_json(&grainbench::scene::schema())?,
+        Schema::Resolved => print_json(&outside::schema())?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the resolved scene, or a schema.
 pub(crate) fn scene(arguments: &Arguments) -> Outcome {
-    let (scene, _) = subject::scene(&arguments.scene, &arguments.set)?;
+    let Some(name) = &arguments.scene else { return print_schema(arguments.schema.unwrap_or(Schema::File)) };
+    let (scene, _) = subject::scene(name, &arguments.set)?;
     let resolution = arguments
         .cells
         .map_or_else(|| arguments.step.resolution(), |cells| Resolution::grid(cells, Resolution::POINTS));

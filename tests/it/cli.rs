@@ -57,7 +57,7 @@ fn help(arguments: &[&str]) -> String {
 #[test]
 fn help_of_every_command() {
     insta::assert_snapshot!("help", help(&["--help"]));
-    for command in ["list", "run", "simulate", "deck", "check", "compare", "schema", "report"] {
+    for command in ["list", "run", "simulate", "deck", "check", "compare", "scene", "report"] {
         insta::assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
     }
 }
@@ -99,8 +99,12 @@ fn list_tells_of_every_case() {
 #[cfg(unix)]
 #[test]
 fn a_reader_who_has_seen_enough_is_no_error() {
-    let mut program =
-        crate::common::program().arg("schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut program = crate::common::program()
+        .args(["scene", "--schema"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     drop(program.stdout.take());
     let output = program.wait_with_output().unwrap();
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
@@ -127,7 +131,7 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
 #[test]
 fn schema_documents_every_key() {
     let directory = tempfile::tempdir().unwrap();
-    let schema = json(&printed(directory.path(), &["schema"]));
+    let schema = json(&printed(directory.path(), &["scene", "--schema"]));
     assert!(schema["properties"]["grains"].is_object());
     assert!(schema["$defs"].as_object().unwrap().len() > 5);
     let mut found = Vec::new();
@@ -139,7 +143,7 @@ fn schema_documents_every_key() {
 #[test]
 fn the_schema_in_the_tree_is_that_of_the_program() {
     let directory = tempfile::tempdir().unwrap();
-    crate::common::expect_file("scene.schema.json", &printed(directory.path(), &["schema"]));
+    crate::common::expect_file("scene.schema.json", &printed(directory.path(), &["scene", "--schema"]));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 22] = [
+const COMMANDS: [&[&str]; 21] = [
     &["list"],
     &["run", "squash"],
     &["simulate", "scene.toml", "--solver", "dem"],
@@ -26,7 +26,6 @@ const COMMANDS: [&[&str]; 22] = [
     &["reference", "import", "dosta-2024", "a-directory"],
     &["conform", "dem"],
     &["scene", "collision"],
-    &["schema"],
     &["report", "a-directory"],
     &["completions", "bash"],
     &["man"],

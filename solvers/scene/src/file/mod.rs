@@ -1,6 +1,6 @@
 //! Scene file: every key that users can write, as serde reads it, with one module per table.
 //!
-//! Doc comments here are the documentation of the keys: `grainbench schema` prints them.
+//! Doc comments here are the documentation of the keys: `grainbench scene --schema` prints them.
 
 mod bodies;
 mod driven;
