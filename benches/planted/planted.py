@@ -40,7 +40,6 @@ pub fn on(number: u32) -> bool {
 '''
 # Memory limit of a run (bytes), because a defect may request any amount.
 MEMORY = 12 << 30
-RED = ("fail", "broken", "stale")
 
 
 def command(words, where, **more):
@@ -239,7 +238,7 @@ def judge(program, work, number, seconds, plain):
     else:
         rows, controls = left
         answer["moved"] = sum(row != was for row, was in zip(rows, plain[0])) + abs(len(rows) - len(plain[0]))
-        red = [f"run: {row['verdict']}: {row_name(row)}" for row in rows if row["verdict"] in RED]
+        red = [f"run: {row['verdict']}: {row_name(row)}" for row in rows if row["severity"] == "red"]
         red += [f"run: control stayed green: {row_name(row)}" for row in controls if not row["turned_red"]]
         answer["red"] = len(red)
         if red or code != 0:

@@ -94,10 +94,10 @@ class Judgement(Results):
 
     @property
     def passed(self) -> bool:
-        """True if at least one result is green, none is red, and each control failed as required."""
+        """True if at least one result is green, none is red, each control failed as required, and the run was not interrupted."""
         severities = {row["severity"] for row in self.verdicts}
         controls = all(control["turned_red"] for control in self.of_controls)
-        return "green" in severities and "red" not in severities and controls
+        return "green" in severities and "red" not in severities and controls and not self.raw.get("red_because")
 
     def require(self) -> Judgement:
         """Returns the judgement if it passed; otherwise raises an AssertionError with the red results."""

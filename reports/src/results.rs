@@ -12,6 +12,8 @@ struct Results<'a> {
     verdicts: Vec<Row<'a>>,
     controls: Vec<&'a Control>,
     points: Vec<Point<'a>>,
+    /// Reasons for which the report is red beside its results, such as an interrupted run.
+    red_because: &'a [String],
 }
 
 /// A result with its colour.
@@ -70,6 +72,7 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
         verdicts: report.sections.iter().flat_map(|section| &section.verdicts).map(Row::new).collect(),
         controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
         points: points(report).collect(),
+        red_because: &report.red_because,
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }

@@ -8,7 +8,7 @@ use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
 use grainbench::check::{DeclaredScene, Options, Power, check as judge, is_of_power};
-use grainbench::harness::verdict::{self, Verdict};
+use grainbench::harness::verdict::{self, Severity, Verdict};
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
 use grainbench::reports::measured::Measurements;
@@ -281,9 +281,8 @@ fn most_rows(subject: &DeclaredScene<'_>) -> Result<u64, Fault> {
 /// Returns the results of a report, and the number for each outcome.
 pub(crate) fn rows(report: &Report) -> String {
     let rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    let count = |outcome| rows.clone().filter(|row| row.outcome == outcome).count();
-    let (pass, fail) = (count(verdict::Outcome::Pass), count(verdict::Outcome::Fail));
-    let amber = rows.clone().count() - pass - fail;
+    let count = |severity| rows.clone().filter(|row| row.outcome.severity() == severity).count();
+    let [pass, amber, fail] = [Severity::Green, Severity::Amber, Severity::Red].map(count);
     let mut text = String::new();
     for row in rows {
         text.push_str(&format!("{:<12} {}\n", row.outcome.word(), line::verdict_in_section(row)));

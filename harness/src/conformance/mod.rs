@@ -133,7 +133,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
 #[must_use]
 pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
     let (rows, controls) = judge(solver, terms);
-    let red = rows.iter().filter(|row| matches!(row.outcome, Outcome::Fail | Outcome::Broken));
+    let red = rows.iter().filter(|row| row.outcome.is_red());
     let mut lines: Vec<String> = red
         .map(|row| {
             let error = row.error.map_or_else(|| "no finite number".to_owned(), |error| format!("{error:e}"));

@@ -1,7 +1,7 @@
 //! One card per solver: passed results, worst error, stability and cost.
 
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
 
 use super::rows::address;
@@ -55,14 +55,14 @@ pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Ite
     report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
 }
 
-/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the error
-/// decides.
+/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the error in
+/// units of the tolerance decides, as in the matrix.
 fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),
         Outcome::Stale => Some((1, f64::INFINITY)),
-        Outcome::Fail => Some((1, row.error.map_or(f64::INFINITY, f64::abs))),
-        Outcome::Known => Some((0, row.error.map_or(f64::INFINITY, f64::abs))),
+        Outcome::Fail => Some((1, used_tolerance(row))),
+        Outcome::Known => Some((0, used_tolerance(row))),
         _ => None,
     }
 }
@@ -76,13 +76,10 @@ fn card(
 ) -> Markup {
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
-    let red = rows(report, solver).filter(|row| row.outcome.is_red()).count();
-    let class = if red > 0 {
-        "fail"
-    } else if pass < all {
-        "amber"
-    } else {
-        "pass"
+    let class = match rows(report, solver).map(|row| row.outcome.severity()).max() {
+        Some(Severity::Red) => "fail",
+        Some(Severity::Amber) => "amber",
+        Some(Severity::Green) | None => "pass",
     };
     let worst = rows(report, solver)
         .filter_map(|row| Some((wrongness(row)?, row)))
@@ -106,7 +103,13 @@ fn card(
                     div {
                         dt { (filter(Some(row.outcome.word()), html! { (count(row.outcome)) " " (row.outcome.word()) })) }
                         dd {
-                            "worst " @if times.is_finite() { (number::significant(times, 2)) "× allowed, " }
+                            "worst "
+                            @match row.error {
+                                // A ratio to a tolerance for rounding says little, so the error itself is shown.
+                                Some(error) if times > 1e3 => { "off " (number::significant(error.abs(), 2)) ", " }
+                                _ if times.is_finite() => { (number::significant(times, 2)) "× allowed, " }
+                                _ => {}
+                            }
                             a.bad href={ "#" (lead(row)) } title=(row.quantity) { (row.case) }
                         }
                     }

@@ -24,13 +24,15 @@ struct Cell<'a> {
     solver: &'a str,
 }
 
-/// Returns the rank of an outcome. The order is red, known error, pass, and last outcomes that show nothing.
+/// Returns the rank of an outcome. The order is red, known error, outdated, pass, and last outcomes that
+/// show nothing.
 const fn order(outcome: Outcome) -> u8 {
     match outcome {
-        Outcome::Broken => 5,
-        Outcome::Fail => 4,
-        Outcome::Stale => 3,
-        Outcome::Known | Outcome::Outdated => 2,
+        Outcome::Broken => 6,
+        Outcome::Fail => 5,
+        Outcome::Stale => 4,
+        Outcome::Known => 3,
+        Outcome::Outdated => 2,
         Outcome::Pass => 1,
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
     }
@@ -53,15 +55,15 @@ fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
 fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
     let worst = worst.unwrap_or(f64::INFINITY);
     match outcome {
+        outcome if outcome.is_red() => "f0",
         Outcome::Pass if worst <= 0.1 => "c0",
         Outcome::Pass if worst <= 0.5 => "c1",
         Outcome::Pass => "c2",
-        Outcome::Fail | Outcome::Broken | Outcome::Stale => "f0",
         Outcome::Known if worst <= 10.0 => "k0",
         Outcome::Known if worst <= 1e3 => "k1",
         Outcome::Known => "k2",
         Outcome::Outdated => "old",
-        Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => "cannot",
+        _ => "cannot",
     }
 }
 

@@ -229,7 +229,7 @@ fn changes(effects: &Effects) -> Markup {
                     }
                 }
                 path d=(format!("M{} {bottom}H{}", FRAME[0], FRAME[1])) stroke="#222" {}
-                @for (at, name) in names.iter().enumerate() {
+                @for (at, name) in order.iter().enumerate() {
                     @let (y, entries) = (34.0 + ROW * at as f64, entries_of(name));
                     text x="0" y=(y + 9.0) { (name) }
                     text x="0" y=(y + 24.0) font-size="12" fill="#666" {
@@ -250,8 +250,8 @@ fn changes(effects: &Effects) -> Markup {
         }
         p { "A claim fails " b { (most) } " scenes." }
         p.note {
-            "One mark per scene: the median over its claims. Cost: median of particle-steps and contact evaluations, with over "
-            "without the effect. Changes below 10⁻⁵ and above 10 are at the ends."
+            "One mark per scene: the median over its claims. Cost: median of the processor time with the effect divided by the time "
+            "without it, if it was measured in three scenes or more. Changes below 10⁻⁵ and above 10 are at the ends."
         }
     }
 }
@@ -262,11 +262,12 @@ fn needed(entries: &[&Entry]) -> (usize, usize) {
     (count(EffectResult::Needed), count(EffectResult::Needed) + count(EffectResult::NotWorthSimulating))
 }
 
-/// Returns the median cost of an effect.
+/// Returns the median cost of an effect in processor time; none if it was measured in fewer than three scenes.
 fn expense(entries: &[&Entry]) -> String {
-    let mut counts: Vec<f64> = entries.iter().filter_map(|entry| entry.counts).collect();
-    counts.sort_by(f64::total_cmp);
-    counts.get(counts.len() / 2).map_or_else(|| "—".to_owned(), |count| format!("× {}", number::significant(*count, 2)))
+    let mut times: Vec<f64> = entries.iter().filter_map(|entry| entry.time).collect();
+    times.sort_by(f64::total_cmp);
+    let median = times.get(times.len() / 2).filter(|_| times.len() >= 3);
+    median.map_or_else(|| "—".to_owned(), |time| format!("× {}", number::significant(*time, 2)))
 }
 
 #[cfg(test)]

@@ -143,8 +143,9 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
     for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
         let first = rows.iter().find(|row| row.scene == scene).map_or("", |row| row.solver.as_str());
         let line = points(&|row| row.exact.filter(|_| row.scene == scene && row.solver == first));
-        if line.len() > 1 {
-            curves.push(Curve::new(format!("{scene}, exact"), Stroke::Dashed, line));
+        let stroke = if line.len() > 1 { Stroke::Dashed } else { Stroke::Markers };
+        if !line.is_empty() {
+            curves.push(Curve::new(format!("{scene}, exact"), stroke, line));
         }
     }
     let name = if exact { "stable-step-springs" } else { "stable-step-grid" };
@@ -160,8 +161,8 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         "Courant number up to which a vibrating bar keeps its energy to a tenth over two periods."
     };
     let x = if exact { Axis::linear(&knob) } else { Axis::log(&knob) };
-    (!curves.is_empty())
-        .then(|| Figure::graph(name, title, caption, [x, Axis::linear(&format!("Δt / ({unit})"))], curves))
+    let y = if unit.starts_with('√') { format!("Δt / {unit}") } else { format!("Δt / ({unit})") };
+    (!curves.is_empty()).then(|| Figure::graph(name, title, caption, [x, Axis::linear(&y)], curves))
 }
 
 /// Returns the figure of largest stable steps against the exact limits.
