@@ -199,8 +199,8 @@ impl Lock {
         }
         Err(Fault::in_file(
             &path,
-            "a lock that is let go of within a minute",
-            "one that is held; remove it if nobody works",
+            "a lock that is released within a minute",
+            "a held lock; delete it if no worker is running",
         ))
     }
 }

@@ -200,17 +200,17 @@ impl Plan {
         let head = &self.head;
         let here = grainbench_studies::identity::of_this_program();
         if here != head.program {
-            let expected = format!("the program that planned, version {}", head.version);
+            let expected = format!("the program that wrote the plan, version {}", head.version);
             return Err(Fault::in_file(
                 &self.path,
                 expected,
-                "another build; plan again, what is the same stays finished",
+                "another build; write the plan again, unchanged tasks stay finished",
             ));
         }
         for (path, known) in &head.inputs {
             if hash_of_file(&head.directory.join(path)) != *known {
-                let found = "another since then; plan again, what is the same stays finished";
-                return Err(Fault::expected(path, "the file that was planned with", found));
+                let found = "a changed file; write the plan again, unchanged tasks stay finished";
+                return Err(Fault::expected(path, "the file of the plan", found));
             }
         }
         Ok(())

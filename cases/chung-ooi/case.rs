@@ -228,7 +228,8 @@ fn force_that_moves() -> Claim {
         )
         .within(computed(
             2.0 * f64::EPSILON * 1e5 + 2e4 * f64::EPSILON,
-            "rounding of two positions, ε R each, of a way of v Δt = 1e-5 R a step, and of times, ε of up to 2e4 steps",
+            "rounding relative to one step: 2 ε R of positions over the displacement v Δt = 1e-5 R, and ε t of times \
+             over Δt, with t up to 2e4 Δt",
         ))
         .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.damping_ratio *= 1.001)))
 }

@@ -105,8 +105,8 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
     if overlap > 0.0 { 1.0e4 * overlap + 28.284_271_247_461_902 * rate } else { 0.0 }
 }
 
-/// Claims that the contact force that `dem` records is the force that moves the grains. Its dashpot uses the velocity
-/// half a step earlier, which changed the overlap from its previous value to this one.
+/// Claims that the contact force recorded by `dem` is the force that moves the grains. The dashpot of `dem` uses the
+/// velocity half a step before the sample, (δₙ − δₙ₋₁)/Δt.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .run(Run::new(FELT, "dem", LEVELS[1].resolution))

@@ -18,7 +18,7 @@ fn at_30_ms(done: &FinishedRun) -> Result<f64, MissingData> {
     height(done, DEEP - MET)
 }
 
-/// Claims each step against the paper's step, and softer steel against steel.
+/// Returns the claims that compare longer time steps with the paper's step, and softer steel with steel.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = STEPS[1..].iter().map(|&step| {
         let runs = BEDS.into_iter().flat_map(|bed| [on(bed, step), on(bed, STEPS[0]).aside()]);

@@ -14,8 +14,8 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "silo-discharge",
     title: "Discharge of a silo",
-    claim: "A silo of 100,000 spheres empties at the rate that LIGGGHTS and MUSEN find from the shared start of the round robin \
-            of 2024, and through the smaller orifice at its part of it.",
+    claim: "A silo of 100,000 spheres (own filling) discharges through the large orifice at the mean rate of LIGGGHTS \
+            and MUSEN in the 2024 round robin, and through the small one at the rate of MUSEN.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The filling is our own: one of 100,000 spheres and five of 40,000. Of the eight published codes only two are \

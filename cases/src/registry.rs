@@ -1,4 +1,4 @@
-//! The registry of cases: one for each folder with a `scene.toml`.
+//! Registry of cases. Each folder with a `scene.toml` is a case.
 
 use grainbench_harness::case::{Case, Home, SceneCache};
 use grainbench_harness::runner::Runner;

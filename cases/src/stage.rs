@@ -3,11 +3,12 @@
 use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
-/// Convergence limit of F_H/F_V at stage A, for the search for the wall motion of `photoelastic-packing`.
+/// Largest deviation of F_H/F_V from its target at stage A, at which the search for the wall motion of
+/// `photoelastic-packing` stops.
 pub const NEAR_IN_RATIO: f64 = 0.004;
-/// Convergence limit of the mean overlap over the mean radius at stage A.
+/// Largest deviation of mean overlap / mean radius from its target at stage A, at which the search stops.
 pub const NEAR_IN_OVERLAP: f64 = 8e-6;
-/// Convergence limit of F_V at stage B over F_V at stage A.
+/// Largest deviation of F_V at stage B / F_V at stage A from its target, at which the search stops.
 pub const NEAR_IN_GROWTH: f64 = 1e-4;
 
 /// Sums over walls and contacts of one snapshot. The walls are planes normal to the axes.

@@ -546,7 +546,7 @@ impl Runner {
         let mut kept: Vec<&ResultOrigin> = done.iter().filter_map(|done| done.kept.as_ref()).collect();
         kept.dedup();
         for ResultOrigin { words, .. } in kept {
-            row.source.push_str(&format!("; judged on the stored result of a run of {words}"));
+            row.source.push_str(&format!("; stored result of {words}"));
         }
         row
     }

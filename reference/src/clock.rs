@@ -75,8 +75,8 @@ impl Clock {
         self.range(first, last).into_iter().all(|step| (step - time_step).abs() <= tolerance)
     }
 
-    /// Returns the number of steps and the time step (s) of each part between two steps. The first part also applies
-    /// before it begins.
+    /// For each interval of constant time step, returns its number of steps between `first` and `last`, and its time
+    /// step (s). The first interval extends back to step 0.
     fn parts(&self, first: u64, last: u64) -> impl Iterator<Item = (u64, f64)> {
         self.0.iter().enumerate().map(move |(at, part)| {
             let from = if at == 0 { 0 } else { part.from };

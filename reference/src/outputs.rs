@@ -74,7 +74,7 @@ pub enum OutputError {
     NoTime(String),
     /// The units are not supported by scenes.
     #[error(
-        "{}: expected the units `si` of a scene (if its numbers have no dimensions, leave the units out), found {}",
+        "{}: expected the units `si`, or no units if the scene is dimensionless; found {}",
         one_line(.0), quoted(.1)
     )]
     Units(String, String),
@@ -90,7 +90,8 @@ pub enum OutputError {
     },
     /// A log belongs to another run.
     #[error(
-        "{}: expected {} s from step {first} to step {last}, as in the files, found {of_log} s; it is of another run",
+        "{}: expected {} s from step {first} to step {last}, as in the files, found {of_log} s; the log belongs to \
+         another run",
         one_line(.log), .of_files
     )]
     OtherLog {
@@ -109,7 +110,7 @@ pub enum OutputError {
     #[error("{}: expected one table alone, or dumps alone", one_line(.0))]
     MixedFiles(String),
     /// The files contain no grains.
-    #[error("{}: expected a dump of grains, found one of other entries only", one_line(.0))]
+    #[error("{}: expected a dump with grains, found a dump without grains", one_line(.0))]
     NoGrains(String),
 }
 

@@ -199,15 +199,15 @@ fn the_sections() {
 fn the_number_of_lines() {
     assert_eq!(
         damaged("2 3 0.5 3.0 40 0.25 0\n", ""),
-        "data:18: expected 2 lines in the section `Atoms`, as many as the header declares atoms, found its end after 1"
+        "data:18: expected 2 lines in the section `Atoms`, one for each atom of the header, found only 1"
     );
     assert_eq!(
         damaged("2 3 0.5 3.0 40 0.25 0\n", "2 3 0.5 3.0 40 0.25 0\n3 3 0.5 3.0 40 0.25 0\n"),
-        "data:18: expected 2 atoms, as many as the header declares, found one more, `3 3 0.5 3.0 40 0.25 0`"
+        "data:18: expected 2 atoms, the number in the header, found one more, `3 3 0.5 3.0 40 0.25 0`"
     );
     assert_eq!(
         damaged("7 -1 0 0 0 0 1e-3\n", ""),
-        "data:23: expected 2 lines in the section `Velocities`, as many as the header declares atoms, found its end after 1"
+        "data:23: expected 2 lines in the section `Velocities`, one for each atom of the header, found only 1"
     );
 }
 
@@ -215,7 +215,7 @@ fn the_number_of_lines() {
 fn a_huge_count_costs_no_memory() {
     assert_eq!(
         damaged("2 atoms", "99999999999 atoms"),
-        "data:19: expected 99999999999 lines in the section `Atoms`, as many as the header declares atoms, found its end after 2"
+        "data:19: expected 99999999999 lines in the section `Atoms`, one for each atom of the header, found only 2"
     );
     let beyond = "9".repeat(40);
     assert!(damaged("2 atoms", &format!("{beyond} atoms")).starts_with("data:5:1: expected a number of atoms"));

@@ -145,7 +145,7 @@ fn a_half_step_run_sampled_at_other_times_is_refused() {
     edit(folder.path(), "series-half-step.csv.gz", "\n20,0.0002,", "\n20,0.00021,", true);
     assert_eq!(
         fault(folder.path()),
-        "RUN/series-half-step.csv.gz: expected the times of `series.csv.gz`, found 0.00021 where that has 0.0002"
+        "RUN/series-half-step.csv.gz: expected the times of `series.csv.gz`, found 0.00021 instead of 0.0002"
     );
 }
 

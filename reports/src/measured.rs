@@ -88,7 +88,7 @@ pub struct Stability {
     /// Largest stable steps.
     #[serde(default)]
     pub limits: Vec<Limit>,
-    /// Hard cases.
+    /// Results of the hard cases.
     #[serde(default)]
     pub hard: Vec<HardCaseResult>,
 }

@@ -148,8 +148,10 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         refuse_unstable(&candidate.scene, outputs, options)?;
         let mut section = section(subject, candidate, outputs, observed, &covered, options);
         if let Some(row) = section.verdicts.first_mut().filter(|_| starts > 1) {
-            let words =
-                format!("; {starts} scenes of the variant start so within the printed digits, the nearest is taken");
+            let words = format!(
+                "; {starts} scenes of the variant match the first sample within the printed digits; the \
+                         nearest is used"
+            );
             row.because.push_str(&words);
         }
         return Ok(section);
@@ -435,9 +437,9 @@ fn judged_in_time(
         return row.left(Outcome::NoReference, "there is no sample");
     };
     let DecisiveSample { sample, wide, first_outside, .. } = decisive;
-    let times = if beside.times == 1.0 { String::new() } else { format!(", taken {} times", beside.times) };
+    let times = if beside.times == 1.0 { String::new() } else { format!(", times {}", beside.times) };
     let because = format!(
-        "around t = {} s {} differ by {}, half the step by {}{times}, and {} beside",
+        "tolerance near t = {} s: {} differ by {}, halving the step changes {}{times}, plus {}",
         number::significant(sample.time, 6),
         beside.conventions,
         number::fraction(sample.between),
@@ -458,7 +460,7 @@ fn judged_in_time(
             row.left(Outcome::NoReference, reason)
         }
         (Outcome::Pass, _) if wide > 0 => {
-            let because = format!("{}; {wide} of {count} samples allow too much and are passed over", row.because);
+            let because = format!("{}; {wide} of {count} samples with too large a tolerance are skipped", row.because);
             Verdict { because, ..row }
         }
         _ => row,

@@ -110,16 +110,17 @@ pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result
 pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
     Section {
         name: "conformance".to_owned(),
-        title: "What every solver owes".to_owned(),
-        claim: format!("Whatever its method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
-        derivation: "Each property is tried in scenes of its own: a grain that runs into four others, with friction and \
-                     without; two that fly apart; one held between two walls. The same solver with a flaw of a billionth \
-                     must turn the row red. What a method owes less is amber, with its physics, and red beyond the stated \
-                     size."
+        title: "Conformance properties".to_owned(),
+        claim: format!("For every method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
+        derivation: "Each property is tested in its own scenes: a grain that collides with four others, with friction \
+                     and without; two grains that separate; one grain held between two walls. The same solver with an \
+                     error of 10⁻⁹ must fail. A documented exception of a method is amber with its reason and red \
+                     beyond the stated size."
             .to_owned(),
-        weak: "Properties hold of wrong answers too: a solver that conserves and is symmetric may have the wrong \
-               stiffness. Methods with a grid are run in the plane here, at two cells a radius."
-            .to_owned(),
+        weak:
+            "A solver can satisfy all properties and still be wrong: it may conserve momentum, be symmetric and have \
+               the wrong stiffness. Grid methods run in the plane, with two cells per radius."
+                .to_owned(),
         figures: Vec::new(),
         verdicts,
         controls,

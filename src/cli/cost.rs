@@ -177,7 +177,8 @@ pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
-/// Returns the sentences of the study, and the changes since an earlier session.
+/// Returns the summary of a cost study as text: one line per target quantity and error target, then the changes since
+/// an earlier session.
 pub(crate) fn text(study: &Study, out: &Path) -> String {
     let mut text = String::new();
     for diagram in &study.diagrams {

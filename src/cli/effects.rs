@@ -82,14 +82,14 @@ impl SceneOptions {
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
         if arguments.cases.len() > 1 {
-            return Err(Fault::input(format!("{scene}: expected a scene of yours alone, found others beside it")));
+            return Err(Fault::input(format!("{scene}: expected one scene file and no further case")));
         }
         return of_scene(scene, arguments);
     }
     if !arguments.yours.is_usual() {
-        let found = "found none: cases say themselves who runs them, in which steps, and what matters";
+        let found = "found none: a case sets its own solvers, steps and quantities";
         return Err(Fault::input(format!(
-            "--solver, --time-step, --time-step-fraction, --matters: expected a SCENE.toml of yours beside them, {found}"
+            "--solver, --time-step, --time-step-fraction, --matters: expected a scene file with them, {found}"
         )));
     }
     let mut ledgers = ledgers(&arguments.cases)?;

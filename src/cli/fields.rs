@@ -122,9 +122,7 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         let needs_time = if arguments.between { Some("--between") } else { None };
         let needs_time = needs_time.or((!arguments.tracers.is_empty()).then_some("--tracers"));
         if let Some(flag) = needs_time.filter(|_| !snapshot.time.is_finite()) {
-            return Err(Fault::input(format!(
-                "{flag}: expected a dump that tells the time, or `--time-step` beside it"
-            )));
+            return Err(Fault::input(format!("{flag}: expected a dump with times, or the option `--time-step`")));
         }
         if let Some(flag) = needs_time.filter(|_| !snapshot.points.is_empty()) {
             return Err(Fault::input(format!(
@@ -205,7 +203,7 @@ fn of_dump(
         // In a dump without times, a time interval would select nothing without an error.
         let mut first = GrainDump::open(path, None, beside.clone()).map_err(Fault::input)?;
         if first.read().map_err(Fault::input)?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
-            return Err(Fault::input("--from, --to: expected a dump that tells the time, or `--time-step` beside it"));
+            return Err(Fault::input("--from, --to: expected a dump with times, or the option `--time-step`"));
         }
     }
     let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside).map_err(Fault::input)?;

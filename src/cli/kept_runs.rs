@@ -68,9 +68,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     if let Some(letters) = &arguments.run
         && !known.iter().filter(is_named).flat_map(|case| kept::all(case)).any(|wanted| is_meant(&wanted))
     {
-        return Err(Fault::input(format!(
-            "--run: expected letters of the name of a run that is kept, found `{letters}`"
-        )));
+        return Err(Fault::input(format!("--run: expected part of the name of a stored run, found `{letters}`")));
     }
     for case in known.iter().filter(is_named) {
         let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));

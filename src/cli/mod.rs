@@ -91,7 +91,7 @@ enum Command {
     /// Old spelling of `report DIR`.
     #[command(hide = true)]
     Collect(campaign::collect::Arguments),
-    /// Measure throughput beside LAMMPS and LIGGGHTS: particle steps per second of processor time.
+    /// Compare throughput with LAMMPS and LIGGGHTS, in particle steps per second of processor time.
     Race(race::Arguments),
     /// Build, verify and update stored runs and references.
     #[command(subcommand)]

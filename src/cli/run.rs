@@ -316,7 +316,7 @@ pub(crate) fn narrow(selected: &mut Vec<CaseSelection>, options: &Options, filte
     selected.retain(|of_case| !of_case.claims.is_empty());
     if selected.is_empty() {
         let what = if options.retry_failed { "that failed there" } else { "that the filters mean" };
-        return Err(Fault::input(format!("expected at least one gate {what}, found none")));
+        return Err(Fault::input(format!("expected at least one claim {what}, found none")));
     }
     Ok(())
 }

@@ -39,9 +39,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
     }
     selected.retain(|selected| !selected.claims.is_empty());
     if selected.is_empty() {
-        return Err(Fault::input(
-            "expected at least one gate that is fair to any solver, found none in the cases named",
-        ));
+        return Err(Fault::input("expected at least one solver-independent claim in the selected cases, found none"));
     }
     Ok(selected)
 }
@@ -94,9 +92,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     selected.retain(|selected| !selected.claims.is_empty());
     // A selection without claims would end green without any check.
     if selected.is_empty() {
-        return Err(Fault::input(
-            "expected at least one gate, found none that is of the cases, solvers and levels named",
-        ));
+        return Err(Fault::input("expected at least one claim for the selected cases, solvers and levels, found none"));
     }
     Ok(selected)
 }

@@ -274,7 +274,7 @@ fn sweep(arguments: &Arguments) -> Outcome {
         ("--allow-unstable", arguments.allow_unstable),
     ];
     if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
-        return Err(Fault::input(format!("{name}: expected none with a sweep, found one")));
+        return Err(Fault::input(format!("{name}: not supported with a sweep")));
     }
     [Method::Dem, Method::Grid].into_iter().try_for_each(|method| arguments.refuse_others(method))?;
     let out = arguments.plan.as_ref().unwrap_or(&arguments.out).clone();
@@ -301,10 +301,10 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
         out.commit().map_err(Fault::writing)
     };
     let out = arguments.out.display();
-    let last = if formats.is_empty() { "" } else { ", its last state too," };
+    let last = if formats.is_empty() { "" } else { " with its last state" };
     Fault::Broken(match write() {
-        Ok(()) => format!("{error}; what there is of the run{last} is in {out}"),
-        Err(fault) => format!("{error}; what there is of the run could not be left in {out}: {fault}"),
+        Ok(()) => format!("{error}; the incomplete output{last} is in {out}"),
+        Err(fault) => format!("{error}; the incomplete output could not be written to {out}: {fault}"),
     })
 }
 

@@ -25,10 +25,7 @@ impl<'a> Variant<'a> {
         let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
         if is_named || !Path::new(text).is_dir() {
             if is_named && Path::new(text).join(folder::CLAIMS).is_file() {
-                exit::say(
-                    "warning",
-                    &format!("{text}: taken as the case of the registry; the folder of this name is ./{text}"),
-                );
+                exit::say("warning", &format!("`{text}` means the built-in case; write ./{text} for the folder"));
             }
             return Self::read(text);
         }

@@ -84,7 +84,7 @@ fn left(name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// Damages bytes at random and adds the damage to the description.
+/// Damages bytes at random. Adds the list of changes to the description of this fuzz case.
 fn damaged(lot: &mut RandomSource, bytes: &[u8]) -> Vec<u8> {
     let damages = lot.draw(damages());
     let bytes = apply(bytes, &damages);

@@ -149,9 +149,9 @@ fn a_sweep_at_once_is_its_plan() {
     let [once, old] = ["once", "old"].map(|plan| rows(&here.join(plan).join("report/rows.csv")));
     assert_eq!(once, old);
     let both = grainbench(here, &["simulate", "sweep.toml", "--solver", "dem"]);
-    assert!(both.code == Some(2) && both.err.contains("--solver: expected none with a sweep"), "{}", both.err);
+    assert!(both.code == Some(2) && both.err.contains("--solver: not supported with a sweep"), "{}", both.err);
     for (arguments, message) in [
-        (&["run", "--shard", "1/2"][..], "--shard: expected `--resume DIR` beside it"),
+        (&["run", "--shard", "1/2"][..], "--shard: expected `--resume DIR` with it"),
         (&["report", ".", "--progress"], "--progress: expected the directory of a plan"),
         (&["run", "squash", "--resume", "once"], "cannot be used with"),
         (&["simulate", "sweep.toml", "--plan", "p", "--out", "q"], "cannot be used with"),
@@ -469,7 +469,7 @@ fn what_is_no_plan_is_refused() {
     }
     for (from, to, message) in [
         ("sweep.toml\"]", "sweep.toml\", \"--nothing\"]", "arguments"),
-        ("program = \"", "program = \"0", "the program that planned"),
+        ("program = \"", "program = \"0", "the program that wrote the plan"),
     ] {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();

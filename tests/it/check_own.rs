@@ -307,7 +307,7 @@ fn a_log_of_another_run_is_refused() {
     for (file, steps) in [("dump.gz", "s from step 0 to step"), ("table.csv", "0.004 s from step 0 to step 400")] {
         let answer = judged(file, "3e-5");
         assert!(answer.code == Some(2) && answer.err.contains("log.lammps: expected "), "{}", answer.err);
-        assert!(answer.err.contains(steps) && answer.err.contains("it is of another run"), "{}", answer.err);
+        assert!(answer.err.contains(steps) && answer.err.contains("the log belongs to another run"), "{}", answer.err);
     }
     // A difference within the digits of printed times is none.
     assert_ne!(judged("table.csv", "1.0001e-5").code, Some(2));

@@ -45,7 +45,7 @@ fn rows_are_chosen_by_what_they_are() {
     let none = run(here, &[CASE, "--filter", "quantity=nothing of the kind"]);
     assert_eq!(
         (none.code, none.err.trim()),
-        (Some(2), "error: expected at least one gate that the filters mean, found none")
+        (Some(2), "error: expected at least one claim that the filters mean, found none")
     );
 }
 
@@ -103,7 +103,7 @@ fn what_failed_is_run_again_alone() {
     let none = again();
     assert_eq!(
         (none.code, none.err.trim()),
-        (Some(2), "error: expected at least one gate that failed there, found none")
+        (Some(2), "error: expected at least one claim that failed there, found none")
     );
     changed(here, |old| old["verdicts"][3]["verdict"] = "fail".into());
     let wanted = results(here, "grainbench-out")["verdicts"][3].clone();

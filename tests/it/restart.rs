@@ -311,7 +311,7 @@ fn a_run_that_breaks_leaves_what_there_is() {
         std::fs::write(path.join("scene.toml"), &timed).unwrap();
         let run = grainbench(path, &[&["simulate", "scene.toml", "--out", "out"], options].concat());
         assert_eq!(run.code, Some(1), "{options:?}: {}", run.err);
-        assert!(run.err.contains("what there is of the run"), "{}", run.err);
+        assert!(run.err.contains("the incomplete output"), "{}", run.err);
         let broken = std::fs::read_to_string(path.join("out/broken.json")).unwrap();
         let broken: serde_json::Value = serde_json::from_str(&broken).unwrap();
         assert!(run.err.contains(broken["error"].as_str().unwrap()), "{broken}");

@@ -61,14 +61,14 @@ fn elsewhere() -> Control {
 /// Suffix of the quantities, to distinguish them from those at a tenth of the size.
 const SUFFIX: &str = ", size of the paper";
 /// Reason for the tolerances.
-const TENTH: &str = "what silos of a tenth of the size were allowed from two to four runs of the prototype";
+const TENTH: &str = "the tolerance of the silos of a tenth of the size, from two to four runs of the prototype";
 
 /// Duration of the prototype's draining flows (τ).
 const PROTOTYPE: f64 = 14.0;
 
 /// Reason for the difference from the prototype after that time.
-const STRAINED: &str = "after 14 τ, the end of the prototype, the packing fraction of slow elements is 0.009 to 0.018 lower: \
-                        they have a larger strain, and φ is a function of |I₀| only for elements in steady shear";
+const STRAINED: &str = "the prototype ends at 14 τ; later, slow elements have a packing fraction lower by 0.009 to \
+                        0.018, because they are strained more and φ depends on |I₀| alone only in steady shear";
 /// Claims φ over |I₀| up to a time against the prototype, in each bin of the prototype.
 fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity

@@ -60,8 +60,7 @@ impl View {
 }
 
 /// Reason for the tolerance of a comparison of two runs.
-pub(super) const ROUNDING: &str = "rounding of positions in every step, εL, worth ω²εLΔt of velocity, and of \
-  velocities, added up over the run; \
-     of the fastest grain";
+pub(super) const ROUNDING: &str = "rounding, summed over all steps: positions by εL, which changes velocities by \
+                                   ω²εLΔt, and velocities by εU; relative to the largest surface speed U of a grain";
 /// Quantity and unit of a comparison of two runs.
 pub(super) const APART: (&str, &str) = ("worst velocity, spin × radius or position / time apart, in the end", "m/s");

@@ -170,15 +170,15 @@ impl DataParser {
             return Ok(());
         }
         Err(missing(
-            format!("{declared} lines in the section `{name}`, as many as the header declares atoms"),
-            format!("its end after {count}"),
+            format!("{declared} lines in the section `{name}`, one for each atom of the header"),
+            format!("only {count}"),
         ))
     }
 
     fn take_atom(&mut self, line: Line<'_>, content: &str) -> Result<(), ReadError> {
         let declared = self.header.atom_count();
         if self.atoms.len() as u64 >= declared {
-            let expected = format!("{declared} atoms, as many as the header declares");
+            let expected = format!("{declared} atoms, the number in the header");
             return Err(line.error(expected, format!("one more, {}", quoted(content.trim()))));
         }
         let mut fields = Fields::between_blanks(line, content);

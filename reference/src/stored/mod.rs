@@ -174,11 +174,11 @@ fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), St
     let (of_run, of_half) = (column(run, SERIES, "time")?, column(half, HALF_STEP_SERIES, "time")?);
     let differing = |found: String| StoredError::Twin { path: directory.join(HALF_STEP_SERIES), found };
     if of_run.len() != of_half.len() {
-        return Err(differing(format!("{} rows where that has {}", of_half.len(), of_run.len())));
+        return Err(differing(format!("{} rows instead of {}", of_half.len(), of_run.len())));
     }
     // The programs sum up the time steps, so equal times differ in their last digits.
     match of_run.iter().zip(&of_half).find(|(run, half)| (**run - **half).abs() > 1e-9 * run.max(**half)) {
-        Some((run, half)) => Err(differing(format!("{half:?} where that has {run:?}"))),
+        Some((run, half)) => Err(differing(format!("{half:?} instead of {run:?}"))),
         None => Ok(()),
     }
 }

@@ -42,7 +42,7 @@ pub(crate) struct Part {
 impl Part {
     /// Returns a part with a table or a text, whose file is a separate page.
     pub(crate) fn text(rank: Rank, title: &str, path: String, whole: String) -> Self {
-        let link = html! { p { a href=(path) { (title) } " (a page beside this one)" } }.into_string();
+        let link = html! { p { a href=(path) { (title) } " (separate page)" } }.into_string();
         let body = html! { main.alone { h1 { (title) } (PreEscaped(&whole)) } };
         Self { rank, whole, link, file: Some((path, super::shell(title, &body))) }
     }

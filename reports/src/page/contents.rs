@@ -26,7 +26,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                             }
                         }
                     }
-                    @if !report.judged.is_empty() { li { a href="#peers" { "Other people's solvers" } } }
+                    @if !report.judged.is_empty() { li { a href="#peers" { "External solvers" } } }
                     li { a href="#provenance" { "Provenance" } }
                 }
             }

@@ -109,18 +109,17 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     };
     html! {
         div.matrix {
-            h2 id="matrix" { "Where each solver stands: worst error over what is allowed" }
+            h2 id="matrix" { "Largest error / tolerance, by case and solver" }
             (super::scrolling("Cases by solvers", &table))
             p.key {
-                span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 of what is allowed" }
-                span { i.k0 {} i.k1 {} i.k2 {} "a published method's known error: ≤ 10, ≤ 1000, more times it" }
-                span { i.f0 {} "fails" } span { i.old {} "stored result of other sources" }
-                span { i.cannot {} "cannot express it" }
+                span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 × tolerance" }
+                span { i.k0 {} i.k1 {} i.k2 {} "known error of a published method: ≤ 10, ≤ 1000, > 1000 × tolerance" }
+                span { i.f0 {} "fails" } span { i.old {} "stored result of older solver sources" }
+                span { i.cannot {} "unsupported or no reference" }
             }
             @if !report.judged.is_empty() {
                 p.note {
-                    "The last columns are other people's programs, judged when somebody ran them: "
-                    a href="#peers" { "what they are" } "."
+                    "The last columns are external solvers, with stored results of earlier runs (" a href="#peers" { "details" } ")."
                 }
             }
         }

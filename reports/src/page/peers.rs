@@ -15,16 +15,16 @@ pub(crate) fn render(report: &Report) -> Markup {
     html! {
         @if !judged.is_empty() {
             section id="peers" {
-                h2 { "Other people's solvers" }
+                h2 { "External solvers" }
                 p.claim {
-                    "Programs by their manifests, on the rows that are fair to any solver, each with its negative control. "
-                    "They were run where and when the first table says, and not by this run."
+                    "Results of external programs (SOLVER.toml) on the solver-independent claims, each with its "
+                    "negative control. The first table states where and when they were run. This run did not run them."
                 }
                 (scrolling("Programs", &programs(judged)))
                 p.note {
-                    "By case: largest error over what is allowed, and rows passed of those that were asked; the rest the "
-                    "program cannot express. The second column has the largest of the same rows with our solvers, where "
-                    "this run judged them."
+                    "By case: largest error / tolerance, and passed / applicable results; the others are unsupported. "
+                    "The second column has the largest value of the same results with our solvers, if this run "
+                    "evaluated them."
                 }
                 (scrolling("Programs by case", &by_case(report)))
             }

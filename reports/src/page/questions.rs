@@ -175,7 +175,7 @@ fn steps(stability: &Stability) -> Markup {
         @if let Some(figure) = &figure { (drawn(figure)) }
         p { (limits(&lines)) }
         (scrolling("Hard cases by solver", &table))
-        p.note { "✓ holds · ▲ smaller step or error · ✗ quietly wrong · – cannot" }
+        p.note { "✓ holds · ▲ smaller step or error · ✗ wrong without an error · – unsupported" }
     }
 }
 

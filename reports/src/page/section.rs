@@ -66,7 +66,7 @@ pub(crate) fn pieces(
     }
     if !section.weak.is_empty() {
         let text = html! {
-            details.aside { summary { "Where this test is weak" } div.prose { (prose::render(&section.weak)) } }
+            details.aside { summary { "Limitations" } div.prose { (prose::render(&section.weak)) } }
         };
         pieces.push(Piece::Fixed(text.into_string()));
     }

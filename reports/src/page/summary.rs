@@ -91,11 +91,12 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         }
         (over_dem(costs))
         p.note {
-            "Joined: geometric mean over the quantities in which a solver reaches 10, 1 and .1 %, below how many of those it was "
-            "asked for. Small: every setting that no other of its settings beats, errors below 10⁻¹⁰ left out. "
-            "Times are of the stepping "
-            "loop. Measured " (stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
-            "; " code { "grainbench cost --update-stored" } " does it again, for the report of all cases too."
+            "Joined markers: geometric mean over the target quantities for which the solver reaches 10, 1 and 0.1 %; "
+            "their number is in the table. Small markers: settings for which no other setting of this solver is both "
+            "faster and more accurate; errors below 10⁻¹⁰ are omitted. Times are of the stepping loop. Measured " "
+            "(stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
+            "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
+                 cases."
             @if !stamp.changed.is_empty() {
                 " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same."
             }

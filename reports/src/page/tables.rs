@@ -10,7 +10,7 @@ use crate::report::RunCost;
 /// Returns the table of negative controls and their results.
 pub(crate) fn controls(controls: &[Control]) -> Markup {
     html! {
-        p.note { "Each gate is fed with wrong physics, which it must refuse." }
+        p.note { "Each claim is evaluated with wrong physics and must fail." }
         table.rows.sorts {
             thead {
                 tr {

@@ -85,13 +85,11 @@ pub(crate) fn render(study: &Study) -> Markup {
     html! {
         header id="summary" {
             p.kicker { "grainbench" }
-            h1 { "What each effect is worth" }
+            h1 { "Influence of each effect" }
             p.lead {
-                "What every scene calls for and which key turned it on. Each effect that is on is switched off: \
-                 what that changes in \
-                 every gated quantity, and in the cost. Each effect that is off is compiled in with a value \
-                   that does nothing, and \
-                 must change no bit."
+                "Effects required by each scene and the key that enables each one. Each enabled effect is switched \
+                 off: the page shows the change in every claimed quantity and in the cost. Each disabled effect is \
+                 compiled in with a neutral value and must change no bit."
             }
             p {
                 (count(EffectResult::Needed)) " needed, "
@@ -169,9 +167,9 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     };
     html! {
         p.note {
-            "Of an effect that is on: the change of the answer without it, as the median over the claims, and its cost: "
-            "particle-steps and contact evaluations with it over those without. Green: every claim passes without it. "
-            "Of one that is off: = where it changes no bit, ≠ where it does."
+            "Enabled effect: change of the result without it (median over the claims), and its cost (particle steps "
+            "and contact evaluations, with it / without it). Green: every claim passes without it. Disabled effect: = "
+            "if it changes no bit, ≠ if it does."
         }
         (scrolling("Scenes by effects", &table))
     }

@@ -56,8 +56,8 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
         Figure::graph(
             "cost-against-grains",
             "Discs in a box: one, a hundred, ten thousand",
-            "Processor time of one thread for a second of the motion, start-up apart. Where a line is level, what a step costs \
-             by itself outweighs the grains; where it rises by ten for ten, each grain costs the same.",
+            "Processor time of one thread for one second of the motion, without start-up. A level line means that the \
+             fixed cost of a step dominates. A line of slope 1 means that the cost per grain is constant.",
             [Axis::log("grains"), Axis::log("processor time a simulated second (s)")],
             curves,
         )
@@ -102,11 +102,12 @@ pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
     Ok(html! {
         h3 { "From one grain to ten thousand" }
         p {
-            "The quantities above are mostly of one grain or two. Here discs stand on each other in a box, and each solver takes "
-            "a usual resolution. Processor time of one thread, of a long run less a short one: all that is no step is start-up."
+            "Most quantities above need one or two grains. Here discs are stacked in a box, and each solver has a "
+            "usual resolution. The table shows the processor time of one thread: a long run minus a short run, so "
+            "start-up cancels."
         }
         @if let Some(picture) = &picture { (picture) }
-        (scrolling("What a step costs of few grains and of many", &table))
+        (scrolling("Cost of a step for few and for many grains", &table))
     })
 }
 

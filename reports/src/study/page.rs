@@ -30,7 +30,7 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
         sections.push(stability::render(study)?);
     }
     if !study.ledger.is_empty() {
-        title = "what each effect is worth";
+        title = "influence of each effect";
         sections.push(effects::render(study));
     }
     let body = html! {
@@ -85,9 +85,8 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs" }
             p.lead {
-                "Every solver over its knobs, on every quantity that has an exact answer: the error against the \
-                 time it took. Times \
-                 are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
+                "Each solver over its parameters, for each quantity with an exact solution: error over computing time. \
+                 Times are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
             }
             @if let Some(old) = &study.against { (changes(study, old)) }
             div.overview {

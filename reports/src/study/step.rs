@@ -66,17 +66,17 @@ pub(crate) fn render(model: &Model) -> Markup {
         }
     };
     html! {
-        h3 { "What a step costs, piece by piece" }
+        h3 { "Cost of a step by part" }
         p {
-            "Processor time of one thread, of long runs less short ones, for one piece of work in one step: a step of "
-            "grains takes as long as its grains, listed pairs and contacts together, and now and then its list, which is not "
-            "counted here. The scenes are of ten thousand discs, sixteen thousand spheres and up to 58 thousand points, which "
-            "caches hold in part: in larger ones the same pieces cost more. Beside each price stands what this machine does "
-            "at most in that time: " (number::significant(streamed, 3)) " B/ns read from and written to memory that no "
-            "cache holds, and " (number::significant(computed, 3)) " multiplications and additions a nanosecond in "
-            "registers."
+            "Processor time of one thread for one part of a step, from a long run minus a short run. The time of a "
+            "step is the sum over its grains, listed pairs and contacts. Rebuilding the list of pairs is not counted. "
+            "The scenes have ten thousand discs, sixteen thousand spheres and up to 58 thousand points, which fit "
+            "partly into caches; in larger scenes the same parts cost more. The last columns show what this machine "
+            "can transfer and compute in the same time: " (number::significant(streamed, 3)) " B/ns read from and "
+            "written to memory outside the caches, and " (number::significant(computed, 3)) " multiplications and "
+            "additions per nanosecond in registers."
         }
-        (scrolling("What a step costs", &table))
+        (scrolling("Cost of a step", &table))
     }
 }
 

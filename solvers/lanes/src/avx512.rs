@@ -58,7 +58,8 @@ fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     ]
 }
 
-/// Returns two quads for each of four lanes, from the first two and the last two numbers of each quad.
+/// Returns both quads of each of four lanes. `[a, b]` hold the first and the last two numbers of the first quads;
+/// `[c, d]` hold those of the second quads.
 #[inline(always)]
 fn in_pairs(lanes: V4, [a, b]: [__m512d; 2], [c, d]: [__m512d; 2]) -> [__m512d; 4] {
     let avx = lanes.avx512f;

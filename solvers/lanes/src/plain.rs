@@ -30,7 +30,7 @@ const fn all_bits(yes: bool) -> u64 {
     if yes { u64::MAX } else { 0 }
 }
 
-/// Selects one of two numbers by such bits.
+/// Returns `yes` if all bits of `mask` are set, `no` if none is.
 #[inline(always)]
 const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(yes.to_bits() & mask | no.to_bits() & !mask)

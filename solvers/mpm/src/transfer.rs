@@ -73,12 +73,12 @@ impl Transfer for Apic {
     }
 }
 
-/// FLIP with spin: points keep their velocity and a spin, and add the change of both. Unlike FLIP it does not lose the
+/// FLIP with spin: a point keeps its velocity and spin and adds the changes of both. Unlike FLIP it does not lose the
 /// angular momentum of points of finite extent, and unlike APIC it has no damping.
 ///
-/// The change of spin is that of a rigid rotation with the angular momentum of the nodes' change about the point: Δω =
-/// Σ w r × Δv / Σ w |r|² about each axis, with r from the point to the node, perpendicular to that axis. A yielding
-/// point takes the spin of the velocity around it ([`crate::stress::Update`]).
+/// The velocity changes Δv of the nodes have an angular momentum about the point. The spin changes by the rigid
+/// rotation with this angular momentum: Δω = Σ w r × Δv / Σ w |r|² about each axis, with r from the point to the node,
+/// perpendicular to that axis. A yielding point takes the spin of the velocity around it ([`crate::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 

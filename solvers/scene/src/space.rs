@@ -344,7 +344,7 @@ mod tests {
         assert!(same(Plane::finger(unit), Solid::finger(solid_unit)));
         assert!((Plane::determinant(unit) - Solid::determinant(solid_unit)).abs() < 1e-15);
     }
-    /// H (1 + G/2) = G for any G, and the H of a rotation about any axis has no symmetric part.
+    /// Checks H (1 + G/2) = G for any displacement gradient G, and that H of a rotation about any axis is skew.
     #[test]
     fn a_rotation_has_no_strain_at_the_midpoint() {
         let gradient = Matrix3::new(0.11, 0.2, -0.3, -0.17, 0.03, 0.25, 0.07, -0.4, -0.2);

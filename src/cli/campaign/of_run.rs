@@ -98,7 +98,10 @@ impl ClaimStudy {
         let run::Arguments { cases, options, .. } = again.arguments;
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
-            return Err(Fault::input("--filter: expected what is known beforehand, found `outcome`"));
+            return Err(Fault::input(
+                "--filter: expected quantity, source or evidence (`outcome` is unknown before the \
+                                     run)",
+            ));
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
         run::narrow(&mut selected, &options, &filters)?;
@@ -156,16 +159,19 @@ impl ClaimStudy {
         Ok(pieces)
     }
 
-    /// Returns the work items of a plan, which must be those that it was made with.
+    /// Returns the work items of a plan.
+    ///
+    /// # Errors
+    /// The cases or programs have changed since the plan was written.
     fn planned(&self, plan: &Plan) -> Result<Vec<(Id, WorkItem)>, Fault> {
         let pieces = self.pieces(&plan.head.program)?;
         let known: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
         if pieces.iter().all(|(id, _)| known.contains(id)) {
             return Ok(pieces);
         }
-        let (place, expected) = (plan.path.display(), "the cases and programs that were planned with");
+        let path = plan.path.display();
         Err(Fault::input(format!(
-            "{place}: expected {expected}, found others; plan again, what is the same stays finished"
+            "{path}: the cases or programs have changed; write the plan again, unchanged tasks stay finished"
         )))
     }
 

@@ -101,7 +101,7 @@ impl Arguments {
         let words = std::iter::once("plan").chain(plan.head.arguments.iter().map(String::as_str));
         let again = <PlanParser as clap::Parser>::try_parse_from(words).map_err(|error| {
             let found = error.to_string().lines().next().unwrap_or_default().to_owned();
-            Fault::input(format!("{}: arguments: expected those of `plan`, found others: {found}", plan.path.display()))
+            Fault::input(format!("{}: expected arguments of a plan, found {found}", plan.path.display()))
         })?;
         Ok(again.arguments)
     }
@@ -121,7 +121,7 @@ impl Arguments {
         match given.iter().find(|(name, is_given)| *is_given && !heeded.contains(name)) {
             Some((name, _)) => {
                 let study_name = if heeded.is_empty() { "a sweep" } else { self.what.as_str() };
-                Err(Fault::input(format!("{name}: expected none with {study_name}, found one")))
+                Err(Fault::input(format!("{name}: not supported with {study_name}")))
             }
             None => Ok(()),
         }
@@ -152,7 +152,7 @@ pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
         return Err(Fault::input("expected at least one task, found none of the cases and solvers named"));
     }
     if tasks.len() > u32::MAX as usize {
-        return Err(Fault::input(format!("expected fewer tasks, found {}", tasks.len())));
+        return Err(Fault::input(format!("expected at most 4294967295 tasks, found {}", tasks.len())));
     }
     Ok(Plan::write(&arguments.out, head, tasks)?)
 }

@@ -63,7 +63,7 @@ impl WorkOptions {
     pub(crate) fn refuse_without_plan(&self) -> Result<(), Fault> {
         let given = [("--shard", self.shard.is_some()), ("--on", self.on.is_some())];
         match given.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => Err(Fault::input(format!("{name}: expected `--resume DIR` beside it, found none"))),
+            Some((name, _)) => Err(Fault::input(format!("{name}: expected `--resume DIR` with it, found none"))),
             None => Ok(()),
         }
     }

@@ -10,11 +10,7 @@ fn another_number_is_another_task() {
     ok(&grainbench(here, &["run", "--resume", "p"]));
     fs::write(here.join("sweep.toml"), SWEEP.replace("0.5, 0.9", "0.5, 0.8")).unwrap();
     let stale = grainbench(here, &["run", "--resume", "p"]);
-    assert!(
-        stale.code == Some(2) && stale.err.contains("sweep.toml: expected the file that was planned with"),
-        "{}",
-        stale.err
-    );
+    assert!(stale.code == Some(2) && stale.err.contains("sweep.toml: expected the file of the plan"), "{}", stale.err);
     ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
     assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
 }
@@ -63,7 +59,7 @@ fn an_edited_input_is_run_again() {
         assert!(text.contains(from), "{file}: {from}");
         fs::write(&path, text.replacen(from, to, 1)).unwrap();
         let stale = grainbench(here, &["report", "p"]);
-        let message = "expected the file that was planned with, found another";
+        let message = "expected the file of the plan, found a changed file";
         assert!(stale.code == Some(2) && stale.err.contains(message), "{file}: {}", stale.err);
         ok(&grainbench(here, &[plan, &["--plan", "p"]].concat()));
         let again = ok(&grainbench(here, &["run", "--resume", "p"])).out.clone();
