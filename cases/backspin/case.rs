@@ -57,7 +57,8 @@ fn soft(variant: &str) -> Option<(OneGrain, f64)> {
 fn first_step(variant: &str) -> Tolerance {
     computed(
         soft(variant).map_or(f64::NAN, |(grain, step)| 2.0 * step / sliding(&grain)),
-        "in LAMMPS' convention it slides from the start, but the first step may lack friction: Δt over half the time of sliding",
+        "in the convention of LAMMPS the disc slides from the start, but friction may be absent in the first step: Δt \
+         over half the time of sliding",
     )
 }
 
@@ -68,8 +69,8 @@ fn fallen_behind(variant: &str) -> Tolerance {
     };
     computed(
         soft(variant).map_or(f64::NAN, behind),
-        "the dashpot counts in the limit, so that friction falls below it when the slip is s_c = γ_t μ g (1 + 1/i)/(k_t/m), \
-         which costs up to f s_c γ_t/(k_t/m); and the first step may lack friction, μ g Δt t_s",
+        "the Coulomb limit includes the dashpot, so friction falls below the limit at the slip velocity s_c = γ_t μ g \
+         (1 + 1/i)/(k_t/m), which costs up to f s_c γ_t/(k_t/m); friction may be absent in the first step, μ g Δt t_s",
     )
 }
 
@@ -105,14 +106,18 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
             .fair_to_any()
     };
     let slides = |allowed| {
-        estimated(allowed, "the contact is elastic before it slides and rings when it rolls: ∝ √(overlap/R), here 1e-5")
-            .up_to(2.0 * allowed)
+        estimated(
+            allowed,
+            "the contact is elastic before it slides and vibrates when it rolls: ∝ √(overlap/R), here \
+                            1e-5",
+        )
+        .up_to(2.0 * allowed)
     };
     // A lever arm a changes the velocity by (1−i)/(1+i) of (R−a)/R, and the spin by 2/(1+i) of it: i = 2/5 and 1/2.
     let arm = |times: f64| {
         computed(
             times * NEARLY_RIGID,
-            "a torque arm between R and R − overlap: times (1−i)/(1+i), or 2/(1+i) of the spin, at overlap/R = 1e-5",
+            "lever arm between R and R − overlap: overlap/R = 1e-5 times (1−i)/(1+i), for the spin times 2/(1+i)",
         )
     };
     vec![
@@ -139,8 +144,9 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
 }
 
 /// Reason for the tolerance under parameter variation.
-const ELSEWHERE: &str = "half a period of each spring before friction acts in full, over the time of sliding; of what \
-     rolls overlap/R for the torque arm and the speed at which the spring would ring undamped";
+const ELSEWHERE: &str = "half a period of each spring until friction acts in full, over the time of sliding; for \
+                         rolling grains overlap/R for the lever arm and the velocity of the undamped vibration of the \
+                         spring";
 
 /// Returns the time of sliding (s).
 fn sliding(grain: &OneGrain) -> f64 {

@@ -63,8 +63,8 @@ pub(super) fn claims() -> Vec<Claim> {
             })
             .within(computed(
                 flattened(8.0),
-                "the radius of rolling is smaller, by no more than the disc is flattened: W u/(πE'), u = 2 ln(2R/a) − 5/4 − n/4, \
-                 and what springs of 2.6 E'/h an area give under the mean pressure W/2a",
+                "the rolling radius is smaller by at most the flattening of the disc, W u/(πE') with u = 2 ln(2R/a) − \
+                 5/4 − n/4, plus the compression of springs of 2.6 E'/h per area under the mean pressure W/2a",
             ))
             .refuses(
                 Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")
@@ -79,7 +79,7 @@ pub(super) fn claims() -> Vec<Claim> {
             )
             .up_to(0.5))
             .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
-            .within(judged(0.02, "elasticity; it is worth .015 for the sphere of the prototype"))
+            .within(judged(0.02, "elasticity; it amounts to .015 for the sphere of the prototype"))
             .refuses(Control::without_the_error(
                 "nodal contact of surfaces that met",
                 "mpm:gap",
@@ -94,7 +94,7 @@ pub(super) fn claims() -> Vec<Claim> {
             )
             .up_to(0.2))
             .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
-            .within(judged(0.05, "what a contact that acts at the surface reaches at this resolution"))
+            .within(judged(0.05, "accuracy of a contact that acts at the surface, at this resolution"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3))),
     );
     claims
@@ -109,8 +109,8 @@ fn stiff_discs() -> [Claim; 2] {
             .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
             .within(judged(
                 allowed,
-                "as of the stiffened discs on the slopes: elasticity falls with the modulus or its square root, and \
-                 what is left is the discretisation of the contact",
+                "as for the stiffened discs on the slopes: the effect of elasticity decreases with the modulus or its \
+                 square root; the discretisation of the contact remains",
             ))
             .refuses(slippery())
     })
@@ -129,8 +129,9 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Backspin of an elastic disc, R/4",
-        "`mpm` slides, then rolls and rings. With the 2000 paper's contact turning presses new material into the patch \
-         that holds the disc up: it is spun down at once, by several times the friction of its weight.",
+        "The disc of `mpm` slides, then rolls and vibrates. With the contact of the 2000 paper the rotation presses \
+         new material into the contact region: the disc loses its spin at once, by several times the friction of its \
+         weight.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     ))

@@ -10,7 +10,7 @@ const SOURCE: Source = Source::Derived("waves in a line of material (derivation)
 const VELOCITY: ClaimFigure = ClaimFigure {
     name: "velocity",
     title: "Velocity of the right bar",
-    caption: "It grows for as long as the bars touch, 2L/c, to that of the bar that came.",
+    caption: "It grows while the bars are in contact, 2L/c, to the initial velocity of the left bar.",
     axes: ["time t (s); L/c = 1 s", "velocity (m/s)"],
     logarithmic: false,
 };
@@ -108,7 +108,7 @@ fn claims() -> Vec<Claim> {
                 )
                 .within(computed(
                     2.0 * AHEAD * width,
-                    "what comes ahead of a front that the grid's dispersion has drawn out, when it is due: 2 (−Ai'(0)) δ/2L \
+                    "the grid disperses the front, so part of it arrives early: 2 (−Ai'(0)) δ/2L at the arrival time \
                      (derivation); in units of v",
                 ))
                 .refuses(softer().coarser(LEVELS[0].resolution))
@@ -123,8 +123,8 @@ fn claims() -> Vec<Claim> {
                 })
                 .within(computed(
                     LEFT_BEHIND * width,
-                    "bars part when half of the drawn-out front has come, before all that the contact owes has been given: \
-                     .447 δ/2L (derivation); in units of v",
+                    "the bars separate when half of the dispersed front has arrived, before the contact has \
+                     transferred all momentum: .447 δ/2L (derivation); in units of v",
                 ))
                 .refuses(denser().coarser(LEVELS[0].resolution))
                 .fair_to_any_continuum(),
@@ -137,7 +137,7 @@ fn claims() -> Vec<Claim> {
                 let exact = -Impact::from_scene(&done[0].scene).stress();
                 Ok(Measurement::new(plateau(&done[0])?, exact, -exact))
             })
-            .within(estimated(0.015, "ringing behind a front that is a jump"))
+            .within(estimated(0.015, "oscillation behind a discontinuous front"))
             .refuses(softer())
             .fair_to_any_continuum(),
     );
@@ -158,7 +158,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "stress",
         "Stress in the middle of the right bar",
-        "A front is a jump, behind which grids ring.",
+        "The front is a jump; grid solutions oscillate behind it.",
         [Axis::linear("time t (s); L/c = 1 s"), Axis::linear("stress / (ρcv/2)")],
         stresses,
     )])

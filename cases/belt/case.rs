@@ -17,7 +17,10 @@ const STOPS: &str = "stops";
 const SUBSTEPS: u32 = 8;
 
 const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
-const STOPPED: Source = Source::Derived("no angular momentum about the belt: at rest after the way f V T (derivation)");
+const STOPPED: Source = Source::Derived(
+    "no angular momentum about the belt: at rest after the displacement f V T \
+                                         (derivation)",
+);
 
 pub(crate) static CASE: Case = Case {
     name: "belt",
@@ -187,16 +190,19 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     let arm = |times: f64| {
         computed(
             times * NEARLY_RIGID,
-            "a torque arm between R and R − overlap: at most 2/(1+i) < 2 times overlap/R = 1e-5, of the spin a half of that",
+            "lever arm between R and R − overlap: at most 2/(1+i) < 2 times overlap/R = 1e-5, for the spin half of \
+             that",
         )
     };
     let displaced = computed(
         belt.displaced(1.0, step),
-        "(f V (s/V + Δt) + s)/x: the spring's stretch s = μ m g/k_t before it slides and after it, and a step without friction",
+        "(f V (s/V + Δt) + s)/x: spring displacement s = μ m g/k_t before and after sliding, and one step without \
+         friction",
     );
     let halfway = computed(
         2.0 * belt.lag(step) / belt.sliding(),
-        "2 (s/V + Δt)/t_s: the spring must be stretched by s = μ m g/k_t, and the first step may lack friction",
+        "2 (s/V + Δt)/t_s: the spring must reach the displacement s = μ m g/k_t, and friction may be absent in the \
+         first step",
     );
     vec![
         near_rigid_claim("displacement at 1 s", "m", displaced, false, stronger_friction(), |done| {
@@ -222,7 +228,7 @@ fn rounding() -> Tolerance {
     let steps = 1.0 / (0.01 * 2.0 * (1e-3_f64 * 0.5 / 9.8).sqrt());
     computed(
         steps * f64::EPSILON,
-        "rounding, 2⁻⁵² in each of 7000 steps: angular momentum fixes it once the spring has come to rest",
+        "rounding, 2⁻⁵² in each of 7000 steps: angular momentum determines the value once the spring is at rest",
     )
 }
 
@@ -267,9 +273,9 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
             .within(tolerance)
             .refuses(control)
     };
-    let arm = "a torque arm between R and R − δ with its overlap at rest δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, of the \
-               spin a half of that";
-    let late = "f V Δt/x: friction that begins or ends a step Δt too late";
+    let arm = "lever arm between R and R − δ with the static overlap δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, for \
+               the spin half of that";
+    let late = "f V Δt/x: friction begins or ends up to a step Δt late";
     vec![
         impulse_claim(
             "displacement",
@@ -308,13 +314,14 @@ fn stopped() -> Vec<Claim> {
     let way = belt.rolling() * belt.stop;
     let displaced = computed(
         (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way,
-        "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): twice the spring's stretch s = μ m g/k_t before it slides and after it, twice \
-         a step without friction, and the ring of the spring, with ω, at whose phase the belt stops",
+        "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): spring displacement s = μ m g/k_t before and after sliding and one \
+         step without friction, each for both slides; and the vibration of the spring with ω, whose phase at the stop \
+         of the belt is unknown",
     );
     let rest = || {
         computed(
             2.0 * NEARLY_RIGID,
-            "overlap/R = 1e-5 for torque arms that need not be the same in both slides; in units of the belt's speed",
+            "overlap/R = 1e-5, because the lever arms of the two slides may differ; in units of the speed of the belt",
         )
     };
     vec![
@@ -346,12 +353,16 @@ fn kick() -> Claim {
     });
     claim("velocity after the first step, LIGGGHTS' less ours", "m/s")
         .runs(runs)
-        .equals(Source::Derived("a dashpot that friction does not limit, from step 0 or 1 on (derivation)"), |done| {
+        .equals(Source::Derived("a dashpot without Coulomb limit, from step 0 or 1 on (derivation)"), |done| {
             let [ours, program] = [last(&done[0])?.1.v, last(&done[1])?.1.v];
             let kicked = Belt::from_scene(&done[0].scene).kicked(&done[0].scene, done[0].record.provenance.time_step);
             Ok(Measurement::new(program - ours, kicked[1] - kicked[0], kicked[1]))
         })
-        .within(computed(1e-3, "overlap/R, for a torque arm between R and R − overlap; in units of LIGGGHTS' velocity"))
+        .within(computed(
+            1e-3,
+            "overlap/R, for a lever arm between R and R − overlap; in units of the velocity of \
+                                LIGGGHTS",
+        ))
         .refuses(Control::ours("a dashpot along the belt × 1.05 in ours", |scene| {
             scene.change_laws(|law| law.tangential_damping *= 1.05);
         }))
@@ -371,8 +382,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "velocity",
         "From sliding to rolling on a belt",
-        "The belt runs at 3 m/s. Velocity rises at μ g until the grain rolls, at a third of that or two sevenths; when the belt \
-         stops the disc is brought to rest. dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes).",
+        "The belt runs at 3 m/s. The velocity rises at μ g until the grain rolls, at a third or two sevenths of the \
+         speed of the belt. When the belt stops, the disc comes to rest. dem:lammps at overlap/R = 1e-3 (markers), \
+         rigid answer (dashes).",
         [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
         curves,
     )])

@@ -53,7 +53,11 @@ fn runs(variant: &'static str) -> [Run; 2] {
 
 /// Claims the force on the first grain of a pair, m Δv/Δt, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(1.0, "the same cycle; in units of the largest force");
+    let allowed = rounding(
+        1.0,
+        "rounding only, because both programs use the same integration cycle; in units of the \
+                                 largest force",
+    );
     let control = Control::ours("E* × 1.00001 in ours", |scene| {
         scene.change_laws(|law| law.scale_normal(1.00001));
     });
@@ -65,7 +69,11 @@ fn force(variant: &'static str, about: &str) -> Claim {
 
 /// Claims the torque on the first grain of a pair, I Δω/Δt.
 fn torque(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(1.0, "the same cycle; in units of the largest torque");
+    let allowed = rounding(
+        1.0,
+        "rounding only, because both programs use the same integration cycle; in units of the \
+                                 largest torque",
+    );
     let control = Control::ours("μ × 1.00001 in ours", |scene| {
         scene.change_laws(|law| law.friction *= 1.00001);
     });

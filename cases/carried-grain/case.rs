@@ -14,7 +14,7 @@ pub(crate) static CASE: Case = Case {
     claim: "Tangential springs between grains turn with their contact: with its normal, and about it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Nothing slips, and springs are linear and alike along the normal and the tangent.",
+    weakness: "No contact slips. The springs are linear, with equal stiffness along the normal and the tangent.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -90,15 +90,15 @@ fn after_a_turn(variant: &'static str) -> Claim {
     let allowed = motion(variant).map_or(f64::NAN, |motion| motion.off(variant == "across") / motion.start.norm());
     claim(format!("place after a turn, axis {variant} the normals, off"), "m")
         .run(Run::new(variant, "dem", STEP.resolution))
-        .holds("a mass on springs alike in all directions, whose rest place turns (derivation)", |done| {
+        .holds("a mass on isotropic springs whose rest position rotates (derivation)", |done| {
             let motion = Motion::from_scene(&done[0].scene);
             let exact = sprung(motion.start, motion.spin, motion.frequency, motion.time);
             Ok(Measurement::new((place(&done[0])? - exact).norm(), 0.0, motion.start.norm()))
         })
         .within(computed(
             allowed,
-            "second order, d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curved surfaces, 2 d (Ω/ω)² c (1/2 + ωT/4); across \
-             the normals lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
+            "time step (second order), d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curvature of the surfaces, 2 d \
+             (Ω/ω)² c (1/2 + ωT/4); across the normals, lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
         ))
         .refuses(Control::scene("the drivers run on and do not spin", |scene| {
             scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
@@ -117,7 +117,7 @@ fn spin() -> Claim {
             let rate = Motion::from_scene(&done[0].scene).spin.norm();
             Ok(Measurement::new(done[0].last("carried.omega")?, rate, rate))
         })
-        .within(computed(allowed, "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + θ)²"))
+        .within(computed(allowed, "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + θ)²"))
         .refuses(Control::scene("the drivers run on and do not spin", |scene| {
             scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
         }))

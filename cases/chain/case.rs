@@ -87,8 +87,8 @@ fn claims() -> Vec<Claim> {
         })
         .within(computed(
             2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),
-            "the force rings about the impedance by √(2/π) x^(−3/2), x = 2ω₀t; the mean from x = 20 to 40 keeps at most one \
-             half wave of it, 2√(2/π) 20^(−5/2)",
+            "the force oscillates about the impedance by √(2/π) x^(−3/2), x = 2ω₀t; the mean from x = 20 to 40 \
+             contains at most one uncancelled half wave, 2√(2/π) 20^(−5/2)",
         ))
         .refuses(Control::scene("contacts 2 % too stiff", |scene| {
             scene.change_laws(|law| law.scale_normal(1.02));
@@ -102,7 +102,7 @@ fn claims() -> Vec<Claim> {
         )
         .up_to(2.0))
         .equals(BESSEL, |done| bead(&done[0], 22, "v22.vx"))
-        .within(judged(4e-4, "what a solver with springs reaches, in units of V"))
+        .within(judged(4e-4, "accuracy of a solver with springs, in units of V"))
         .refuses(Control::without_the_error("dem in its place", "dem", FINEST.resolution));
     BEADS.into_iter().map(at_bead).chain([order, force, rigid]).collect()
 }

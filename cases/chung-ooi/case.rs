@@ -117,7 +117,7 @@ fn elastic() -> Vec<Claim> {
                 let exact = exact(&done[0].scene);
                 Ok(Measurement::new(read(&done[0])?, exact, exact))
             })
-            .within(estimated(1e-6, "discretisation of the impact by some thousand steps"))
+            .within(estimated(1e-6, "discretisation of the impact by about a thousand steps"))
             .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))))
     };
     let mut claims = Vec::new();
@@ -168,9 +168,9 @@ fn late(variant: &str, restitution: f64) -> Tolerance {
     };
     computed(
         CASE.variant(variant).map_or(f64::NAN, error),
-        "the dashpot is half a step late, which makes ζ larger by the factor 1 + ζωΔt/2: \
-         e ζ² [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)] ωΔt with the frequency at the deepest overlap; the touch takes up to half a \
-         step of its force, e (5/4) ζ (v Δt/δ_max)^{5/4}, and the release, where the force is zero, nothing",
+        "the dashpot is half a step late, so ζ is larger by the factor 1 + ζωΔt/2: e ζ² [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 \
+         − ζ²)] ωΔt with the frequency at the largest overlap; the start of contact costs up to half a step of the \
+         dashpot's force, e (5/4) ζ (v Δt/δ_max)^{5/4}; the release adds no error, because the force is zero there",
     )
 }
 
@@ -180,7 +180,7 @@ fn restitution() -> Vec<Claim> {
             let more = Control::scene("a little damping, e = .99", |scene| {
                 scene.change_laws(|law| law.damping_ratio = damping_ratio(0.99));
             });
-            (estimated(1e-6, "discretisation of the impact by some thousand steps; there is no dashpot"), more)
+            (estimated(1e-6, "discretisation of the impact by about a thousand steps, without a dashpot"), more)
         } else {
             let more = Control::scene("the factor √(5/6) left out", |scene| {
                 scene.change_laws(|law| law.damping_ratio *= (6.0_f64 / 5.0).sqrt());
@@ -326,7 +326,7 @@ fn rigid() -> Vec<Claim> {
                 )
                 .up_to(0.1))
             .equals(SLIDING, |done| Ok(Measurement::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
-            .within(judged(2e-5, "what a solver with springs reaches"))
+            .within(judged(2e-5, "accuracy of a solver with springs"))
             .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution)),
     ]
 }
@@ -374,8 +374,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "tangential-restitution",
             "Tangential restitution of an oblique impact (test 4)",
-            "Above 32.5° the impact slides throughout and depends on friction and restitution alone; below, Mindlin's spring \
-             sticks and rings: there is no closed form, and no gate.",
+            "Above 32.5° the impact slides throughout and depends on friction and restitution alone; below, Mindlin's \
+             spring sticks and vibrates: there is no closed form and no claim.",
             [Axis::linear("angle of impact from the normal (°)"), Axis::linear("v_t after / v_t before")],
             restitution,
         ),

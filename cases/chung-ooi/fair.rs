@@ -15,7 +15,8 @@ const ANGLES: [f64; 2] = [40.0, 70.0];
 const STEEP: f64 = 20.0;
 /// Largest error of an integration scheme, for an impact of about a thousand steps.
 const FIRST_ORDER: f64 = 1e-3;
-const SCHEME: &str = "a scheme of first order is off by about a step of an impact that takes a thousand and more";
+const SCHEME: &str = "a first-order scheme has an error of about one step, and the impact takes a thousand steps or \
+                      more";
 
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> = ELASTIC.into_iter().flat_map(normal).collect();
@@ -138,7 +139,7 @@ fn given_back(run: Run) -> Claim {
         })
         .within(computed(
             2.0 * FIRST_ORDER,
-            "release falls within a step and a dashpot may be a step late: two of an impact of a thousand",
+            "the release falls within a step, and a dashpot may be a step late: two of a thousand steps of the impact",
         ))
         .refuses(Control::scene("damping × 1.2", |scene| scene.change_laws(|law| law.damping_ratio *= 1.2)))
 }
@@ -169,7 +170,8 @@ fn sliding(run: &Run) -> [Claim; 2] {
         };
     let arm = computed(
         depth(run) + FIRST_ORDER,
-        "friction acts at a distance between R and R − overlap; beside it first order in Δt; of the spin that it gives",
+        "the lever arm of friction is between R and R − overlap; the rest is first order in Δt; relative to the spin \
+         due to friction",
     );
     [
         sliding_claim(
@@ -179,7 +181,8 @@ fn sliding(run: &Run) -> [Claim; 2] {
             0,
             computed(
                 FIRST_ORDER,
-                "first order in Δt: one step of an impact of a thousand, which may stick; of what friction takes",
+                "first order in Δt: the contact may stick in one of the thousand steps of the impact; relative to the \
+                 change due to friction",
             ),
             Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)),
         ),
@@ -212,7 +215,7 @@ fn coulomb(run: Run) -> Claim {
         })
         .within(computed(
             2.0 * FIRST_ORDER / (high - low),
-            "two steps of an impact of a thousand; of the width of the band",
+            "two of a thousand steps of the impact; relative to the width of the band",
         ))
         .refuses(Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)))
 }
@@ -223,9 +226,10 @@ fn lever(run: Run, times: f64) -> Claim {
     let allowed = computed(
         times * depth(&run) + FIRST_ORDER,
         if times > 1.0 {
-            "the arm is between R and R − overlap, and a spring that rings pulls back a part of what it pushed: three times that"
+            "the lever arm is between R and R − overlap; a vibrating spring returns part of its impulse, so three \
+             times that"
         } else {
-            "the arm is between R and R − overlap"
+            "the lever arm is between R and R − overlap"
         },
     );
     let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
@@ -254,7 +258,8 @@ fn momentum(run: &Run) -> [Claim; 2] {
             })
             .within(computed(
                 1.25e5 * 1e-10,
-                "velocities are told to ten digits of the light sphere's, and the other is 125,000 times as heavy",
+                "velocities are written with ten digits relative to the light sphere, and the other sphere is 125,000 \
+                 times as heavy",
             ))
             .refuses(Control::scene("the second sphere a hundredth heavier", |scene| scene.grains[1].mass *= 1.01))
     };
@@ -269,13 +274,13 @@ fn gears(variant: &'static str) -> [Claim; 3] {
     let gear_claim = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)
             .run(Run::new(variant, "dem", STEP.resolution))
-            .holds("surfaces that do not slip against each other exert no friction", move |done| {
+            .holds("surfaces without relative slip exert no friction", move |done| {
                 let grain = &done[0].scene.grains[0];
                 let (before, scale) =
                     if is_spin { (grain.spin.y, grain.spin.y) } else { (0.0, grain.spin.y * grain.radius) };
                 Ok(Measurement::new(done[0].last(column)?, before, scale))
             })
-            .within(computed(10.0 * 1e-10, "spins differ in sign alone; velocities are told to ten digits"))
+            .within(computed(10.0 * 1e-10, "spins differ only in sign; velocities are written with ten digits"))
             .refuses(Control::scene("one sphere turns slower by a hundredth", |scene| scene.grains[1].spin *= 0.99))
     };
     [

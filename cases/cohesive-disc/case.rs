@@ -65,15 +65,15 @@ fn claims() -> Vec<Claim> {
             .equals(STRENGTH, |done| slip(&done[0]))
             .within(computed(
                 rounding,
-                "once the spring has come to rest or has yielded the force is constant: position, velocity, spin and \
-                 spring round by ε in every step; in units of g sin θ",
+                "the force is constant once the spring is at rest or has yielded: position, velocity, spin and spring \
+                 each have a rounding of ε per step; in units of g sin θ",
             ))
             .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.cohesion *= by)))
     };
     let refusal = |solver, step| claim("refusal of cohesion", "1").run(Run::new(PLAIN, solver, step));
     let programs = ["lammps", "liggghts"].map(|program| {
         refusal(program, STEP.resolution).refused(
-            "its cohesion attracts along the normal; shear strength that needs no load it has none",
+            "its cohesion attracts along the normal; it has no shear strength without load",
             Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
         )
     });
@@ -98,7 +98,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "slip",
         "Slip of the surface",
-        "60°, μ = .2: without cohesion the disc would slide; with the threshold's it rolls.",
+        "60°, μ = .2: without cohesion the disc would slide; with the threshold cohesion it rolls.",
         [Axis::linear("time t (s)"), Axis::linear("slip velocity v − ΩR (m/s)")],
         curves,
     )])

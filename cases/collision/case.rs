@@ -110,19 +110,22 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .run(Run::new(FELT, "dem", LEVELS[1].resolution))
-        .equals(Source::Derived("kδ + c (δ(n) − δ(n−1))/Δt where that pushes, in numbers by hand (derivation)"), |done| {
-            let (a, b, time) = (done[0].column("a.x")?, done[0].column("b.x")?, &done[0].series().time);
-            let overlap = |at: usize| 2.0 - (b[at] - a[at]);
-            let rate = |at: usize| (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]);
-            let force_at = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
-            // The discs start apart.
-            let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(force_at)).collect();
-            Ok(Measurement::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
-        })
+        .equals(
+            Source::Derived("kδ + c (δ(n) − δ(n−1))/Δt if repulsive, with typed values (derivation)"),
+            |done| {
+                let (a, b, time) = (done[0].column("a.x")?, done[0].column("b.x")?, &done[0].series().time);
+                let overlap = |at: usize| 2.0 - (b[at] - a[at]);
+                let rate = |at: usize| (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]);
+                let force_at = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
+                // The discs start apart.
+                let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(force_at)).collect();
+                Ok(Measurement::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
+            },
+        )
         .within(computed(
             0.2 * (4.0 * f64::EPSILON / 2e-4 + f64::EPSILON * 500.0) + 8.0 * f64::EPSILON * 1.0e4 / LARGEST,
-            "rounding: 4ε of a way of v Δt = 2e-4 a step and ε of up to 500 steps, of a dashpot's c v = .2 of the largest force; \
-             8ε of k times a radius",
+            "rounding: 4ε relative to the displacement v Δt = 2e-4 per step, and ε of up to 500 steps, times the \
+             dashpot force c v = .2 of the largest force; 8ε of k times a radius",
         ))
         .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
 }
@@ -131,7 +134,8 @@ fn force_that_moves() -> Claim {
 /// the velocity of the sample: half a step later than the force that moved the grains.
 fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
-    let because = "the same cycle; in units of the largest force without damping";
+    let because = "rounding only, because both programs use the same integration cycle; in units of the largest force \
+                   without damping";
     let runs = pair.map(|solver| Run::new(FELT, solver, LEVELS[1].resolution));
     let quantity = "force of a damped contact with the velocity of the sample, worst";
     programs::row(quantity, "N", rounding(1.0, because), runs, control, |done| {
@@ -166,9 +170,9 @@ fn restitution(variant: &'static str, solver: &'static str) -> Claim {
         .refuses(other(solver))
 }
 
-const FIRST_ORDER: &str = "touch and release fall within a step, which gives or takes half a step of the dashpot's force \
-                           each, 2ζ ωΔt e; it is half a step late, which makes ζ larger by the factor 1 + ζωΔt/2, \
-                           π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt e; and (ωΔt)² for what is of second order (derivation)";
+const FIRST_ORDER: &str = "contact begins and ends within a step, which changes the impulse of the dashpot by up to \
+                           half a step each, 2ζ ωΔt e; the dashpot is half a step late, so ζ is larger by the factor 1 \
+                           + ζωΔt/2, π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt e; (ωΔt)² for second-order terms (derivation)";
 
 /// Returns the largest error of the restitution at a resolution.
 fn first_order(variant: &str, resolution: Resolution) -> f64 {
@@ -188,7 +192,7 @@ fn step(at: i32) -> Resolution {
 fn steps(variant: &'static str, solver: &'static str) -> Claim {
     claim("restitution's error over what is of first order in Δt, worst of 16 steps", "1")
         .runs((0..16).map(|at| Run::new(variant, solver, step(at))))
-        .equals(Source::Derived("touch, release and dashpot within a step (derivation)"), move |done| {
+        .equals(Source::Derived("start, release and dashpot within a step (derivation)"), move |done| {
             let found = done.iter().zip(0..).map(|(done, at)| {
                 let exact = exact_restitution(pair(&done.scene).2, solver != "dem");
                 let error = measured_restitution(done)?.value - exact;
@@ -212,7 +216,7 @@ fn momentum() -> Vec<Claim> {
         claim(along(axis), "kg m/s")
             .run(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
-            .within(rounding(2.0, "two velocities round by ε in every step; in units of one grain's momentum"))
+            .within(rounding(2.0, "rounding of two velocities by ε per step; in units of the momentum of one grain"))
             // All solvers have gravity.
             .refuses(Control::scene("a gravity of 1e-9 m/s² along x and y", |scene| {
                 (scene.gravity.x, scene.gravity.y) = (1e-9, 1e-9);
@@ -230,7 +234,7 @@ fn initial_angular_momentum(scene: &Scene) -> f64 {
 }
 
 fn angular_momentum() -> Vec<Claim> {
-    const ROUNDING: &str = "two positions, two velocities and two spins round by ε in every step; in units of m v R";
+    const ROUNDING: &str = "rounding of two positions, two velocities and two spins by ε per step; in units of m v R";
     let momentum_claim =
         |quantity: &str, solver| claim(quantity, "kg m²/s").run(Run::new("oblique", solver, LEVELS[1].resolution));
     vec![
@@ -239,7 +243,7 @@ fn angular_momentum() -> Vec<Claim> {
             .within(rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R", "dem")),
         momentum_claim("change of angular momentum, arm R, against Σ overlap × F_t Δt", "dem")
-            .equals(Source::Derived("arms R on centres R₁ + R₂ − δ apart (derivation)"), |done| {
+            .equals(Source::Derived("lever arms R with a distance of centres R₁ + R₂ − δ (derivation)"), |done| {
                 let scene = &done[0].scene;
                 let (overlap, shear) = (done[0].column("contact.overlap")?, done[0].column("contact.shear_force")?);
                 let impulse: f64 = overlap.iter().zip(shear).map(|(overlap, shear)| overlap * shear).sum();
@@ -272,7 +276,7 @@ fn at_the_limit() -> Claim {
             let expected = -limit * grain.radius / grain.inertia;
             Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
         })
-        .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
+        .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
         .refuses(Control::without(Effect::Friction))
 }
 
@@ -291,7 +295,7 @@ fn coulomb() -> Vec<Claim> {
                 let largest = normal.iter().map(|force| law.friction * force).fold(0.0, f64::max);
                 Ok(beyond.fold(f64::NEG_INFINITY, f64::max) / largest)
             })
-            .within(computed(4.0 * f64::EPSILON, "a root, a quotient and two products round by ε"))
+            .within(computed(4.0 * f64::EPSILON, "rounding of a root, a quotient and two products by ε"))
             .refuses(Control::solver("the limit of the spring alone", "dem:1979"))
     };
     let spin = oblique_claim(
@@ -300,7 +304,7 @@ fn coulomb() -> Vec<Claim> {
         "dem",
     )
     .holds(
-        "sliding throughout, the friction recorded is μ times the normal force recorded, and turns the disc",
+        "the contact slides throughout: the recorded friction is μ times the recorded normal force and turns the disc",
         |done| {
             let grain = &done[0].scene.grains[0];
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
@@ -310,7 +314,7 @@ fn coulomb() -> Vec<Claim> {
             Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
         },
     )
-    .within(rounding(3.0, "the spin, at most 1.5 times its change, and the sum round by ε in every step"))
+    .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
     .refuses(Control::solver("the limit of the spring alone", "dem:1979"));
     vec![within("dem"), spin]
 }
@@ -342,14 +346,15 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "force",
             "Normal force during the impact, ζ = .2",
-            "The two conventions differ only at the end: the dashpot pulls until the overlap is gone, or lets go.",
+            "The two conventions differ only at the end: the dashpot pulls until the overlap is zero, or the contact \
+             is released earlier.",
             [Axis::linear("time t (ms)"), Axis::linear("normal force (N)")],
             forces,
         ),
         Figure::graph(
             "restitution",
             "Error of the coefficient of restitution",
-            "Of first order in Δt, scattered by where in a step the release falls.",
+            "First order in Δt; the scatter comes from the position of the release within a step.",
             [Axis::log("Δt / critical step"), Axis::log("|e − exact|")],
             errors,
         ),

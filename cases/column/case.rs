@@ -11,7 +11,8 @@ const SOURCE: Source = Source::Derived("u_tt = c² u_yy − g on a fixed base (d
 const DISPLACEMENT: ClaimFigure = ClaimFigure {
     name: "displacement",
     title: "Displacement of the centre of mass",
-    caption: "Let go at once: a chain of parabolas with the period 4H/c = 10 s; cells along the height in the legend.",
+    caption: "Released at once: a chain of parabolas with the period 4H/c = 10 s; cells along the height in the \
+              legend.",
     axes: ["time t (s)", "displacement (m)"],
     logarithmic: false,
 };
@@ -101,7 +102,7 @@ fn claims() -> Vec<Claim> {
                     let stress = done[0].last(&format!("{probe}.sigma_yy"))?;
                     Ok(Measurement::new(stress, -weight * (1.0 - share), weight))
                 })
-                .within(estimated(4e-5, "what still swings, and strain of .0005; in units of ρ g H"))
+                .within(estimated(4e-5, "remaining vibration, and strain of .0005; in units of ρ g H"))
                 .refuses(Control::scene("gravity × .95", |scene| scene.gravity *= 0.95))
                 .fair_to_any_continuum(),
         );

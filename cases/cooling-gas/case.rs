@@ -130,7 +130,7 @@ fn claims() -> Vec<Claim> {
             .at_most(
                 1.0,
                 Source::Derived(
-                    "collisions make neighbours alike, and what is alike meets more slowly than the theory has it",
+                    "collisions make the velocities of neighbours similar, so they collide more slowly than in theory",
                 ),
                 |done| Ok(cooling_rate(&done[0])? / enskog(&done[0].scene)),
             )
@@ -150,7 +150,11 @@ fn claims() -> Vec<Claim> {
             let theirs = cooling_rate(&done[1])?;
             Ok(Measurement::new(cooling_rate(&done[0])?, theirs, theirs))
         }));
-        let allowed = rounding(2.0, "the same cycle; of an energy twice that of velocities");
+        let allowed = rounding(
+            2.0,
+            "rounding only, because both programs use the same integration cycle; an energy \
+                                     has twice the relative error of velocities",
+        );
         let control = Control::ours("dashpots × 1.001 in ours", |scene| {
             scene.change_laws(|law| law.damping_ratio *= 1.001);
             scene.duration = Duration::Seconds(FORETOLD);
@@ -185,8 +189,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "cooling",
         "Haff's law",
-        "1/√T rises on a straight line, T being the energy a disc. The lines begin where the first speeds, all alike, have \
-         become a Maxwellian.",
+        "1/√T rises on a straight line, T is the energy per disc. The lines begin when the initially equal speeds have \
+         become a Maxwellian distribution.",
         [Axis::linear("time t (s)"), Axis::linear("1/√T (1/√J)")],
         curves,
     )])

@@ -83,7 +83,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "energy",
         "Drift of the total energy",
-        "The same simulated time at three steps. Spikes are impacts in progress, steps what they left behind.",
+        "The same simulated time at three steps. Spikes are impacts in progress; steps are their lasting errors.",
         [Axis::linear("time t (s)"), Axis::linear("(E − E₀)/E₀ (10⁻³)")],
         curves,
     )])

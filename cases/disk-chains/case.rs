@@ -113,8 +113,8 @@ fn exact(variant: &'static str, first: usize) -> Claim {
         })
         .within(computed(
             0.02_f64.powi(2) / 24.0 + 2e-6,
-            "(ωΔt)²/24 of central differences at ωΔt = .02 of a chain's fastest mode, and displacements of 2e-6 R, \
-             which turn the normals",
+            "(ωΔt)²/24 of central differences at ωΔt = .02 for the fastest mode of a chain; displacements of 2e-6 R \
+             turn the normals",
         ))
         .refuses(Control::scene("contacts 1 % too stiff", |scene| {
             scene.change_laws(|law| law.scale_normal(1.01));
@@ -137,8 +137,8 @@ fn glued() -> Claim {
         })
         .within(judged(
             1e-4,
-            "central differences at ω₀Δt = .01, and contacts that would pull by less than a hundredth of the striker's \
-             way are taken for closed; in units of V√(k m)",
+            "central differences at ω₀Δt = .01; contacts with a tension below a hundredth of the striker's \
+             displacement count as closed; in units of V√(k m)",
         ))
         .refuses(Control::scene("tangential springs 1 % too soft", |scene| {
             scene.change_laws(|law| law.scale_tangential(0.99));
@@ -171,7 +171,7 @@ fn rigid() -> Claim {
             let exact = Modes::from_scene(scene).moving(pair(scene, 3)[1], speed, duration(scene));
             Ok(Measurement::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
         })
-        .within(judged(1e-3, "what a solver with springs reaches"))
+        .within(judged(1e-3, "accuracy of a solver with springs"))
         .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution))
 }
 
@@ -201,7 +201,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         figures.push(Figure::graph(
             variant,
             title,
-            "Normal forces; they count as arrived at a tenth of the impedance force.",
+            "Normal forces. The arrival is at a tenth of the impedance force.",
             [Axis::linear("time t c/d, transits of a disc"), Axis::linear("normal force / V√(k m)")],
             curves,
         ));

@@ -102,9 +102,10 @@ pub(super) fn claims() -> Vec<Claim> {
     ] {
         let run = run("line", solver, grid(cells, points), 8.0);
         let because = if solver == BEST {
-            "springs that are as soft as .4 cells of material hold the wave up at each of four contacts"
+            "springs as soft as .4 cells of material delay the wave at each of four contacts"
         } else {
-            "nodal contact joins discs over a region from the start: the wave is too fast, and slower with each refinement"
+            "nodal contact joins the discs over a region from the start: the wave is too fast, and slows down with \
+             each refinement"
         };
         claims.push(
             claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
@@ -116,13 +117,13 @@ pub(super) fn claims() -> Vec<Claim> {
     }
     // On still finer grids, two implementations of nodal contact differ by a fifteenth, and neither approaches the
     // finite elements.
-    let too_fast = "nodal contact joins discs over a region from the start: the wave is too fast, and slower with each \
-                    refinement";
+    let too_fast = "nodal contact joins the discs over a region from the start: the wave is too fast, and slows down \
+                    with each refinement";
     claims.push(
         claim("arrival of stress in disc 4, 80 cells a diameter", "d/c")
             .run(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).up_to(5.0).long())
             .equals_cited(ARRIVAL_IN_DISC_4, 1.0, |done| arrival(&done[0], 4))
-            .within(judged(0.2, "what springs at the surface reach at this resolution"))
+            .within(judged(0.2, "accuracy of springs at the surface, at this resolution"))
             .refuses(Control::without_the_error("springs at the surface", BEST, grid(40.0, 2))),
     );
     for (solver, points) in [(BEST, 2), (PAPER, 1)] {
@@ -173,7 +174,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
         "stress",
         "Arrival of stress in elastic discs",
         "Where the difference of the principal stresses at a disc's centre first exceeds .1 ρcv; 16 cells a diameter. \
-         In the zig-zag the even discs are reached by shear as well: they light up late where contacts are glued.",
+         In the zig-zag, shear also reaches the even discs: with glued contacts their fringes appear late.",
         [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
         curves,
     ))

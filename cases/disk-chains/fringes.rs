@@ -31,7 +31,7 @@ const CHAINS: [Chain; 3] = [
         title: "four discs in a line, Fig. 9",
         frames: [2.2, 5.5, 7.7],
         experiment: [2.6, 6.6, 9.2],
-        seen: "They cross the contacts one after the other.",
+        seen: "The fringes cross the contacts one after the other.",
     },
     Chain {
         variant: "zig-zag",
@@ -108,7 +108,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             &format!("Fringes: {title}"),
             &format!(
                 "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 \
-                 the first grey fringe stands at the centre of the fourth disc of the line, and then kept. {seen}"
+                 the first grey fringe is at the centre of the fourth disc of the line. {seen}"
             ),
             pictures(quantity, &shots, PIXELS, None),
         ));

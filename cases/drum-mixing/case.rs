@@ -62,8 +62,8 @@ fn published(folder: &Path) -> Result<Scene, SceneDataError> {
 }
 
 /// Tolerances that were required beforehand, with the time up to which they apply.
-const EARLY: (f64, &str) = (0.005, "asked for before: .5 % of either code to .5 s");
-const LATE: (f64, &str) = (0.01, "asked for before: 1 % of either code to 1 s");
+const EARLY: (f64, &str) = (0.005, "required in advance: .5 % of either code until .5 s");
+const LATE: (f64, &str) = (0.01, "required in advance: 1 % of either code until 1 s");
 
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
@@ -128,7 +128,7 @@ fn of_paper() -> Run {
 fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> ClaimWithTolerance {
     claim(quantity, "1")
         .run(of_paper())
-        .equals(Source::Printed(&dosta::WORK, "derived: LIGGGHTS and MUSEN, run again"), move |done| {
+        .equals(Source::Printed(&dosta::WORK, "derived: repeated runs of LIGGGHTS and MUSEN"), move |done| {
             let rows = course(DRUM).into_iter().filter(|[time, ..]| (from - 1e-9..=to + 1e-9).contains(time));
             let found: Result<Vec<Measurement>, MissingData> = rows
                 .map(|[time, mean, half]| {
@@ -186,7 +186,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     figures.push(Figure::graph(
         "taken-along",
-        "A bed that is taken along",
+        "A bed moved by the drum",
         "Angular momentum of the grains about the axis of the small drum, which turns from the first step on.",
         [Axis::linear("time (ms)"), Axis::linear("angular momentum (10⁻⁶ kg m²/s)")],
         curves,
@@ -202,8 +202,8 @@ fn of_zone(done: &FinishedRun) -> Figure {
     Figure::graph(
         "zone-2",
         "M1 in zone 2",
-        "M1 in zone 2 (x < 0, z < 0) over time, from the published start, and the mean of LIGGGHTS and MUSEN (derived from runs \
-         again of Dosta et al. 2024), which are at most .9 % apart.",
+        "M1 in zone 2 (x < 0, z < 0) over time, from the published start, and the mean of LIGGGHTS and MUSEN (derived \
+         from repeated runs, Dosta et al. 2024), which differ by at most .9 %.",
         [Axis::linear("time (s)"), Axis::linear("M1 in zone 2 (thousands)")],
         vec![
             Curve::new("dem:liggghts", Stroke::MarkedLine, ours),

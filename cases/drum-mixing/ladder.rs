@@ -43,5 +43,5 @@ fn worst(step: &str, run: Run) -> ClaimWithTolerance {
                 .collect();
             Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
         })
-        .within(required(EARLY.0, "what a count may be off either code to .5 s"))
+        .within(required(EARLY.0, "tolerance of a count relative to either code until .5 s"))
 }

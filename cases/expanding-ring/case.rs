@@ -28,7 +28,8 @@ pub(crate) static CASE: Case = Case {
             thick, and keeps its amplitude and energy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Small strain and one mode. Shear has little influence and large rotation none. Two points represent the ring.",
+    weakness: "Small strain and one mode. Shear has little influence. Large rotations do not occur. Two points \
+               represent the ring.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -169,7 +170,7 @@ fn no_contraction() -> Control {
 }
 
 fn claims() -> Vec<Claim> {
-    const GRID: &str = "cells whose edges the ring cuts, of second order, and the square of the strain s/ω = .001";
+    const GRID: &str = "cells cut by the edges of the ring, second order, and the square of the strain s/ω = .001";
     let run = |variant, resolution| Run::new(variant, "mpm", resolution);
     let row = |name: String, run: Run, tolerance, control| {
         claim(name, "s")
@@ -194,8 +195,8 @@ fn claims() -> Vec<Claim> {
             row(format!("period, cells of {}", level.name), run, estimated(most, GRID), control)
         })
         .collect();
-    let thick = "what a method of second order leaves at four cells of two per cent at two through the thin ring, .5 %, and \
-                 2 × .9 %/2π of the other modes";
+    let thick = "error of a second-order method at four cells through the thickness if it is two per cent at two \
+                 cells, .5 %; and 2 × .9 %/2π of the other modes";
     claims.push(row(
         "period of a thick ring".to_owned(),
         run(THICK, THROUGH_THICK),
@@ -211,11 +212,14 @@ fn claims() -> Vec<Claim> {
                 |done, time| mode(done).map_or(f64::NAN, |mode| mode.amplitude() * (mode.frequency() * time).sin()),
                 |done| mode(done).map_or(f64::NAN, |mode| mode.amplitude()),
             )
-            .within(estimated(
-                7e-2,
-                "the phase that .5 % of the period are after two of them, 4π × .005, and the other modes through the thickness; \
-                 in units of the amplitude",
-            ).up_to(0.1))
+            .within(
+                estimated(
+                    7e-2,
+                    "phase error of .5 % of the period after two periods, 4π × .005, and the other modes through the \
+                 thickness; in units of the amplitude",
+                )
+                .up_to(0.1),
+            )
             .refuses(softer())
             .fair_to_any_continuum()
             .drawn(&RADIAL, "t/4"),
@@ -227,11 +231,13 @@ fn claims() -> Vec<Claim> {
                 let energy = done[0].column("all.total_energy")?;
                 Ok(Measurement::drift(&done[0].series().time, energy, energy[0]))
             })
-            .within(estimated(
-                3e-2,
-                "waves through the thickness, of a few cells, whose energy edges that cut cells make more or less of: .67 % is \
-                 theirs",
-            ).up_to(0.06))
+            .within(
+                estimated(
+                    3e-2,
+                    "waves through the thickness, a few cells long, have .67 % of the energy, and cut cells change it",
+                )
+                .up_to(0.06),
+            )
             .refuses(Control::scene("damping of two per second", |scene| scene.global_damping = 2.0)),
     );
     claims

@@ -10,7 +10,7 @@ const SOURCE: Source = Source::Derived("EI θ'' = −w (L − s) cos θ by shoot
 const SINKING: ClaimFigure = ClaimFigure {
     name: "sinking",
     title: "Displacement of the tip",
-    caption: "Let go level and damped; cells through the thickness in the legend.",
+    caption: "Released level, with damping; cells through the thickness in the legend.",
     axes: ["time t (s)", "displacement (m)"],
     logarithmic: false,
 };
@@ -22,7 +22,8 @@ pub(crate) static CASE: Case = Case {
             clamp, and stays there though its upper face is under tension.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Strain of a tenth at the clamp, which the elastica does not know. One place of the strip stands for all of it.",
+    weakness: "The strain at the clamp is a tenth, which the elastica neglects. One position represents the whole \
+               strip.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,

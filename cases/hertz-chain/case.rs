@@ -82,7 +82,8 @@ fn claims() -> Vec<Claim> {
         .scales(1.0 / 6.0, 1.0 / 6.0, Source::Derived("scaling of F = kδ^{3/2} (derivation)"))
         .within(rounding(
             7.0,
-            "the pulse is discretised alike at every speed; speeds and forces are rounded, seven sixths of an exponent's",
+            "the discretisation of the pulse is the same at every speed; rounding of speeds and forces, which counts \
+             seven sixths in an exponent",
         ))
         .refuses(Control::scene("a dashpot of γ = 2000/s, which does not scale", |scene| {
             scene.change_laws(|law| law.normal_damping = 2000.0);
@@ -92,10 +93,10 @@ fn claims() -> Vec<Claim> {
         .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
             Ok(Measurement::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
         })
-        .within(estimated(2e-5, "discretisation of the pulse; the long-wave limit is 1.2 % off"))
+        .within(estimated(2e-5, "discretisation of the pulse; the long-wave limit has an error of 1.2 %"))
         .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))));
     let rigid = claim("refusal of forces over time", "1").run(Run::new(PLAIN, "rigid", rigid::DEFAULT)).refused(
-        "momentum passes through rigid beads in one step: there is no wave whose force could peak",
+        "momentum passes through rigid beads in one step, so there is no wave with a largest force",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );
     // Forces until the wave has passed. Afterwards the beads separate and have no contacts.
@@ -129,8 +130,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "speed",
         "Speed of the solitary wave over F^(1/6)",
-        "Against the force of the wave itself; steel beads of 20 mm. The speed is divided by (4E*/(2Rρ^(3/2)))^(1/3) F^(1/6), so \
-         that what is left is the coefficient: level for Hertz contacts, and that of beads and not of a continuum.",
+        "Over the force of the wave; steel beads of 20 mm. The speed is divided by (4E*/(2Rρ^(3/2)))^(1/3) F^(1/6), \
+         which gives the coefficient. It is constant for Hertz contacts and has the value of discrete beads, not of a \
+         continuum.",
         [Axis::log("peak force F (N)"), Axis::linear("coefficient of the speed (1)")],
         vec![
             Curve::new("dem", Stroke::Markers, measured),

@@ -124,8 +124,8 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
     if cells > 1.0 {
         judged(
             NO_HALF_SPACE + (coarsest - NO_HALF_SPACE) / (cells * cells),
-            "(b/R)² = 1.6 % of bodies that are no half-spaces, and what cells of b are allowed beyond it, falling with \
-             the square of the cell",
+            "(b/R)² = 1.6 % because the bodies are no half-spaces, plus the tolerance of cells of size b, which \
+             decreases with the square of the cell",
         )
     } else {
         judged(
@@ -197,8 +197,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("contact force at rest", "N/m")
             .run(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow().known(
-                "with APIC the cylinder comes to rest more slowly than a rigid one on the springs of both bodies: .07 % of its \
-                 weight is left where .05 % is asked for",
+                "with APIC the cylinder comes to rest more slowly than a rigid one on the springs of both bodies: .07 \
+                 % of its weight remains, and .05 % is required",
             )
             .up_to(1e-3))
             .holds("equilibrium: the cylinder's weight", |done| {
@@ -210,8 +210,9 @@ fn claims() -> Vec<Claim> {
             })
             .within(computed(
                 swings(),
-                "the cylinder, set down without a force, swings about its equilibrium: after .4 ms exp(−αt/2) ω/√(ω² − α²/4) of \
-                 the weight is left under the damping α = 40000/s, ω from what both bodies give (Johnson, eqs. 5.57, 5.58)",
+                "the cylinder starts without contact force and vibrates about its equilibrium: after .4 ms exp(−αt/2) \
+                 ω/√(ω² − α²/4) of the weight remains under the damping α = 40000/s, with ω from the compliance of \
+                 both bodies (Johnson, eqs. 5.57, 5.58)",
             ))
             .refuses(Control::without_the_error("points that keep their velocities", "mpm", LEVELS[1].resolution)),
     );
@@ -239,7 +240,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "pressure",
         "Pressure in the block under a cylinder, 1.25 cells below its surface",
-        "Stress of the material points in the second layer of cells, against that of Hertz's contact in a half-space.",
+        "Stress of the material points in the second layer of cells, compared with Hertz contact on a half-space.",
         [Axis::linear("x / b"), Axis::linear("pressure / p₀")],
         curves,
     )])

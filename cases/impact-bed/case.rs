@@ -71,14 +71,14 @@ const SURE: (f64, f64) = (24.999, 50.001);
 
 /// Reason for the tolerance of one bed, and of the mean of five beds.
 const BECAUSE: &str =
-    "our packing is one more draw: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 bed of ours, n = 10 published";
+    "our packing is one more random sample: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 of our beds, n = 10 published";
 const BECAUSE_FIVE: &str =
-    "our packings are five more draws: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 beds of ours, n = 10 published";
+    "our packings are five more random samples: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 of our beds, n = 10 published";
 
 /// Returns the largest difference between two beds of one code at 30 ms (mm), and its reason.
 fn of_two_beds() -> (f64, &'static str) {
     let apart = 2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value;
-    (apart, "two draws among beds, 2 √2 s_bed: what a change moves is told from another bed only above it")
+    (apart, "difference of two random beds, 2 √2 s_bed: only a larger change can be distinguished from another bed")
 }
 
 fn on(variant: &'static str) -> Run {
@@ -139,7 +139,7 @@ fn claims() -> Vec<Claim> {
                 let heights = all(done, |done| height(done, DEEP))?;
                 Ok(heights.iter().filter(|height| (*height - depth.mean).abs() <= depth.allowed(1)).count() as f64)
             })
-            .within(exactly("asked for before: two deviations hold nineteen draws of twenty"))
+            .within(exactly("required in advance: two deviations contain nineteen of twenty random samples"))
             .refuses(half_the_density()),
         of_beds(on_all(), ("deepest point, farthest of five beds", "mm"), EACH, dosta::DEEPEST, lowest, deepest)
             .refuses(smooth()),
@@ -169,7 +169,8 @@ fn claims() -> Vec<Claim> {
                 Ok(scores.iter().filter(|score| within(score)).map(|(_, score)| score.abs()).fold(0.0, f64::max))
             })
             .within(exactly(
-                "deviations √(s_code² + s_bed² (1/5 + 1/10)) at every millisecond; two hold nineteen draws of twenty",
+                "deviations √(s_code² + s_bed² (1/5 + 1/10)) at every millisecond; two deviations contain nineteen of \
+                 twenty random samples",
             ))
             .refuses(half_the_density()),
     ];

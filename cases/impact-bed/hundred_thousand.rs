@@ -23,8 +23,8 @@ pub(super) fn claims() -> Vec<Claim> {
         on_all().to_vec(),
         (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF),
         |done| height(done, DOWN),
-        "in units of 2 √(s_code² + s_bed² (1/5 + 1)), s_code from two codes on one bed, s_bed between our beds: decided \
-         before any was hit",
+        "in units of 2 √(s_code² + s_bed² (1/5 + 1)), with s_code from two codes on one bed and s_bed between our \
+         beds; fixed before any run",
     );
     vec![at_30_ms.refuses(half_the_density())]
 }
@@ -42,8 +42,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "hundred-thousand",
         "Height of the ball, 100,000 grains",
-        "Height of the ball's centre over time on five beds of 100,000 grains of our own, and where two codes have it at 30 ms \
-         on one bed (Dosta et al. 2024, derived).",
+        "Height of the ball's centre over time on five of our own beds of 100,000 grains, and the height of two codes \
+         at 30 ms on one bed (Dosta et al. 2024, derived).",
         [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
         curves,
     ))

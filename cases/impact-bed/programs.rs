@@ -18,7 +18,11 @@ pub(super) fn claims() -> Vec<Claim> {
 fn beginning() -> Claim {
     const UNTIL: f64 = 2.5e-4;
     let runs = SIDES.map(|solver| Run::new("thousand", solver, FINE));
-    let allowed = rounding(1.0, "the same cycle but for the order of sums; in units of its radius");
+    let allowed = rounding(
+        1.0,
+        "rounding only, because both programs use the same integration cycle with another \
+                                 order of sums; in units of the radius of the ball",
+    );
     let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
     row("height of the ball on a thousand grains until .25 ms, worst", "m", allowed, runs, control, |done| {
         let (ours, theirs) = together(&done[0], &done[1], "ball.z")?;

@@ -93,16 +93,16 @@ pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figur
         Figure::graph(
             "heights",
             "Height of the ball",
-            "Height of the ball's centre over time on five beds of our own, and the mean of seven codes on ten beds (Dosta et \
-             al. 2024, derived) with two deviations of one bed of one more code.",
+            "Height of the ball's centre over time on five of our own beds, and the mean of seven codes on ten beds \
+             (Dosta et al. 2024, derived) with two deviations for one bed of another code.",
             [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
             curves,
         ),
         Figure::graph(
             "score",
             "Place among the codes",
-            "How far the mean of our five beds is from the mean of seven codes, in deviations \
-             √(s_code² + s_bed² (1/5 + 1/10)), over time.",
+            "Difference between the mean of our five beds and the mean of seven codes over time, in deviations \
+             √(s_code² + s_bed² (1/5 + 1/10)).",
             [Axis::linear("time (ms)"), Axis::linear("deviations")],
             vec![Curve::new("dem:liggghts", Stroke::MarkedLine, scores), bound(2.0), bound(-2.0)],
         ),

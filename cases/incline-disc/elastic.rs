@@ -147,7 +147,7 @@ fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Claim {
 fn asked(slope: Elastic, allowed: f64) -> Tolerance {
     let allowed = allowed + slope.reference.uncertainty;
     if slope.asked {
-        required(allowed, "asked for at this resolution before the solver existed, and the reference's own uncertainty")
+        required(allowed, "required at this resolution before the solver existed, and the uncertainty of the reference")
     } else {
         judged(allowed, "discretisation at this resolution, and the reference's own uncertainty")
     }
@@ -185,8 +185,8 @@ fn order(slope: Elastic) -> Claim {
             Ok(fitted(&points?))
         })
         .within(exactly(
-            "the order was asked for before the solver existed; a contact that gains one tracer after another has no \
-             exact one",
+            "the order was required before the solver existed; a contact that gains one tracer after another has no \
+             exact order",
         ))
         .refuses(telling(slope))
 }
@@ -210,8 +210,8 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
     })
     .within(judged(
         allowed,
-        "where it rolls, flattening falls with the modulus; where it slips, the time it sticks first, with its square \
-         root; what is left is the discretisation of the contact at this resolution",
+        "if the disc rolls, its flattening decreases with the modulus; if it slips, the initial sticking time \
+         decreases with the square root of the modulus; the discretisation of the contact at this resolution remains",
     ))
     .refuses(telling(slope))
 }
@@ -225,9 +225,9 @@ fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
         .equals_cited(cited, 1.0, |done| excess(&done[0]))
         .within(judged(
             0.022,
-            "two implementations of one method at the same resolution, with other material points; while discs settle \
-             ours damps points, not nodes, which is worth up to .004. Seen at one phase of the grid: discs that roll get \
-             up to .075 less or .053 more far where they begin elsewhere in a cell (derivation)",
+            "two implementations of one method at the same resolution, with other material points; during relaxation \
+             ours damps points, not nodes, which changes up to .004. This holds for one position on the grid: from \
+             another position in a cell, rolling discs get up to .075 less far or .053 farther (derivation)",
         ))
         .refuses(control)
 }
@@ -253,7 +253,11 @@ fn does_not_roll() -> Claim {
     claim("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1")
         .run(run(SLOPES[3], "mpm:2000", 2.0))
         .equals_cited(bardenhagen_2001::ROLLING_AT_HALF_RADIUS, 1.0, |done| rolling(&done[0]))
-        .within(judged(0.05, "the paper says it of a sphere; the disc turns by no more than its flat side rocks"))
+        .within(judged(
+            0.05,
+            "the paper states it for a sphere; the disc rotates at most by the rocking of its flat \
+                              side",
+        ))
         .refuses(Control::solver("springs at the surface", "mpm"))
 }
 
@@ -274,8 +278,8 @@ fn extrapolated(slope: Elastic) -> Claim {
     })
     .within(judged(
         0.004 + slope.reference.uncertainty,
-        "three levels fix the order only roughly, and the last step is multiplied by it; and the reference's own \
-         uncertainty",
+        "three levels determine the order only roughly, and it multiplies the last difference; plus the uncertainty of \
+         the reference",
     ))
     .refuses(telling(slope))
 }
@@ -307,8 +311,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "elastic",
         "An elastic disc: deviation from its converged displacement",
-        "Settled start. `mpm` has springs where surfaces meet; the 2000 paper's criterion acts at nodes, .6 to .9 of a \
-         cell before they do, and the disc does not roll until the cell is small.",
+        "Start at rest in equilibrium. `mpm` has springs at the contact of the surfaces. The criterion of the 2000 \
+         paper acts at nodes, .6 to .9 of a cell before the surfaces touch, and the disc rolls only with small cells.",
         [Axis::log("cells a radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,
     )])

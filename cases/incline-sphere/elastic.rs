@@ -35,7 +35,7 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
 }
 
 pub(super) fn claims() -> Vec<Claim> {
-    const ASKED: &str = "asked for at this resolution before the solver existed, and the reference's own uncertainty";
+    const ASKED: &str = "required at this resolution before the solver existed, and the uncertainty of the reference";
     let mut claims = Vec::new();
     for slope in SLOPES {
         for (cells, allowed) in [4.0, 8.0].into_iter().zip(slope.allowed) {
@@ -65,7 +65,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 let (_, state) = last(&done[0])?;
                 Ok(state.omega * done[0].scene.grains[0].radius / state.v)
             })
-            .within(judged(0.02, "it turns by no more than its flat side rocks"))
+            .within(judged(0.02, "the sphere rotates at most by the rocking of its flat side"))
             .refuses(Control::solver("springs at the surface", "mpm")),
     );
     claims.push(
@@ -99,8 +99,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "An elastic sphere on a rigid plane",
-        "Settled start. Converged: −.2 % where it rolls, +1.4 % where it slips. `mpm` has springs where surfaces meet; \
-         the 2000 paper's criterion acts at nodes before they do.",
+        "Start at rest in equilibrium. Converged: −.2 % if it rolls, +1.4 % if it slips. `mpm` has springs at the \
+         contact of the surfaces. The criterion of the 2000 paper acts at nodes before the surfaces touch.",
         [Axis::log("cells a radius"), Axis::linear("x / x_rigid − 1 at 1 s")],
         curves,
     ))

@@ -184,7 +184,7 @@ fn balance() -> Claim {
 fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
         .run(run("smooth", "dem"))
-        .equals(Source::Derived("a side without friction bears nothing"), |done| {
+        .equals(Source::Derived("a side without friction carries no load"), |done| {
             all_borne(&done[0], &["floor.force_z"])
         })
         .within(known())
@@ -197,7 +197,7 @@ fn mobilised() -> Claim {
         .run(run("half", "dem"))
         .at_most(
             1.0,
-            Source::Derived("Coulomb: grains that slide bear μ of the normal force, those that roll less"),
+            Source::Derived("Coulomb: sliding grains transfer μ times the normal force, rolling grains less"),
             |done| {
                 let middle = MiddleMeans::from_run(&done[0])?;
                 Ok(middle.shear / (friction(&done[0].scene) * middle.normal))
@@ -226,7 +226,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
             let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
             Ok(Measurement::new(on_floor(&done[0])?, expected, expected))
         })
-        .within(required(0.1, "asked for before: K is one number in the law, and the ends of the column have others"))
+        .within(required(0.1, "required in advance: K is constant in the law but differs at the ends of the column"))
         .refuses(Control::misread(TWICE, twice))
 }
 
@@ -236,7 +236,10 @@ fn saturates() -> Claim {
         .run(run(PLAIN, "dem"))
         .at_most(
             1.35,
-            Source::Derived("(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 where it rises as depth does"),
+            Source::Derived(
+                "(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 if it is proportional to the \
+                             depth",
+            ),
             |done| {
                 let table = done[0].table("slices")?;
                 let missing = || MissingData("slices".to_owned());
@@ -260,8 +263,7 @@ fn saturates() -> Claim {
 /// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same fall.
 fn beside(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("part of the weight on the floor, friction {about} at the side");
-    let because =
-        "a filling is one draw of many: the 99 % interval of the difference of two, from fillings of five seeds";
+    let because = "a filling is a random sample: 99 % interval of the difference of two fillings, from five seeds";
     let allowed = computed(apart(PACKINGS, &quantity), because);
     let control = Control::ours("a smooth side in ours", |scene| side_friction(scene, 0.0));
     let run = |solver| Run::new(variant, solver, LEVELS[0].resolution).long().kept();
@@ -285,9 +287,9 @@ fn profile(done: &FinishedRun) -> Option<Figure> {
     let law = |up: f64| middle.weight / area * length * (1.0 - (-(height - up) / length).exp());
     let weighs = |up: f64| middle.weight / area * (height - up);
     let measured = heights.iter().zip(vertical).filter(|(up, _)| **up < height).map(|(&up, &stress)| (up, stress));
-    let caption = "Vertical stress in the column while it descends, in the mean over its cross-section and over time, and \
-                   Janssen's law with the friction at work on the side and the ratio of stresses that are measured half-way up. \
-                   The other line is what stands above.";
+    let caption = "Vertical stress in the descending column, averaged over its cross-section and over time, and \
+                   Janssen's law with the mobilised friction at the side and the stress ratio measured at half height. \
+                   The other line is the weight above.";
     Some(Figure::graph(
         "profile",
         "Vertical stress over the height",

@@ -17,8 +17,8 @@ const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 pub(crate) static CASE: Case = Case {
     name: "mesh-seam",
     title: "A sphere on a mesh",
-    claim: "A sphere that rolls over the seams of coplanar triangles feels nothing of them, a mesh of a plane gives the plane's \
-            answer to 1e-9, and at ridges, corners and within corners it feels the solid that the mesh is.",
+    claim: "The seams of coplanar triangles have no effect on a rolling sphere. A mesh of a plane gives the result of \
+            the plane to 1e-9. At ridges, at corners and inside corners the mesh acts like the solid that it bounds.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The floors are flat and the angles are right angles. A surface with many small angles, such as a drum of \
@@ -54,7 +54,11 @@ fn level(floor: &'static str) -> Claim {
             let overlap = grain.radius - grain.position.z;
             Ok(Measurement::worst(&done[0].series().time, height, |_| grain.position.z, overlap))
         })
-        .within(computed(1e-9, "rounding: 1e-16 m/1e-4 m a step, which springs bring back; a thousand steps of it"))
+        .within(computed(
+            1e-9,
+            "rounding: 1e-16 m/1e-4 m per step for a thousand steps; springs bring older errors \
+                                back",
+        ))
         .refuses(control)
 }
 
@@ -62,12 +66,12 @@ fn level(floor: &'static str) -> Claim {
 fn rolls(floor: &'static str) -> Claim {
     claim(format!("velocity at 1 s, {floor}"), "m/s")
         .run(Run::new(floor, "dem:lammps", STEP))
-        .equals(Source::Derived("5/7 of the velocity that it is set down with (derivation)"), |done| {
+        .equals(Source::Derived("5/7 of the initial velocity (derivation)"), |done| {
             let start = done[0].scene.grains[0].velocity.norm();
             let exact = 5.0 / 7.0 * start;
             Ok(Measurement::new(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact, exact))
         })
-        .within(rounding(1.0, "momentum about the contact fixes it once the spring has come to rest"))
+        .within(rounding(1.0, "angular momentum about the contact determines the value once the spring is at rest"))
         .refuses(Control::scene("the inertia of a disc", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.inertia *= 1.25);
         }))
@@ -109,7 +113,7 @@ fn held(at: &'static SeamPosition) -> Claim {
     let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
         .run(Run::new("cube", "dem", STEP).adjusted(at.words, place))
-        .holds("k (R − d) from every point that is touched (derivation)", |done| {
+        .holds("k (R − d) from every contact point (derivation)", |done| {
             let (scene, done) = (&done[0].scene, &done[0]);
             let grain = &scene.grains[0];
             let stiffness = scene
@@ -129,7 +133,7 @@ fn held(at: &'static SeamPosition) -> Claim {
         })
         .within(computed(
             1e-13,
-            "rounding of places near 1 m, 2e-16 in each of three directions, over an overlap of 5 mm",
+            "rounding of positions near 1 m, 2e-16 in each of three directions, relative to an overlap of 5 mm",
         ))
         .refuses(Control::scene("the plane of the face above for the cube", move |scene| {
             floors::of_a_plane(scene);
@@ -144,7 +148,7 @@ fn liggghts(floor: &'static str) -> Claim {
     let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {
         scene.change_laws(|law| law.scale_tangential(1.001));
     });
-    let allowed = rounding(1.0, "the same cycle; in units of R");
+    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
     row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
         worst(done, &AXES, done[0].scene.grains[0].radius)
     })

@@ -67,7 +67,7 @@ fn claims() -> Vec<Claim> {
             .runs(runs(HATS, 2))
             .converges_at_most(
                 0.5,
-                Source::Derived("who crosses a cell meets a jump of the gradient (derivation)"),
+                Source::Derived("a point that crosses a cell boundary meets a jump of the gradient (derivation)"),
                 order,
             )
             .within(exactly("less than half an order, or the error grows"))

@@ -65,7 +65,10 @@ fn claims() -> Vec<Claim> {
         claim(quantity, "1")
             .runs(runs)
             .converges_at_least(1.0, SOURCE, order)
-            .within(exactly("the force jumps at the edges, which a grid sees as of first order there (derivation)"))
+            .within(exactly(
+                "the force is discontinuous at the edges, where a grid method is of first order \
+                             (derivation)",
+            ))
             .refuses(damped())
     };
     let mut claims = Vec::new();
@@ -81,7 +84,7 @@ fn claims() -> Vec<Claim> {
                 judged(
                     allowed,
                     "discretisation, of second order; in units of 1 m, the radius of the ring and nearly the largest \
-                     way",
+                     displacement",
                 ),
                 damped(),
             ));
@@ -97,7 +100,7 @@ fn claims() -> Vec<Claim> {
             "FLIP keeps velocities of the points that the grid does not resolve. With 128 cells they have grown until the \
              largest rotation, and points have an error of eight cells. A transfer that removes them converges",
         ).up_to(0.1),
-        judged(0.036 / 8.0, "an eighth of what is allowed with 16 cells: of first order in the cell at least"),
+        judged(0.036 / 8.0, "an eighth of the tolerance with 16 cells: at least first order in the cell"),
         Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[3].resolution),
     ));
     let back = |run, tolerance, control| {
@@ -130,7 +133,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "convergence",
         "Error of the displacement against the cell",
-        "Root mean square over the material points at t = .5 s, where the turn is largest.",
+        "Root mean square over the material points at t = .5 s, at the largest rotation.",
         [Axis::log("cell length h (m)"), Axis::log("rms error (m)")],
         curves,
     )])

@@ -98,9 +98,9 @@ fn static_forces() -> Vec<Claim> {
                 .within(computed(
                     left_out(variant),
                     if frictionless {
-                        "places of walls round by ε 3R in each of 40 steps; in units of k_n δ"
+                        "rounding of wall positions by ε 3R in each of 40 steps; in units of k_n δ"
                     } else {
-                        "geometry: normals turn by (a − b)/2R, and forces k_n b with them; in units of k_n δ"
+                        "geometry: normals and the forces k_n b turn by (a − b)/2R; in units of k_n δ"
                     },
                 ));
             claims.push(if frictionless {
@@ -139,7 +139,8 @@ fn over_radius(variant: &str) -> f64 {
 /// Returns the rounding error of the discs' positions over the 400 cycles, in units of the walls' travel.
 fn rounded(variant: &str) -> Tolerance {
     let places = f64::EPSILON * 3.0 / over_radius(variant);
-    let because = "places round by ε 3R in each of 400 cycles: three standard deviations of their sum, 3 √400 ε 3R/δ";
+    let because = "rounding of positions by ε 3R in each of 400 cycles: three standard deviations of their sum, 3 √400 \
+                   ε 3R/δ";
     computed(3.0 * 400.0_f64.sqrt() * places, because)
 }
 
@@ -216,7 +217,7 @@ fn discrete() -> Vec<Claim> {
             let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
                 scene.change_laws(|law| law.scale_tangential(1.0 + 1e-7));
             });
-            let remainder = computed(over_radius(variant).powi(3), "the extrapolation's own remainder, (δ/R)³");
+            let remainder = computed(over_radius(variant).powi(3), "remainder of the extrapolation, (δ/R)³");
             (SPEEDS.map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
         };
         claim("displacement over 400 cycles, δ → 0, against the cycle's own answer, worst", "wall travel")
@@ -241,7 +242,7 @@ fn geometry() -> Claim {
         .scales(1.0, 1.0, Source::Derived("normals turn by (a − b)/2R (derivation)"))
         .within(computed(
             over_radius("kappa-1"),
-            "the next power of δ/R, with a coefficient of its own size: δ/R of the largest",
+            "next power of δ/R with a coefficient of the same size: δ/R of the largest value",
         ))
         .refuses(Control::scene("mass off by a thousandth", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
@@ -292,8 +293,8 @@ fn continuous() -> Vec<Claim> {
                 .equals(MODES, modal_error)
                 .within(computed(
                     allowed,
-                    "phase error of central differences, ω²Δt²/24 a radian, from the middle of the ramp on: 1.18e-2, 2.96e-3 and \
-                     7.4e-4 at κ = 0, where it is largest, rounded up to hold what geometry adds",
+                    "phase error of central differences, ω²Δt²/24 a radian, from the middle of the ramp on: 1.18e-2, \
+                     2.96e-3 and 7.4e-4 at κ = 0, the worst case, rounded up to include the geometry",
                 ))
                 .refuses(lighter());
             // At coarser steps, the tolerance is the phase error of central differences, which other schemes do not
@@ -304,13 +305,14 @@ fn continuous() -> Vec<Claim> {
             claim("order in Δt of that deviation, δ → 0", "1")
                 .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
                 .converges(2.0, Source::Derived("central differences are of second order"), |done| {
-                    let error = |done: &[FinishedRun]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
+                    let error =
+                        |done: &[FinishedRun]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
                     Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
                 })
                 .within(computed(
                     2.0 * 9.0 / 80.0 * 0.2_f64.powi(2),
-                    "the next power of ωΔt: a step turns a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 (ωΔt)²/80)), \
-                     which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
+                    "next power of ωΔt: a step advances the phase of a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 \
+                     + 9 (ωΔt)²/80)), which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
                 ))
                 .refuses(lighter()),
         );
@@ -426,7 +428,8 @@ fn damping() -> Vec<Claim> {
                 )
                 .within(computed(
                     1.0 / (70.0 * PI),
-                    "the mean over 70 periods keeps a part of one: 1/(70 π) of an oscillation as large as the mean",
+                    "the mean over 70 periods may contain a fraction of a period: 1/(70 π) of an oscillation as large \
+                     as the mean",
                 ))
                 .refuses(Control::scene("damping holds the walls back: a hundredth less travel", |scene| {
                     if scene.global_damping > 0.0 {
@@ -442,10 +445,7 @@ fn damping() -> Vec<Claim> {
                         Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
                     Ok(Measurement::new(decay(&done[0])?, expected, expected))
                 })
-                .within(judged(
-                    5e-5,
-                    "geometry of first order in δ/R, which is 1.3e-3 of stiff discs and 1.1e-2 of soft ones",
-                ))
+                .within(judged(5e-5, "geometry, first order in δ/R: 1.3e-3 for stiff discs and 1.1e-2 for soft discs"))
                 .refuses(Control::without(Effect::ContactDamping)),
         );
     }
@@ -525,7 +525,7 @@ fn distortion() -> Vec<Claim> {
         claim("30°: F_n after compression, κ = 1 over κ = 2/3", "1")
             .runs(runs(&[2, 3]))
             .equals(
-                Source::Derived("static answer 3/7 over .456522 (derivation); the paper says less than 1"),
+                Source::Derived("static solution 3/7 over .456522 (derivation); the paper states less than 1"),
                 |done| {
                     let [of_2_3, of_1] = [0, 1].map(|at: usize| Modal::from_scene(&done[at].scene).at_rest().edge);
                     Ok(Measurement::new(turning(&done[1])?[0] / turning(&done[0])?[0], of_1 / of_2_3, 1.0))
@@ -533,7 +533,7 @@ fn distortion() -> Vec<Claim> {
             )
             .within(computed(
                 left_out(DISTORTION[2]) / 0.4565 + left_out(DISTORTION[3]) / (3.0 / 7.0),
-                "geometry: normals turn by (a − b)/2R, and forces k_n b with them, over either force",
+                "geometry: normals and the forces k_n b turn by (a − b)/2R, relative to either force",
             ))
             .refuses(Control::forgets_history()),
         claim("30°: largest F_n in distortion, κ = 2/3 over κ = 1", "1")
@@ -563,7 +563,10 @@ fn distortion() -> Vec<Claim> {
                     Ok(values[values.len() - 1] / largest_turning(&done[0])?)
                 },
             )
-            .within(exactly("only a fall is printed: a thousandth tells it from a force that grows to the end"))
+            .within(exactly(
+                "the paper prints only a decrease: a thousandth distinguishes it from a force that grows \
+                             to the end",
+            ))
             .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
         claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
             .runs(runs(&[0, 1, 2, 3]))

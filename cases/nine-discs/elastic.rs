@@ -41,7 +41,8 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
     },
     springs: 2.0,
     share: 0.5,
-    source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats, with the pair across (derivation)",
+    source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats, with the transverse pair of forces \
+             (derivation)",
     allowed: 0.15,
-    because: "patches of half a cell, on springs as soft as .4 cells of material",
+    because: "contact areas of half a cell, with springs as soft as .4 cells of material",
 };

@@ -20,8 +20,9 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "forces-distortion",
             DISTORTION[3],
             "Contact forces in distortion",
-            "κ = 1, φ = 30°, after the walls have turned by .35°: one diagonal carries the load, its contacts slip at the \
-             corners and at the centre, and the corners of the other diagonal have come off the walls, as in Fig. 8(b).",
+            "κ = 1, φ = 30°, after the walls have turned by .35°: one diagonal carries the load and its contacts slip \
+             at the corners and at the centre. The corner discs of the other diagonal have separated from the walls, \
+             as in Fig. 8(b).",
         ),
     ] {
         let done = runner.run(&Run::new(variant, "dem:1979", LEVELS[0].resolution))?;
@@ -94,7 +95,7 @@ fn speed(
     Ok(Figure::graph(
         name,
         title,
-        "As in Fig. 7: the faster the loading, the larger the oscillation that is left; the frequency is the same.",
+        "As in Fig. 7: faster loading leaves a larger oscillation of the same frequency.",
         [Axis::linear("cycles after the walls stop"), Axis::linear("F_n / F_eq, centre-edge")],
         curves,
     ))

@@ -100,10 +100,10 @@ fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
     };
     computed(
         CASE.variant(variant).map_or(f64::NAN, step_error),
-        "normal velocity: touch and release within a step, ζ ωΔt (v + v′); the dashpot half a step late, \
-         π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt v′; second order, (ωΔt)² v. Along the wall μ times that, and a spring that \
-         is stretched a step late until it reaches the limit of the dashpot's first force, 2ζ ωΔt v; of the spin as of the \
-         impulse, and an arm between R and R − δ_max",
+        "normal velocity: start and end of contact within a step, ζ ωΔt (v + v′); dashpot half a step late, π ζ²/(2 (1 \
+         − ζ²)^{3/2}) ωΔt v′; second order, (ωΔt)² v. Along the wall: μ times that, and a step until the spring \
+         reaches the Coulomb limit of the first dashpot force, 2ζ ωΔt v. Spin: the same as the impulse, and a lever \
+         arm between R and R − δ_max",
     )
 }
 
@@ -183,7 +183,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "velocity",
         "Velocity along the wall",
-        "4 m/s before the impact. Elastic it leaves at 3 m/s; damped less is taken.",
+        "4 m/s before the impact. After an elastic impact it is 3 m/s; with damping it decreases less.",
         [Axis::linear("time t (s)"), Axis::linear("velocity along the wall (m/s)")],
         curves,
     )])

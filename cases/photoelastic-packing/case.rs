@@ -59,7 +59,7 @@ const TABLES: [&[&str]; 3] = [
 /// at 0.46.
 const PRINTED: [CitedNumber; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
-const FOUND: &str = "how near the search for the motion of the walls ends";
+const FOUND: &str = "convergence limit of the search for the motion of the walls";
 
 fn run(variant: &'static str) -> Run {
     // The paper's convention, with which the wall motion was found.
@@ -151,7 +151,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
     vec![
         quantity("F_H/F_V at stage A")
             .holds(
-                "imposed, as the experiment has it, by the motion of the walls (derivation)",
+                "imposed by the motion of the walls, as in the experiment (derivation)",
                 held(experiment::RATIO_A.value, 1.0, |[a, _]| a.ratio()),
             )
             .within(computed(NEAR_IN_RATIO, FOUND))
@@ -162,7 +162,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
             .refuses(further),
         quantity("forces added up over the four walls / largest, stages A and B")
             .holds(
-                "equilibrium: what goes into the discs at one wall comes out at the others",
+                "equilibrium: the forces of all walls on the discs add up to zero",
                 held(0.0, 1.0, |[a, b]| a.residual.max(b.residual)),
             )
             .within(judged(1e-3, "what still moves"))
@@ -174,12 +174,12 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
                 [seen, largest],
                 Source::Printed(
                     &paper::WORK,
-                    "Figs 10-13, stage B: .40, .40 and .47 of its runs, and .33 of the experiment by De Josselin de \
+                    "Figs 10-13, stage B: .40, .40 and .47 in its runs, and .33 in the experiment of De Josselin de \
                      Jong & Verruijt",
                 ),
                 move |done| farthest(done, 0.5 * (seen + largest), ratio_at_b),
             )
-            .within(exactly("within what is printed of one packing"))
+            .within(exactly("within the printed values of one packing"))
             .refuses(smooth()),
     ]
 }
@@ -195,7 +195,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
                 next_value(&values).ok_or_else(|| MissingData("packings that differ".to_owned()))?;
             Ok(Measurement::new(mean, printed.value, half_width))
         })
-        .within(one_interval("in units of the half-width of the 99 % interval in which one more packing lies"))
+        .within(one_interval("in units of the half-width of the 99 % interval for one more packing"))
         .refuses(Control::without(Effect::Friction))
 }
 
@@ -206,7 +206,7 @@ fn step() -> Claim {
         .agrees(Source::Ourselves("the same at half the time step"), |done| {
             Ok(Measurement::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0))
         })
-        .within(judged(0.01, "slip comes in jumps, and the step decides which comes first: by up to .005"))
+        .within(judged(0.01, "slip is sudden, and its order depends on the time step: changes of up to .005"))
         .refuses(Control::without(Effect::Friction))
 }
 
@@ -220,8 +220,7 @@ const HORIZON: u64 = 620;
 
 /// Reason why our solver cannot follow LIGGGHTS in each digit.
 const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0. It keeps the tangential spring displacement \
-                             of an opened contact while the pair is on its neighbour list (plane-shear), and here discs \
-                             separate and touch again";
+                             of an opened contact while the pair is on its neighbour list (plane-shear), and here contacts open and close again";
 
 /// Returns a run that both external solvers support. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {

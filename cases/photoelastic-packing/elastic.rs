@@ -43,7 +43,7 @@ pub(super) fn claims() -> Vec<Claim> {
                     .known("forces decay at rest, more slowly with time and with more points per cell (derivation)")
                     .up_to(0.02),
             )
-            .holds("elastic discs at rest go on bearing what they bear", |done| {
+            .holds("the forces on elastic discs at rest do not change", |done| {
                 let [a, b] = vertical(&done[0])?;
                 Ok(Measurement::new(b / a, 1.0, 1.0))
             })
@@ -52,12 +52,12 @@ pub(super) fn claims() -> Vec<Claim> {
         claim("F_H/F_V at stage B, 50 elastic discs against discs on springs", "1")
             .runs([discs(), run("fifty").aside()])
             .agrees(
-                Source::Ourselves("discs on springs from the same start, led to the same stage A and growth"),
+                Source::Ourselves("discs on springs from the same start, with the same stage A and growth"),
                 |done| Ok(Measurement::new(ratio_at_b(&stages(&done[0])?), ratio_at_b(&stages(&done[1])?), 1.0)),
             )
             .within(judged(
                 0.018,
-                "what packings differ by: twice the standard deviation over ten of them (derivation)",
+                "spread between packings: twice the standard deviation over ten packings (derivation)",
             ))
             .refuses(Control::without(Effect::Friction)),
     ]);

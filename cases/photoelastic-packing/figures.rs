@@ -37,8 +37,8 @@ fn side_by_side(springs: &FinishedRun, elastic: &FinishedRun) -> Figure {
         "fringes-elastic",
         "Fringes of fifty discs, on springs and elastic",
         &format!(
-            "The same start, led to the same stages: stress from contact forces on springs, and as material points \
-             have it; c = {constant:.3e} Pa."
+            "The same start and the same stages: stress from contact forces of springs, and stress of material points; \
+             c = {constant:.3e} Pa."
         ),
         pictures(Quantity::Fringes(constant), &shots, PIXELS / 2, None),
     )
@@ -52,7 +52,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         figures.push(Figure::forces(
             name,
             title,
-            "As in the paper's Figs 10-13: a bar for every contact, along its force and as wide as the force is large.",
+            "As in the paper's Figs 10-13: one bar per contact, along its force, with a width proportional to the \
+             force.",
             force_plot(snapshot),
         ));
     }
@@ -63,9 +64,9 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "fringes",
             "Photoelastic fringes at stages A and B",
             &format!(
-                "What crossed polarisers would show: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its \
-                 contact forces, bright without stress; c = {constant:.3e} Pa for both, three fringes at the stress \
-                 that a fiftieth of the discs is above."
+                "View through crossed polarisers: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its \
+                 contact forces, bright without stress. c = {constant:.3e} Pa in both, so that three fringes \
+                 correspond to the stress that a fiftieth of the discs exceeds."
             ),
             // The paper's lengths have no unit, so there is no scale bar in metres.
             Field { pixel: 0.0, ..pictures(Quantity::Fringes(constant), &shots, PIXELS, None) },
@@ -96,8 +97,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     figures.push(Figure::graph(
         "path",
         "Wall forces on the way",
-        "From touching discs to stage A at one ratio of strains, then at equal and opposite strains until F_V has \
-         grown by 4.348 %.",
+        "From discs in contact without force to stage A at a constant ratio of strains, then at equal and opposite \
+         strains until F_V has grown by 4.348 %.",
         [Axis::linear("vertical strain (%)"), Axis::linear("F_H/F_V (1)")],
         curves,
     ));

@@ -42,7 +42,7 @@ const PACKINGS: &str = include_str!("packings.csv");
 
 /// Reason for the tolerances.
 const BECAUSE: &str =
-    "a sheared packing is one draw of many: the 99 % interval of the difference of two, from packings of four seeds";
+    "a sheared packing is a random sample: 99 % interval of the difference of two packings, from four seeds";
 
 /// Part of the run after which the flow is steady: the walls have then accelerated the middle (derivation).
 const STEADY: f64 = 0.25;
@@ -211,7 +211,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
 /// Claims that four times the pressure and twice the speed change nothing.
 fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     const LAW: &str =
-        "the run at four times the pressure and twice the speed: of rigid grains I alone counts (derivation)";
+        "the run at four times the pressure and twice the speed: rigid grains depend on I alone (derivation)";
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
     claim(quantity, "1")
@@ -289,7 +289,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     let [of_friction, of_packing] = curves;
     let x = || Axis::log("inertial number I (1)");
-    let caption = "Means over the last three quarters of a run under the pressed lid; the same start.";
+    let caption = "Means over the last three quarters of a run under the pressed lid, all from the same start.";
     Ok(vec![
         Figure::graph(
             "friction",

@@ -100,7 +100,11 @@ const HORIZON: u64 = 800;
 
 /// Claims the kinetic energy over the first steps, before motion becomes chaotic.
 fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
-    let allowed = rounding(2.0, "the same cycle but for the order of sums; of an energy twice that of velocities");
+    let allowed = rounding(
+        2.0,
+        "rounding only, because both programs use the same integration cycle with another \
+                                 order of sums; an energy has twice the relative error of velocities",
+    );
     let quantity = format!("kinetic energy of translation over {steps} steps, worst");
     row(&quantity, "J", allowed, runs, control, |done| worst(done, &[ENERGY], largest(done[1].column(ENERGY)?)))
 }
@@ -137,21 +141,21 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "parting",
             "Where pointwise comparison ends",
             "Difference of the kinetic energies of two runs, over their largest value. Left of the horizon runs are \
-             compared moment by moment, right of it by means over blocks of time.",
+             compared at each sample, right of it by means over blocks of time.",
             Axis::log("difference / largest"),
             parted.chain([line]).collect(),
         ),
         graph(
             "kinetic-energy",
             "Kinetic energy in plane shear",
-            "Walls at −1 and +1 from t = 0. Both programs and our solver in the convention of each.",
+            "Walls at −1 and +1 from t = 0. Both programs, and our solver in the convention of each.",
             Axis::linear("kinetic energy (lj units)"),
             course(ENERGY),
         ),
         graph(
             "coordination",
             "Coordination number in plane shear",
-            "Grains that a grain touches, in the mean.",
+            "Mean number of contacts of a grain.",
             Axis::linear("coordination number (1)"),
             course("packing.coordination"),
         ),

@@ -19,8 +19,9 @@ const BEGINNING: f64 = 0.01;
 /// Displacement of the slab along its period: a third, which is a whole number of cells.
 const MOVED: f64 = 1.0 / 3.0;
 
-pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains vibrate in \
-                                       contact: plastic and elastic energy exceed the work of the walls from 1 % shear";
+pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains \
+                                       vibrate in contact: plastic and elastic energy exceed the work of the walls \
+                                       from 1 % shear on";
 
 fn slab(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(CELLS)), SHEAR, 0).slow()
@@ -93,7 +94,7 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
         .holds("conservation of energy", |done| unaccounted(&done[0]))
         .within(judged(
             allowed,
-            "stress and elastic energy go together to second order in the step; of the work of the walls",
+            "stress and elastic energy agree to second order in the step; relative to the work of the walls",
         ))
         .refuses(control)
 }
@@ -102,7 +103,7 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
 pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
         .run(run)
-        .holds("conservation of energy: no more than comes in", |done| {
+        .holds("conservation of energy: stored and dissipated energy do not exceed the work", |done| {
             let budget_entry = |name| entry(&done[0], name);
             let kept = (gained(&done[0], "kinetic")? + budget_entry("elastic")? + budget_entry("plastic")?)
                 / budget_entry("work")?;
@@ -110,7 +111,7 @@ pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
         })
         .within(required(
             0.01,
-            "a hundredth was asked for before the solver was written; friction takes its share besides",
+            "a hundredth was required before the solver was written; friction is accounted for separately",
         ))
         .refuses(control)
 }
@@ -183,7 +184,7 @@ pub(super) fn claims() -> Vec<Claim> {
         claim(format!("momentum less the impulse of the driven grains, {percent}, worst"), "N s")
             .run(slab("mpm"))
             .holds("equal and opposite impulses", |done| momentum(&done[0]))
-            .within(judged(1e-10, "rounding; of the largest impulse"))
+            .within(judged(1e-10, "rounding, relative to the largest impulse"))
             .refuses(Control::solver("each body against its own normal (2000)", "mpm:2000")),
         claim(
             format!(
@@ -201,12 +202,12 @@ pub(super) fn claims() -> Vec<Claim> {
                 1.0,
             ))
         })
-        .within(judged(0.02, "springs between surfaces and a transfer that keeps spin lose next to nothing"))
+        .within(judged(0.02, "springs between surfaces and a transfer with spin lose almost no energy"))
         .refuses(makes_energy()),
         claim(format!("plastic strain without slip over that with friction, {percent}"), "1")
             .runs([slab("mpm:no-slip"), slab("mpm")])
             .at_least(5.0, FIGURE_6, |done| Ok(yielded(&done[0])? / yielded(&done[1])?))
-            .within(exactly("extensive against fairly little is read as five times"))
+            .within(exactly(""extensive" compared with "fairly little" is read as five times as much"))
             .refuses(Control::solver("contacts glued", "mpm:no-slip")),
         claim(format!("largest shear over normal force of a contact, {percent}"), "1")
             .run(slab("mpm"))
@@ -214,7 +215,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 let friction = done[0].scene.laws[0].unwrap_or_default().friction;
                 Ok(Measurement::new(steepest(&done[0])?, friction, friction))
             })
-            .within(judged(0.02, "forces of a patch are summed, whose normals differ a little"))
+            .within(judged(0.02, "the forces of a contact area are summed, and their normals differ slightly"))
             .refuses(Control::scene(Effect::Friction.absence(), early(|scene| Effect::Friction.switch_off(scene)))),
         claim(format!("stress of von Mises over the flow stress where it has flowed, {percent}, largest"), "1")
             .run(slab("mpm"))
@@ -223,7 +224,7 @@ pub(super) fn claims() -> Vec<Claim> {
             })
             .within(computed(
                 64.0 * f64::EPSILON,
-                "rounding: some thirty operations in the return, as many here, each by ε",
+                "rounding by ε in about thirty operations of the return and thirty of this check",
             ))
             .refuses(Control::scene("hardening off", early(with_yield(|_, hardening| *hardening = 0.0)))),
         claim(format!("change of volume that pressure does not account for, {percent}, mean"), "1")
@@ -231,8 +232,8 @@ pub(super) fn claims() -> Vec<Claim> {
             .holds("plastic flow keeps volume: σ_m = K ln J", |done| Ok(Measurement::new(volume(&done[0])?, 0.0, 1.0)))
             .within(computed(
                 1.0 / STEPS,
-                "deformation is summed to first order, so that a point that turns by θ in n steps swells by θ²/n: \
-                 here θ = 1",
+                "the deformation is integrated to first order, so a rotation by θ in n steps increases the volume by \
+                 θ²/n: here θ = 1",
             ))
             .refuses(Control::scene("bulk modulus of a tenth", early(made_of(|grains| grains.bulk_modulus *= 0.1)))),
         claim(format!("plastic strain of a slab moved along its period, {:.0} % shear", 100.0 * BEGINNING), "1")
@@ -245,7 +246,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 let (there, here) = (yielded(&done[1])?, yielded(&done[0])?);
                 Ok(Measurement::new(there - here, 0.0, here))
             })
-            .within(judged(1e-9, "rounding of positions; nothing has become chaotic yet"))
+            .within(judged(1e-9, "rounding of positions, before the motion becomes chaotic"))
             .refuses(Control::without(Effect::PeriodicAxes)),
     ];
     for (which, words, allowed) in [(0, "largest", 0.15), (1, "mean", 0.03)] {
@@ -261,10 +262,10 @@ pub(super) fn claims() -> Vec<Claim> {
         claims.push(
             claim(format!("{words} overlap of surfaces, {percent}"), "cell")
                 .run(slab("mpm"))
-                .holds("surfaces do not go through each other", overlap_measurement)
+                .holds("surfaces do not penetrate each other", overlap_measurement)
                 .within(required(
                     allowed,
-                    "asked for before the solver was written, of springs as stiff as a cell of the material",
+                    "required before the solver was written, for springs as stiff as a cell of the material",
                 ))
                 .refuses(soft),
         );

@@ -32,8 +32,8 @@ fn displacement(slabs: &[Slab]) -> Figure {
     Figure::graph(
         "displacement",
         "Displacement across the slab",
-        "Fig. 8 of the paper: displacement of grains averaged over columns, as a fraction of that of the moving side, \
-         at the right. The straight line is uniform shear.",
+        "Fig. 8 of the paper: displacement of grains averaged over columns, relative to the moving side on the right. \
+         The straight line is uniform shear.",
         [Axis::linear("x over the width (1)"), Axis::linear("displacement over that of the side (1)")],
         curves,
     )
@@ -55,14 +55,14 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
         graph(
             "turned",
             "Rotation of grains",
-            "Root of the mean square over the grains that move freely.",
+            "Root mean square over the free grains.",
             "rotation (degrees)",
             &measures::rotation_deg,
         ),
         graph(
             "voids",
             "Large voids",
-            "Squares of 40 µm, at any place of a grid of 150², in which there is nothing.",
+            "Empty squares of 40 µm at any position of a grid of 150².",
             "squares (1)",
             &|done, snapshot| measures::large_voids(done, snapshot) as f64,
         ),
@@ -71,7 +71,7 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
         figures.push(graph(
             "yielded",
             "Plastic strain",
-            "Mean over the mass of the grains that move freely. Grains on springs have none.",
+            "Mean over the mass of the free grains. Grains on springs have no plastic strain.",
             "plastic strain (1)",
             &measures::plastic_strain,
         ));
@@ -91,8 +91,8 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     all.push(Figure::graph(
         "stress",
         "Stress on the sides",
-        "Shear force on the moving side and on the one that stands still, and normal force on the latter, over the \
-         length of the side. The moving side feels the inertia of what it sets in motion; chains come and go.",
+        "Shear force on the moving and on the fixed side, and normal force on the fixed side, per length of the side. \
+         The moving side also carries the inertia of the grains that it accelerates. Force chains form and vanish.",
         [Axis::linear("mean shear (1)"), Axis::linear("stress (MPa)")],
         vec![
             Curve::new("shear, moving side", Stroke::Line, course("right.force_y", -1.0)),
@@ -110,7 +110,7 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     all.push(Figure::graph(
         "energy",
         "Where the work goes",
-        "Work of the moving side, and what became of it: motion, springs of contacts, friction.",
+        "Work of the moving side and its parts: kinetic energy, contact springs, friction.",
         [Axis::linear("mean shear (1)"), Axis::linear("energy (J/m)")],
         entries.map(curve).into(),
     ));
@@ -135,9 +135,9 @@ fn of_chains(done: &FinishedRun) -> [Figure; 3] {
     [
         Figure::graph(
             "chains",
-            "Force chains come and go",
-            "Part of the grains that carry more than the mean, and part of the links of chains that are still there \
-             at the next look, 2.5 % of shear later at most. Grains on springs.",
+            "Force chains form and vanish",
+            "Fraction of the grains with more than the mean load, and fraction of the chain links that persist to the \
+             next snapshot, at most 2.5 % of shear later. Grains on springs.",
             [Axis::linear("mean shear (1)"), Axis::linear("part (1)")],
             vec![
                 Curve::new("stressed grains", Stroke::MarkedLine, points(&|chains| chains.stressed)),

@@ -94,12 +94,20 @@ fn gone_in_the_mean(done: &FinishedRun) -> Result<f64, MissingData> {
 
 /// Function that reduces the values of all packings to the value compared with the bound, and the reason.
 type PackingReduction = (fn(&[f64]) -> Result<f64, MissingData>, &'static str);
-const VALUES: PackingReduction =
-    (lower, "the lower end of the interval (99 %, Student's t) over the packings holds the bound, which is ours");
-const EACH: PackingReduction = (least, "each packing holds the bound, which is ours; chains that stay would lose none");
+const VALUES: PackingReduction = (
+    lower,
+    "the lower end of the 99 % interval (Student's t) over the packings meets the bound; the bound is our \
+             choice",
+);
+const EACH: PackingReduction = (
+    least,
+    "each packing meets the bound, which is our choice; permanent chains would lose \
+                                        no link",
+);
 const RATIOS: PackingReduction = (
     lower_of_ratios,
-    "the lower end of the interval (99 %, Student's t, of logarithms) over the packings holds the bound, which is ours",
+    "the lower end of the 99 % interval (Student's t, of logarithms) over the packings meets the bound; the bound is \
+     our choice",
 );
 
 /// Claims a bound on the reduced value over all packings.
@@ -159,7 +167,11 @@ fn on_springs() -> Vec<Claim> {
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
             .runs([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::new(bands(done)?, slower, slower)))
-            .within(judged(0.4, "packings, and contacts of another kind: the prototype's grains deform"))
+            .within(judged(
+                0.4,
+                "spread between packings, and another kind of contact: the grains of the prototype \
+                                 deform",
+            ))
             .refuses(
                 Control::scene("grains of three hundredths of the mass", |scene| {
                     for grain in &mut scene.grains {

@@ -82,17 +82,17 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     let mut figures = vec![Figure::field(
         "rotation",
         "Grains roll",
-        "Rotation since the start. Grains of the two sides do not turn. In the band at the moving side neighbours \
-         turn against each other, like the wheels of a gear; without friction to roll on they could not. The same \
-         packing in every row; grains pushed out through a side are not shown.",
+        "Rotation since the start. Grains of the two sides do not rotate. In the band at the moving side neighbours \
+         rotate in opposite directions, like gears; this needs friction. The same packing in every row. Grains pushed \
+         out through a side are not shown.",
         pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
     )];
     if !deformable.is_empty() {
         figures.push(Figure::field(
             "plastic-strain",
             "Plastic strain, with friction and without slip",
-            "Fig. 6 of the paper: with friction grains roll and slide, and yield a little where they touch; without \
-             slip they are drawn out and leave large voids. One scale.",
+            "Fig. 6 of the paper: with friction, grains roll and slide and yield slightly at contacts; without slip \
+             they are stretched and leave large voids. Both have the same scale.",
             pictures(Quantity::PlasticStrain, &shots(&deformable, &PROFILES), PIXELS, Some((0.0, 0.5))),
         ));
     }
@@ -102,7 +102,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
             name,
             &format!("Force chains at 63 and 71 % shear, grains {}", slab.0),
             "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load, and 8 % of \
-             shear later it is others.",
+             shear later other grains carry it.",
             pictures(Quantity::StressDifference, &shots(&[slab], &CHAINS), PIXELS, None),
         ));
     }
@@ -113,7 +113,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
             figures.push(Figure::forces(
                 &format!("forces-{method}-{:.0}", 100.0 * shear),
                 &format!("Contact forces at {:.0} % shear, grains {}", 100.0 * shear, slab.0),
-                "Bars along contact forces, as wide as these are large.",
+                "Bars along contact forces, with a width proportional to the force.",
                 force_plot(snapshot),
             ));
         }
@@ -157,7 +157,8 @@ fn moving(slabs: &[&Slab]) -> Figure {
     Figure::field(
         "film",
         "The slab in shear",
-        "Grains coloured by rotation. The right side moves up; what leaves at the top comes in at the bottom.",
+        "Grains coloured by rotation. The right side moves up. The slab is periodic: grains that leave at the top \
+         enter at the bottom.",
         film(Quantity::Rotation, &shots, ("mean shear", &clock), FILM_PIXELS, Some(TURNED)),
     )
 }

@@ -61,7 +61,11 @@ pub(super) fn claims() -> Vec<Claim> {
         claims.push(row(
             &format!("kinetic energy of translation to {:.1} % shear, worst", 100.0 * beginning),
             "J",
-            rounding(2.0, "the same cycle but for the order of sums; of an energy twice that of velocities"),
+            rounding(
+                2.0,
+                "rounding only, because both programs use the same integration cycle with another order of \
+                           sums; an energy has twice the relative error of velocities",
+            ),
             runs,
             Control::ours("friction .29 for .3 in ours", |scene| scene.change_laws(|law| law.friction = 0.29)),
             |done| {

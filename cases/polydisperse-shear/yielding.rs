@@ -62,7 +62,7 @@ fn pores() -> Claim {
         .runs([whole("seed-1", "mpm:no-slip").known(NO_VOIDS).up_to(1.0), whole("seed-1", "mpm").aside()])
         .at_least(5.0, FIGURE_6, |done| Ok(voids(&done[0], end(&done[0])?) / voids(&done[1], end(&done[1])?).max(1.0)))
         .within(exactly(
-            "large voids are read as five times as many, which was asked for before the solver was written",
+            ""large voids" is read as five times as many, required before the solver was written",
         ))
         .refuses(Control::scene("every second of the larger grains a tenth as large, so that there are voids", shrunk))
 }
@@ -75,7 +75,8 @@ fn other_contacts() -> Vec<Claim> {
             // At −1 there is no plastic strain without slip.
             .runs([whole("seed-1", "mpm:2001").known(REACHES).up_to(1.0), whole("seed-1", "mpm:no-slip").aside()])
             .at_least(5.0, FIGURE_6, |done| Ok(1.0 / over(done, 0.8, plastic_strain)?))
-            .within(exactly("extensive against fairly little is read as five times, as with springs between surfaces"))
+            .within(exactly(""extensive" compared with "fairly little" is read as five times as much, as with springs \
+                 between surfaces"))
             .refuses(Control::without_the_error("springs between surfaces", "mpm", grid(75.0))),
         claim("plastic strain over that with springs between surfaces, 80 % shear", "1")
             .runs([whole("seed-1", "mpm:2001"), whole("seed-1", "mpm").aside()])
@@ -83,8 +84,8 @@ fn other_contacts() -> Vec<Claim> {
                 over(done, 0.8, plastic_strain)
             })
             .within(exactly(
-                "half of what the prototype has above one; it grows with the reach of contact, which is that of a \
-                 cell, and the prototype's are half as large",
+                "half of the prototype's excess over one; the excess grows with the range of contact, one cell, and \
+                 the cells of the prototype are half as large",
             ))
             .refuses(Control::solver("springs between surfaces", "mpm")),
     ]
@@ -119,8 +120,8 @@ fn motion() -> Vec<Claim> {
             .runs([band_at("slow"), band_at("seed-1").aside()])
             .at_least(1.25, prototype::BAND_AT_25.source(), bands)
             .within(exactly(
-                "the band is wider, and the bound is ours: packings differ, and whole grains that are driven reach \
-                 into the slab, where the prototype's sides are cut",
+                "the band is wider, and the bound is our choice: packings differ, and driven whole grains reach into \
+                 the slab, while the sides of the prototype are cut",
             ))
             .refuses(Control::scene("a quarter of the time, in which momentum comes no further", |scene| {
                 if let Duration::Seconds(time) = &mut scene.duration {
@@ -143,7 +144,7 @@ fn motion() -> Vec<Claim> {
                     Ok(chains::chains(snapshot).stressed)
                 },
             )
-            .within(exactly("a load that all carry alike has a half above its mean"))
+            .within(exactly("a uniformly distributed load has half of the grains above the mean"))
             // A single velocity field for all bodies has no contacts to read.
             .breaks(Control::solver("contacts glued: nothing is pressed", "mpm:no-slip")),
     ]
@@ -169,8 +170,8 @@ fn refined() -> Vec<Claim> {
             })
             .within(required(
                 allowed,
-                "asked for of a grid twice as fine before the solver was written; the motion is chaotic: contacts a \
-                 little stiffer change as much",
+                "required for a grid twice as fine before the solver was written; the motion is chaotic, and slightly \
+                 stiffer contacts change as much",
             ))
             .refuses(control)
     };

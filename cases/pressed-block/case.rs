@@ -20,8 +20,7 @@ const TIME: f64 = 20.0;
 pub(crate) static CASE: Case = Case {
     name: "pressed-block",
     title: "A block that yields is pressed between smooth sides",
-    claim: "A block that is pressed flows as von Mises's law with hardening has it, and keeps what volume elasticity \
-            leaves it.",
+    claim: "A compressed block flows according to von Mises with hardening. Its volume changes only elastically.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "One direction of flow and no rotation. Objective stress rates are not tested.",
@@ -93,13 +92,16 @@ fn claims() -> Vec<Claim> {
     claims.extend([
         claim("equivalent plastic strain of the middle", "1")
             .run(run())
-            .equals(Source::Derived("ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)"), |done| {
-                let middle = MiddleMeans::from_run(&done[0])?;
-                Ok(Measurement::new(middle.plastic, middle.flowed(), middle.flowed()))
-            })
+            .equals(
+                Source::Derived("ε_p = (2G e − Y)/(3G + H), e from the volumes of the block (derivation)"),
+                |done| {
+                    let middle = MiddleMeans::from_run(&done[0])?;
+                    Ok(Measurement::new(middle.plastic, middle.flowed(), middle.flowed()))
+                },
+            )
             .within(computed(
                 front * 2.0 * SHEAR / (3.0 * SHEAR + HARDENING) / 0.0095,
-                "a front of the strain V/c beside that at which it flowed, V/c · 2G/(3G + H) of .0095",
+                "front of the strain V/c relative to the strain of the flow: V/c · 2G/(3G + H) of .0095",
             ))
             .refuses(
                 Control::scene("a yield stress a twentieth higher", metal(1.05 * YIELD, HARDENING)).coarser(COARSE),
@@ -113,13 +115,16 @@ fn claims() -> Vec<Claim> {
             })
             .within(computed(
                 2.0 * SHEAR * front / 0.476,
-                "a front of the strain V/c beside that at which it flowed, 2G V/c of .476 Pa",
+                "front of the strain V/c relative to the strain of the flow: 2G V/c of .476 Pa",
             ))
             .refuses(Control::scene("no hardening", metal(YIELD, 0.0)).coarser(COARSE)),
         claim("pressure of the middle", "Pa")
             .run(run())
             .equals(
-                Source::Derived("(σ_xx + σ_yy + σ_zz)/3 = −K e, e of its own volumes: flow keeps them (derivation)"),
+                Source::Derived(
+                    "(σ_xx + σ_yy + σ_zz)/3 = −K e, e from the volumes of the block, which flow conserves \
+                                 (derivation)",
+                ),
                 |done| {
                     let middle = MiddleMeans::from_run(&done[0])?;
                     let expected = BULK * middle.strain;
@@ -129,7 +134,7 @@ fn claims() -> Vec<Claim> {
             .within(computed(
                 1e-5,
                 "volumes are multiplied and strains added: e/2N in N steps, 2e-6 of .0202 in 4600; five times that for \
-                 what the mean over points does to a logarithm",
+                 the mean over points of a logarithm",
             ))
             .refuses(
                 Control::scene(
@@ -142,7 +147,7 @@ fn claims() -> Vec<Claim> {
             .run(run())
             .equals(
                 Source::Derived(
-                    "F = K e + ⅔ (Y + H ε_p), ε_p = (2G e − Y)/(3G + H), e of its own volumes (derivation)",
+                    "F = K e + ⅔ (Y + H ε_p), ε_p = (2G e − Y)/(3G + H), e from the volumes of the block (derivation)",
                 ),
                 |done| {
                     let middle = MiddleMeans::from_run(&done[0])?;
@@ -151,7 +156,7 @@ fn claims() -> Vec<Claim> {
                     Ok(Measurement::new(done[0].last("ram.force_y")?, expected, expected))
                 },
             )
-            .within(computed(DENSITY * sound * SPEED / 1.934, "a front of ρcV; of 1.934 Pa on 1 m"))
+            .within(computed(DENSITY * sound * SPEED / 1.934, "stress ρcV of a front, relative to 1.934 Pa on 1 m"))
             .refuses(
                 Control::scene(
                     "two per cent stiffer in volume",
@@ -170,13 +175,16 @@ fn follows_the_ram(level: &Level) -> Claim {
     let run = Run::new(PLAIN, "mpm", level.resolution).known(LAG).up_to(0.2);
     claim(format!("strain of the middle over the way of the ram, {} cells", level.name), "1")
         .run(if *level == LEVELS[0] { run } else { run.slow() })
-        .equals(Source::Derived("e = −ln(1 − V t/L): the block is as high as the ram stands (derivation)"), |done| {
-            let expected = -(1.0 - SPEED * TIME).ln();
-            Ok(Measurement::new(MiddleMeans::from_run(&done[0])?.strain, expected, expected))
-        })
+        .equals(
+            Source::Derived("e = −ln(1 − V t/L): the height of the block is the position of the ram (derivation)"),
+            |done| {
+                let expected = -(1.0 - SPEED * TIME).ln();
+                Ok(Measurement::new(MiddleMeans::from_run(&done[0])?.strain, expected, expected))
+            },
+        )
         .within(judged(
             0.03,
-            "springs a quarter as soft as ours give way by F/κ, 2e-4 of 2e-2, and tracers sink in as far again",
+            "springs a quarter as soft as ours yield by F/κ, 2e-4 of 2e-2, and tracers penetrate as much again",
         ))
         .refuses(Control::without_the_error("springs four times as stiff", STIFF, LEVELS[0].resolution))
 }

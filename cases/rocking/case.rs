@@ -12,7 +12,7 @@ pub(crate) static CASE: Case = Case {
             belongs to the contact, whichever grain comes first.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "There is no dashpot against rolling.",
+    weakness: "The scene has no rolling dashpot.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -75,7 +75,8 @@ fn back() -> Claim {
         })
         .within(computed(
             number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
-            "the tangential spring gives way, k_r/k_tR²; its swing at the start; a turning point between samples, (ω_rΔt)²/8",
+            "compliance of the tangential spring, k_r/k_tR²; its vibration at the start; turning points between \
+             samples, (ω_rΔt)²/8",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {
             scene.change_laws(|law| law.rolling_friction *= 1.1);
@@ -92,7 +93,7 @@ fn way() -> Claim {
         })
         .within(computed(
             number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
-            "the tangential spring's swing at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
+            "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::scene("rolling resistance × 1.1", |scene| {
             scene.change_laws(|law| law.rolling_friction *= 1.1);
@@ -131,8 +132,8 @@ fn between(variant: &'static str) -> Claim {
         )
         .within(computed(
             number(variant, |scene| rocks(scene)[1]),
-            "lever arms within the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and \
-             (ω_sΔt)²/8 of a velocity; of ω₀",
+            "lever arms differ by up to the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 \
+             of a velocity; relative to ω₀",
         ))
         .refuses(Control::scene("rolling resistance × 1.05", |scene| {
             scene.change_laws(|law| law.rolling_friction *= 1.05);

@@ -11,7 +11,7 @@ pub(crate) static CASE: Case = Case {
     claim: "A ball that rolls off another leaves it at cos θ = 10/17 if it is rough, and as Coulomb's law says if it slips.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Where it leaves is read from the spin and the velocity that it keeps afterwards, not from the contact itself.",
+    weakness: "The point of separation is computed from the final spin and velocity, not from the contact itself.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -98,8 +98,8 @@ fn claims() -> Vec<Claim> {
 fn off(variant: &str, times: f64) -> Tolerance {
     computed(
         CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::from_scene(&scene).off),
-        "the spring's swing at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, of the velocity; the overlap over the \
-         distance and over the radius",
+        "vibration of the spring at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, relative to the velocity; \
+         overlap over the distance and over the radius",
     )
 }
 

@@ -44,7 +44,7 @@ fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 fn claims() -> Vec<Claim> {
-    const ASKED: &str = "asked for at this resolution before the solver existed, and the reference's own uncertainty";
+    const ASKED: &str = "required at this resolution before the solver existed, and the uncertainty of the reference";
     let mut claims = Vec::new();
     for slope in SLOPES {
         for (level, allowed) in LEVELS.iter().zip(slope.allowed) {
@@ -91,7 +91,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "deviation",
         "Deviation from the converged elastic disc",
-        "The same contacts as against a rigid plane, between two deformable bodies.",
+        "The same contacts as with a rigid plane, but between two deformable bodies.",
         [Axis::log("cells a radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,
     )])

@@ -42,7 +42,7 @@ fn claims() -> Vec<Claim> {
         .refused("rapier has no resistance against rolling", Control::without(Effect::RollingResistance));
     let lammps =
         claim("refusal of a damped rolling spring", "1").run(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
-            "LAMMPS limits spring and dashpot together, LIGGGHTS and we the spring alone",
+            "LAMMPS limits the sum of spring and dashpot; LIGGGHTS and `dem` limit the spring alone",
             Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
         );
     let rolls_off = |variant| programs::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
@@ -59,8 +59,8 @@ fn beside_programs(variant: &'static str) -> Vec<Claim> {
             frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(&scene)
                 / scene.grains[0].radius
         }),
-        "its evaluation at the start takes a step of rolling for done: a moment k_r ωΔt, which slows down at ω_r² v Δt for half \
-         a step, and may for a whole one. A grain that starts at rest (the slopes) shows nothing of it; in units of R",
+        "its evaluation at the start counts one step of rolling as done. The moment k_r ωΔt decelerates by ω_r² v Δt \
+         for half a step or a whole step. A grain that starts at rest (the slopes) is not affected; in units of R",
     );
     programs::rolling(variant, Resolution::TimeStep(time_step), &ahead)
 }
@@ -80,8 +80,8 @@ fn flat(variant: &'static str) -> Vec<Claim> {
             })
             .within(computed(
                 CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).rung(0.5)),
-                "once the rolling spring has yielded the moment is constant, and friction comes to its value as exp(−λt): \
-                 what is left after half a second (derivation)",
+                "the moment is constant once the rolling spring has yielded, and friction approaches its value as \
+                 exp(−λt): remainder after half a second (derivation)",
             ))
             .refuses(control)
     };
@@ -138,9 +138,10 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
         CASE.variant(variant).map_or(f64::NAN, |scene| {
             OneGrain::from_scene(&scene).rolled(rolling_friction(&scene), 0.5 * seconds(&scene))
         }),
-        "what the critically damped rolling spring leaves after half the time (derivation); in units of μ_r g/(1 + i)",
+        "remainder of the critically damped motion of the rolling spring after half the time (derivation); in units of \
+         μ_r g/(1 + i)",
     );
-    let yields = rounding(1.0, "once the spring has yielded the moment is constant; in units of μ_r g/(1 + i)");
+    let yields = rounding(1.0, "the moment is constant once the spring has yielded; in units of μ_r g/(1 + i)");
     vec![
         threshold_claim(
             "acceleration on a slope of tan θ = .999 μ_r",
@@ -174,7 +175,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "velocity",
         "Rolling to rest",
-        "μ_r = .05 on a flat plane: a sphere is slowed down at (5/7) μ_r g, a disc at (2/3) μ_r g.",
+        "μ_r = .05 on a flat plane: a sphere decelerates at (5/7) μ_r g, a disc at (2/3) μ_r g.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
         curves,
     )])

@@ -12,7 +12,7 @@ pub(crate) static CASE: Case = Case {
     name: "settled-column",
     title: "Spheres settle in a column",
     claim: "Two thousand spheres that fall into a column come to rest, walls and floor carry their weight, and \
-            packing fraction and coordination are those of LAMMPS and LIGGGHTS as far as one column can tell.",
+            packing fraction and coordination agree with LAMMPS and LIGGGHTS within the spread of one column.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The results are sums over one column. An error smaller than the spread between columns is invisible. The load \
@@ -76,7 +76,11 @@ fn claims() -> Vec<Claim> {
             .equals(Source::Derived("balance of forces at rest"), |done| {
                 Ok(Measurement::new(carried(&done[0])?, weight(&done[0]), weight(&done[0])))
             })
-            .within(judged(2e-3, "what still moves at the end, by convention 1e-4 to 1.1e-3; relative to the weight"))
+            .within(judged(
+                2e-3,
+                "remaining motion at the end, 1e-4 to 1.1e-3 depending on the convention; relative to \
+                                  the weight",
+            ))
             .refuses(Control::scene("a run that ends while they fall", |scene| scene.duration = Duration::Seconds(4.0)))
             .fair_to_any(),
     ];
@@ -123,7 +127,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             let values = done.series().column(column).unwrap_or_default().iter().map(|value| value * factor(done));
             Curve::new(*label, *stroke, done.series().time.iter().copied().zip(values).collect())
         };
-        let caption = "A program, and our solver in its convention, from the same start.";
+        let caption = "An external program and our solver in its convention, from the same start.";
         let axes = [Axis::linear("time t (s)"), Axis::linear(y)];
         Figure::graph(name, title, caption, axes, runs.iter().map(curve).collect())
     };

@@ -18,10 +18,10 @@ pub(crate) static CASE: Case = Case {
             and MUSEN in the 2024 round robin, and through the small one at the rate of MUSEN.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The filling is our own: one of 100,000 spheres and five of 40,000. Of the eight published codes only two are \
-               known by their curves; the mean of all, as quoted elsewhere, is 4.7 % below these two. The law has no rolling \
-               friction, which changes the rates most. The control of sliding without friction uses only 40,000 spheres; the \
-               large fillings use the other orifice as control.",
+    weakness: "The filling is our own: one of 100,000 spheres and five of 40,000. Curves are available for only two of \
+               the eight published codes; the mean of all codes, as quoted elsewhere, is 4.7 % below these two. The \
+               law has no rolling friction, which has the largest influence on the rates. The control of sliding \
+               without friction uses only 40,000 spheres; the large fillings use the other orifice as control.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -40,7 +40,7 @@ const COUNTED: f64 = 2.0;
 const BOTH: [f64; 2] = [0.5, 2.0];
 /// Largest relative error of rates.
 const ALLOWED: f64 = 0.05;
-const BECAUSE: &str = "asked for before: 5 %, as the paper's codes are said to differ";
+const BECAUSE: &str = "required in advance: 5 %, the stated difference between the codes of the paper";
 
 fn of_paper(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).paper_size().kept()
@@ -113,7 +113,7 @@ fn claims() -> Vec<Claim> {
         claim("rate of the large orifice over that of the small one, .5 to 2 s", "1")
             .runs([of_paper(PLAIN), of_paper(SMALL)])
             .equals_cited(dosta::SILO_QUOTED_RATIO, 1.0, |done| Ok(rate(&done[0], BOTH)? / rate(&done[1], BOTH)?))
-            .within(required(0.1, "asked for before"))
+            .within(required(0.1, "required in advance"))
             .refuses(Control::variant("the large orifice for both", PLAIN)),
         near(claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").run(low()), dosta::SILO_LARGE_EARLY, |done| {
             rate(&done[0], EARLY)
@@ -124,8 +124,8 @@ fn claims() -> Vec<Claim> {
             FILLINGS.map(of_filling).to_vec(),
             (dosta::SILO_LARGE_EARLY, dosta::SILO_LARGE_EARLY_HALF),
             |done| rate(done, EARLY),
-            "in units of 2 √(s_code² + s_fill² (1/5 + 1)), s_code from two codes on one filling, s_fill between our fillings: \
-             decided before the second was run",
+            "in units of 2 √(s_code² + s_fill² (1/5 + 1)), with s_code from two codes on one filling and s_fill \
+             between our fillings; fixed before the second run",
         )
         .refuses(smooth()),
         claim("rate from .2 to .8 s, 40,000 spheres, with a step of 6e-6 s for 3e-6 s", "1000/s")
@@ -134,7 +134,7 @@ fn claims() -> Vec<Claim> {
                 let fine = rate(&done[1], EARLY)?;
                 Ok(Measurement::new(rate(&done[0], EARLY)?, fine, fine))
             })
-            .within(judged(0.01, "a fifth of what rates may be off"))
+            .within(judged(0.01, "a fifth of the tolerance of the rates"))
             .refuses(smooth()),
     ];
     let beginning = "position of a grain of a small silo over .6 ms, worst";
@@ -194,9 +194,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "left",
         "Grains in the silo",
-        "Grains left over time since the plug was taken away, of 40,000 as if 60,000 more lay over them. Of the large orifice \
-         the mean of LIGGGHTS and MUSEN (derived from runs again of Dosta et al. 2024); of the small one a line at the rate that \
-         MUSEN has from .5 to 2 s.",
+        "Remaining grains over the time since the plug was removed; for 40,000 grains, with 60,000 added. Large \
+         orifice: mean of LIGGGHTS and MUSEN (derived from repeated runs, Dosta et al. 2024). Small orifice: a line \
+         with the rate of MUSEN from .5 to 2 s.",
         [Axis::linear("time of flow (s)"), Axis::linear("grains left (thousands)")],
         curves,
     )])

@@ -4,7 +4,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
 
 const LEVELS: &[Level] = &[cells("H/4", 4.0, 3), cells("H/8", 8.0, 3), cells("H/10", 10.0, 3)];
-const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg bears the weight (derivation)");
+const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg carries the weight (derivation)");
 
 pub(crate) static CASE: Case = Case {
     name: "soil-at-rest",
@@ -12,7 +12,8 @@ pub(crate) static CASE: Case = Case {
     claim: "Soil that starts with the stress of its own weight does not move, on any grid.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "A state of rest: it tells the start, the sign of the stress and held sides, and nothing of motion.",
+    weakness: "The soil is at rest. The case tests the initial state, the sign of the stress and fixed boundaries, but \
+               no motion.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -45,7 +46,7 @@ fn claims() -> Vec<Claim> {
             })
             .within(required(
                 1e-9,
-                "a rounding of the height in each of 10⁴ steps, in units of the sinking under the weight",
+                "rounding of the height in each of 10⁴ steps, in units of the settlement under the weight",
             ))
             .refuses(Control::scene("the gradient of the stress with the other sign", |scene| {
                 let stress = scene.bodies.iter_mut().filter_map(|body| body.stress.as_mut());

@@ -20,7 +20,7 @@ pub(super) fn claims() -> Vec<Claim> {
                 .equals(Source::Derived("a rigid sphere slides, then rolls (derivation of backspin)"), |done| {
                     Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0))
                 })
-                .within(judged(0.035, "what a contact that acts at the surface reaches at this resolution"))
+                .within(judged(0.035, "accuracy of a contact that acts at the surface, at this resolution"))
                 .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
         );
     }

@@ -85,7 +85,8 @@ fn claims() -> Vec<Claim> {
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         allowed + slope.reference.uncertainty,
-                        "discretisation at this resolution, the plane's part, and the reference's own uncertainty",
+                        "discretisation at this resolution, deformation of the plane, and the uncertainty of the \
+                         reference",
                     ))
                     .refuses(Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))),
             );
@@ -110,7 +111,7 @@ fn claims() -> Vec<Claim> {
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         slope.allowed[0] + slope.reference.uncertainty,
-                        "what a contact that acts at the surface reaches at this resolution",
+                        "accuracy of a contact that acts at the surface, at this resolution",
                     ))
                     .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[1].resolution)),
             );
@@ -131,9 +132,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     Ok(vec![Figure::graph(
         "way",
-        "A sphere on a deformable plane at 45°, R/2: way less that of a rigid sphere",
+        "A sphere on a deformable plane at 45°, R/2: displacement minus that of a rigid sphere",
         "At two cells a radius `mpm` is a few per cent slow; with the 2000 paper's contact the sphere hardly rolls. \
-         The whole way is 2.5 m.",
+         The total displacement is 2.5 m.",
         [Axis::linear("time t (s)"), Axis::linear("x − x_rigid (m)")],
         curves,
     )])

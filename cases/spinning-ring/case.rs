@@ -17,7 +17,8 @@ pub(crate) static CASE: Case = Case {
             follows from the deformation or is added up from step to step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "In the plane, small strain, one turn. The sum over all points sees no error that leaves the second moment alone.",
+    weakness: "Two dimensions, small strain, one turn. The sum over all points is insensitive to errors that do not \
+               change the second moment.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -95,10 +96,10 @@ fn ring(scene: &Scene) -> Result<Ring, MissingData> {
 fn claims() -> Vec<Claim> {
     let run = |law| Run::new(law, "mpm", LEVELS[0].resolution);
     let growth = Ring { radii: [0.5, 1.0], plane: [1e6 / 0.91, 0.3 / 0.7], load: 9e3 }.growth();
-    let mut claims: Vec<Claim> = LAWS
-        .into_iter()
-        .map(|law| {
-            claim(format!("growth of the second moment, mean over a turn, {law}"), "1")
+    let mut claims: Vec<Claim> =
+        LAWS.into_iter()
+            .map(|law| {
+                claim(format!("growth of the second moment, mean over a turn, {law}"), "1")
                 .run(run(law))
                 .equals(SOURCE, |done| {
                     let exact = ring(&done[0].scene)?.growth();
@@ -106,14 +107,14 @@ fn claims() -> Vec<Claim> {
                 })
                 .within(computed(
                     0.01 + 2.0 * growth,
-                    "twice of the half per cent of a period at four cells through a ring (expanding-ring), and twice the growth \
-                     for what is not linear",
+                    "twice the error of half a per cent of a period at four cells through a ring (expanding-ring), and \
+                     twice the growth for nonlinear terms",
                 ))
                 .refuses(Control::scene("five per cent denser", |scene| {
                     scene.bodies.iter_mut().for_each(|body| body.density *= 1.05);
                 }).coarser(Resolution::grid(2.0, 3)))
-        })
-        .collect();
+            })
+            .collect();
     claims.push(
         claim("angular momentum over a turn, worst", "kg m²/s")
             .run(run("hypoelastic"))
@@ -121,7 +122,7 @@ fn claims() -> Vec<Claim> {
                 let momentum = done[0].column("all.angular_momentum")?;
                 Ok(Measurement::drift(&done[0].series().time, momentum, momentum[0]))
             })
-            .within(required(1e-3, "what conformance asks of the default setting at two cells a radius"))
+            .within(required(1e-3, "the conformance tolerance of the default setting at two cells per radius"))
             .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01))
             .fair_to_any_continuum(),
     );

@@ -15,8 +15,8 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 const FORCES: ClaimFigure = ClaimFigure {
     name: "forces",
     title: "Forces at the walls and between the discs",
-    caption: "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force leads; the \
-              discs pass it on after the disturbance has crossed them.",
+    caption: "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force comes \
+              first; the force between the discs follows after the disturbance has crossed them.",
     axes: ["time t (s); a cycle is Δt", "normal force (N)"],
     logarithmic: false,
 };
@@ -77,7 +77,11 @@ fn claims() -> Vec<Claim> {
                         let expected = if contact == "B" { middle } else { side };
                         Ok(Measurement::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
                     })
-                    .within(computed(ROUNDING, "positions up to 4 R round by ε; in units of k v Δt with v Δt = 1e-3 R"))
+                    .within(computed(
+                        ROUNDING,
+                        "rounding of positions up to 4 R by ε; in units of k v Δt with v Δt = \
+                                                1e-3 R",
+                    ))
                     .refuses(match (cycle, contact) {
                         (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
                             scene.grains[1].position.x -= 1e-6;
@@ -104,7 +108,8 @@ fn claims() -> Vec<Claim> {
                 })
                 .within(computed(
                     200_f64.sqrt() * ROUNDING,
-                    "positions up to 4 R round by ε at random over 200 cycles; in units of k v Δt with v Δt = 1e-3 R",
+                    "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 \
+                     R",
                 ))
                 .refuses(Control::scene("damping of 1e-6 of critical", |scene| {
                     scene.change_laws(|law| law.normal_damping = 2e-6);

@@ -35,7 +35,7 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
     share: 2.0 / 3.0,
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats (derivation)",
     allowed: 0.15,
-    because: "patches of a third of a cell, on springs as soft as .4 cells of material",
+    because: "contact areas of a third of a cell, with springs as soft as .4 cells of material",
 };
 
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
@@ -50,8 +50,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Force at the wall: elastic discs, and rigid ones on springs",
-        "The walls move in by d = .01 R and stop. A spring of k_n = 3F/2d, F the force of elastic discs in closed \
-         form, gives the force at rest; elastic discs ring faster.",
+        "The walls move in by d = .01 R and stop. A spring of k_n = 3F/2d gives the force at rest, with F the force of \
+         elastic discs in closed form. Elastic discs vibrate faster.",
         [Axis::linear("time t (s)"), Axis::linear("force / F")],
         curves,
     ))

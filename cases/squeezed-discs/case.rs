@@ -13,8 +13,10 @@ const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "to
 const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
 /// Springs twice as stiff, which slow rolling on a coarse grid.
 const STIFF: &str = "mpm+penalty=5.2";
-const SOURCE: Source =
-    Source::Derived("Johnson, Contact Mechanics, line contact, with the swelling by the pair across (derivation)");
+const SOURCE: Source = Source::Derived(
+    "Johnson, Contact Mechanics, line contact, with the expansion by the transverse pair of forces \
+                     (derivation)",
+);
 
 pub(crate) static CASE: Case = Case {
     name: "squeezed-discs",
@@ -87,11 +89,11 @@ fn claims() -> Vec<Claim> {
     let mut claims = vec![
         claim("largest deviation of the 24 contact forces from their mean", "1")
             .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
-            .holds("equilibrium and symmetry: all are equal (derivation)", |done| match spread(&done[0])? {
+            .holds("equilibrium and symmetry: all forces are equal (derivation)", |done| match spread(&done[0])? {
                 (24, spread) => Ok(Measurement::new(spread, 0.0, 1.0)),
                 (count, _) => Err(MissingData(format!("24 contacts, but {count}"))),
             })
-            .within(required(5e-3, "what is left of the swinging, and tracers that stand in for surfaces"))
+            .within(required(5e-3, "remaining vibration, and tracers that represent the surfaces"))
             .refuses(Control::scene("the left wall moves in twice as far", |scene| {
                 scene.walls[0].motion.phases[0].velocity *= 2.0;
             })),
@@ -99,9 +101,13 @@ fn claims() -> Vec<Claim> {
     for (level, tolerance) in [
         (
             LEVELS[1],
-            required(0.1, "springs are as soft as .4 cells of material, and the patch is a quarter of a cell wide"),
+            required(
+                0.1,
+                "springs are as soft as .4 cells of material, and the contact area is a quarter of a cell \
+                           wide",
+            ),
         ),
-        (LEVELS[2], judged(0.08, "the same with a patch of half a cell")),
+        (LEVELS[2], judged(0.08, "the same with a contact area of half a cell")),
     ] {
         let runs = phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() });
         claims.push(
@@ -121,7 +127,7 @@ fn claims() -> Vec<Claim> {
             .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
                 Ok(mean_force(&done[0])? / exact(&done[0].scene))
             })
-            .within(exactly("the band is wide because the force hangs on how the grid lies"))
+            .within(exactly("the band is wide because the force depends on the position of the grid"))
             .refuses(Control::solver("springs at the surface", "mpm")),
     );
     claims.push(
@@ -134,7 +140,7 @@ fn claims() -> Vec<Claim> {
                 let exact = exact(&done[0].scene);
                 Ok(Measurement::new(mean_force(&done[0])?, exact, exact))
             })
-            .within(judged(0.2, "what springs at the surface reach at any position of the grid"))
+            .within(judged(0.2, "accuracy of springs at the surface for any position of the grid"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[0].resolution)),
     );
     claims

@@ -193,8 +193,10 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, StoredR
     let stepping = Stepping::new(scene, &run.resolution).map_err(StoredResultError::Broken)?;
     if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let reason =
-            format!("`{name}` is of another scene, time step or reading; `grainbench reference keep` does it anew");
+        let reason = format!(
+            "`{name}` belongs to another scene, time step or evaluation; `grainbench reference keep` computes \
+                     it again"
+        );
         return Err(StoredResultError::Stale(reason));
     }
     let mut tables = Vec::new();

@@ -79,7 +79,7 @@ fn orbit() -> Claim {
         })
         .within(computed(
             number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].position.norm() + scheme(scene)),
-            "lever arms within the overlap, 2δ/r, and (ΩΔt)² (1 + ΩT)²",
+            "lever arms differ by up to the overlap, 2δ/r; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
         .fair_to_any_springs()
@@ -94,7 +94,7 @@ fn spin_in_drum() -> Claim {
         })
         .within(computed(
             number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].radius + scheme(scene)),
-            "lever arms within the overlap, 2δ/R, and (ΩΔt)² (1 + ΩT)²",
+            "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
         .fair_to_any_springs()
@@ -130,7 +130,7 @@ fn tray() -> Claim {
         })
         .within(computed(
             number("tray", tray_off),
-            "lever arms within the overlap, δφ, and twice the swing ẋ/ω on the springs; in units of Rφ",
+            "lever arms differ by up to the overlap, δφ; twice the vibration ẋ/ω on the springs; in units of Rφ",
         ))
         .refuses(Control::without(Effect::RollingResistance))
         .fair_to_any_springs()
@@ -162,7 +162,7 @@ fn clamped() -> Claim {
             let end = Vector3::new(done[0].last("grain.x")?, done[0].last("grain.y")?, 0.0);
             Ok(Measurement::new((end - exact).norm(), 0.0, start.norm()))
         })
-        .within(computed(allowed, "(ΩΔt)² (1 + ΩT)² and 2 (Ω/ω)² ωT (ωΔt)²/24, of r₀"))
+        .within(computed(allowed, "(ΩΔt)² (1 + ΩT)² and 2 (Ω/ω)² ωT (ωΔt)²/24, relative to r₀"))
         .refuses(Control::scene("the upper plate turns slower by a hundredth", |scene| {
             scene.walls[1].motion.phases.iter_mut().for_each(|phase| phase.spin *= 0.99);
         }))

@@ -86,7 +86,7 @@ fn claims() -> Vec<Claim> {
             claim(format!("restitution, {cells} cells a radius"), "1")
                 .run(run)
                 .equals_cited(RESTITUTION, 1.0, |done| restitution(&done[0]))
-                .within(required(allowed, "discretisation, and what the prototype is certain of"))
+                .within(required(allowed, "discretisation, and the uncertainty of the prototype"))
                 .refuses(energetic()),
         );
     }
@@ -97,8 +97,8 @@ fn claims() -> Vec<Claim> {
                 .holds("equal and opposite impulses", |done| momentum(&done[0]))
                 .within(computed(
                     1e-14,
-                    "a thousand steps that round by ε at random, √1000 ε = 7e-15, and the sum over points; in units of \
-                     m v₀",
+                    "random rounding by ε in a thousand steps, √1000 ε = 7e-15, and the sum over points; in units of m \
+                     v₀",
                 ))
                 .refuses(Control::scene("one disc faster by a millionth", |scene| {
                     scene.grains[0].velocity *= 1.0 + 1e-6;
@@ -127,7 +127,7 @@ fn claims() -> Vec<Claim> {
             )
             .up_to(0.05))
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
-            .within(exactly("the least of what the prototype has at three resolutions, with two kinds of normals"))
+            .within(exactly("the smallest value of the prototype at three resolutions, with two kinds of normals"))
             .refuses(Control::without_the_error("four cells a radius", "mpm:2000", grid(4.0))),
     );
     claims.push(
@@ -138,7 +138,7 @@ fn claims() -> Vec<Claim> {
                     .up_to(0.2),
             )
             .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
-            .within(required(5e-3, "what springs at the surface reach"))
+            .within(required(5e-3, "accuracy of springs at the surface"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
     );
     claims
@@ -163,7 +163,7 @@ fn three() -> Vec<Claim> {
                 let before = f64::hypot(at_start("x")?, at_start("y")?);
                 Ok(Measurement::new((gained.value - before).abs(), 0.0, gained.scale))
             })
-            .within(required(1e-12, "rounding, of the start too; in units of m v₀"))
+            .within(required(1e-12, "rounding, including the initial state; in units of m v₀"))
             .refuses(control)
     };
     let alone = || Control::solver("each body against the common velocity, along its own normal (2001)", "mpm:2001");
@@ -190,7 +190,7 @@ fn oblique() -> Vec<Claim> {
         spin_claim(
             run("oblique", "mpm"),
             "ΩR/v₀ after an oblique impact, μ = .9",
-            "discretisation at this resolution, and what the prototype is certain of",
+            "discretisation at this resolution, and the uncertainty of the prototype",
             Control::scene("a third of the friction", |scene| scene.change_laws(|law| law.friction /= 3.0)).coarser(grid(4.0)),
         ),
         spin_claim(
@@ -200,7 +200,7 @@ fn oblique() -> Vec<Claim> {
             )
             .up_to(0.05),
             "ΩR/v₀ after an oblique impact, μ = .9, 16 cells a radius",
-            "what the prototype is certain of",
+            "uncertainty of the prototype",
             Control::without_the_error("APIC, whose spin is the grid's", "mpm+apic", grid(16.0)),
         ),
     ]
@@ -224,7 +224,7 @@ fn touching() -> Vec<Claim> {
             })
             .within(computed(
                 CLOSING * STEP / CELL,
-                "in cells; the way of one step of .3 h/c at √2 × .2 m/s, after which a contact is seen",
+                "in cells; displacement in one step of .3 h/c at √2 × .2 m/s, after which the contact is detected",
             ))
             .refuses(Control::scene("discs a sixth of a cell too large", |scene| {
                 scene.grains.iter_mut().for_each(|grain| {
@@ -242,7 +242,7 @@ fn touching() -> Vec<Claim> {
             })
             .within(computed(
                 2.0 * STEP / TOUCH,
-                "two steps of .3 h/c = .0065 s: contact is seen in the step after the one in which surfaces met",
+                "two steps of .3 h/c = .0065 s: a contact is detected in the step after the surfaces touch",
             ))
             .refuses(Control::scene("five per cent slower", |scene| {
                 scene.grains.iter_mut().for_each(|grain| grain.velocity *= 0.95);
@@ -275,7 +275,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "velocity",
             "Velocity of the left disc",
-            "Nodal contact acts before the surfaces meet.",
+            "Nodal contact acts before the surfaces touch.",
             [Axis::linear("time t (s)"), Axis::linear("velocity v / v₀")],
             speeds,
         ),

@@ -12,7 +12,8 @@ pub(crate) static CASE: Case = Case {
     claim: "Friction between grains of unequal size gives each a spin by its own lever arm, and both the same impulse.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The grains slip all the time and have no dashpots: neither sticking nor restitution below 1 is felt.",
+    weakness: "The grains slip all the time and have no dashpots: neither sticking nor a restitution below 1 is \
+               tested.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -136,8 +137,8 @@ fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
         })
         .within(computed(
             allowed,
-            "the line of centres turns by α while they touch, α (1 + u/v); arms between R and R − δ/2; and contact begins \
-             and ends within a step, (ωΔt)²/8: of the impulse",
+            "the line of centres turns by α during contact, α (1 + u/v); lever arms are between R and R − δ/2; contact \
+             begins and ends within a step, (ωΔt)²/8; all relative to the impulse",
         ))
         .refuses(if along { heavier } else { stronger_friction() })
         .fair_to_any_springs()

@@ -13,8 +13,9 @@ pub(crate) const HELD: &str = "held-sideways";
 const VISCOUS: &str = "viscous";
 /// Variant of the bar with an initial stress.
 const STRETCHED: &str = "stretched";
-const REST: &str = "beside what dispersion of quadratic B-splines with two points a cell and the time step make of it, (1/4 + \
-                    1/96)(kh)² − (ωΔt)²/24: (kh)⁴, and at most ε² of the strain ε = v₀√(ρ/E)";
+const REST: &str = "the solution includes the dispersion of quadratic B-splines with two points per cell and of the \
+                    time step, (1/4 + 1/96)(kh)² − (ωΔt)²/24; the rest is (kh)⁴ and at most ε² with the strain ε = \
+                    v₀√(ρ/E)";
 const SOURCE: Source = Source::Derived("u_tt = (E/ρ) u_xx, fixed-free (derivation)");
 const DISPERSED: Source =
     Source::Derived("u_tt = (E/ρ) u_xx, fixed-free, slowed by the dispersion of cells of this size (derivation)");
@@ -30,14 +31,14 @@ const VELOCITY: ClaimFigure = ClaimFigure {
 const VISCOUS_VELOCITY: ClaimFigure = ClaimFigure {
     name: "viscous",
     title: "Mean velocity of a bar of viscous material",
-    caption: "Two periods, in which it loses six tenths of its amplitude.",
+    caption: "Two periods, in which the bar loses six tenths of its amplitude.",
     ..VELOCITY
 };
 
 const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     name: "stretched",
-    title: "Mean velocity of a stretched bar that is let go at one end",
-    caption: "A period: a front runs to the held end and back, twice. Cells along the length in the legend.",
+    title: "Mean velocity of a stretched bar, released at one end",
+    caption: "One period: a front runs to the fixed end and back, twice. Cells along the length in the legend.",
     ..VELOCITY
 };
 
@@ -171,8 +172,8 @@ fn of_others() -> Vec<Claim> {
             )
             .within(computed(
                 off,
-                "k² of the grid is lower by (25/48)(kh)², a viscous stress a step late, and .355 ε of the law (derivation); in \
-                 units of the amplitude at the start",
+                "k² of the grid is lower by (25/48)(kh)², the viscous stress is one step late, and the law adds .355 ε \
+                 (derivation); in units of the initial amplitude",
             ))
             .refuses(Control::scene("half the shear viscosity", |scene| {
                 for material in scene.deformable.iter_mut().flatten() {
@@ -196,8 +197,8 @@ fn of_others() -> Vec<Claim> {
                 )
                 .within(computed(
                     2.0 * AHEAD * front(1.0 / cells, 3.0),
-                    "what comes ahead of a front that the grid's dispersion has drawn out over 3L, when it is due: \
-                     2 (−Ai'(0)) δ/L (derivation); in units of σ/ρc",
+                    "the grid disperses the front over the distance 3L, so part of it arrives early: 2 (−Ai'(0)) δ/L \
+                     at the arrival time (derivation); in units of σ/ρc",
                 ))
                 .refuses(Control::scene("half the stress", |scene| {
                     if let Some(stress) = &mut scene.bodies[0].stress {
@@ -259,7 +260,7 @@ fn claims() -> Vec<Claim> {
                 )
                 .within(computed(
                     4.0 * PI * slower(squared) + 0.355 * strain,
-                    "phase that dispersion and the time step lose in two periods, 4π ((1/4 + 1/96)(kh)² − (ωΔt)²/24), and \
+                    "phase error of dispersion and time step in two periods, 4π ((1/4 + 1/96)(kh)² − (ωΔt)²/24), and \
                      .355 ε of the law at a strain ε; in units of the amplitude",
                 ))
                 .refuses(softer())
@@ -277,8 +278,8 @@ fn claims() -> Vec<Claim> {
             })
             .within(computed(
                 8.0 / (9.0 * PI) * strain + Resolution::COURANT.powi(2) * squared,
-                "(8/9π) ε of an elastic energy that is taken as quadratic in σ, and (ωΔt)² of velocities half a step \
-                 beside stresses",
+                "(8/9π) ε because the elastic energy is computed as quadratic in σ, and (ωΔt)² because velocities are \
+                 half a step from stresses",
             ))
             .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01)),
     );

@@ -142,7 +142,7 @@ impl EvaluatedQuantity {
             return Err(Fault::expected(place("value"), expected, format!("`{name}`{}", help.unwrap_or_default())));
         }
         if !own.value.names().into_iter().any(|name| numbers.is_of_record(name)) {
-            let found = "none: it would be the same whatever is run";
+            let found = "none, because it would be the same for every run";
             return Err(Fault::expected(place("value"), "a column of the record", found));
         }
         let constant = own.scale.as_ref().filter(|scale| scale.names().is_empty());

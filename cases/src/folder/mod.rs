@@ -74,7 +74,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     })?;
     let words = [&claims.title, &claims.claim, &claims.weakness];
     if claims.title.trim().is_empty() || words.iter().any(|text| text.chars().any(char::is_control)) {
-        return Err(no_case("expected a title, and words without control characters, found others".to_owned()));
+        return Err(no_case("expected a title, and texts without control characters".to_owned()));
     }
     if claims.claims.is_empty() {
         return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
@@ -84,7 +84,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     let whole = fs::canonicalize(folder).map_err(|error| no_case(error.to_string()))?;
     let is_plain = |name: &&std::ffi::OsStr| !name.to_string_lossy().chars().any(char::is_control);
     let (Some(name), Some(parent)) = (whole.file_name().filter(is_plain), whole.parent()) else {
-        return Err(no_case("expected a folder with a plain name, found another".to_owned()));
+        return Err(no_case("expected a folder with a plain name".to_owned()));
     };
     let derivation = folder.join(DERIVATION);
     let derivation = if derivation.exists() { text_of(&derivation)? } else { String::new() };
@@ -130,7 +130,7 @@ pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
 fn unreadable(reason: String) -> Claim {
     claim("claims that can be read", "1")
         .holds("the file of claims is valid", move |_| Err(MissingData(format!("claims that can be read: {reason}"))))
-        .within(exactly("there is nothing to measure"))
+        .within(exactly("nothing is measured"))
         .refuses(Control::scene("none", |_| ()))
 }
 

@@ -122,7 +122,7 @@ fn expecting(
         return Err(wrong("value", format!("columns of the record, among {columns}"), quoted(unknown)));
     }
     if !value.names().iter().any(|name| numbers.is_of_record(name)) {
-        return Err(wrong("value", "a column of the record", "none: it would be the same whatever is run"));
+        return Err(wrong("value", "a column of the record", "none, because it would be the same for every run"));
     }
     let source = source(claimed)?;
     let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;
@@ -141,7 +141,7 @@ fn expecting(
             check_names("equals", &exact, numbers, matches!(over, None | Some(SampleReduction::Course)))?;
             let at = |t: f64| value_at(&exact, numbers, t);
             if over != Some(SampleReduction::Course) && scale.is_none() && at(1.0) == 0.0 {
-                return Err(wrong("scale", "a number, for zero is expected", "none"));
+                return Err(wrong("scale", "a number, because the expected value is zero", "none"));
             }
             let of_scene = Arc::clone(numbers);
             let exact = move |t: f64| value_at(&exact, &of_scene, t);

@@ -41,13 +41,13 @@ pub(crate) fn sphere(level: &str, asked: f64, run: Run) -> [Claim; 2] {
             .equals_cited(BACKSPIN, 1.0, |done| excess(&done[0]))
             .within(required(
                 asked + BACKSPIN.uncertainty,
-                "asked for at this resolution before the solver existed, and the reference's own uncertainty",
+                "required at this resolution before the solver existed, and the uncertainty of the reference",
             ))
             .refuses(slippery().coarser(Resolution::grid(3.0, 2))),
         claim(format!("mean velocity of rolling, {level}"), "m/s")
             .run(run)
             .between([1.43, 1.48], Source::Printed(&WORK, SPEED), |done| Ok(rolling(&done[0])?.0))
-            .within(exactly("the band was asked for before the solver existed"))
+            .within(exactly("the band was required before the solver existed"))
             .refuses(Control::scene("a tenth less spin", |scene| scene.grains[0].spin *= 0.9)),
     ]
 }

@@ -77,8 +77,9 @@ const RIGID: Source =
 
 const COMPLIANCE: ClaimFigure = ClaimFigure {
     name: "compliance",
-    title: "Error against the rigid answer is the contact's compliance",
-    caption: "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), since the spring must first be stretched.",
+    title: "Error relative to the rigid solution is due to contact compliance",
+    caption: "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), because the spring must first be \
+              stretched.",
     axes: ["static overlap / R", "|x − x_rigid| / x_rigid at 1 s"],
     logarithmic: true,
 };
@@ -210,10 +211,11 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
 }
 
 /// Reason why a rolling grain may deviate from the rigid solution.
-const SWINGS: &str = "the tangential spring swings by up to twice its stretch f g_t/ω², ω² = (k_t/m)(1 + 1/i)";
+const SWINGS: &str = "the tangential spring vibrates by up to twice its static displacement f g_t/ω², ω² = (k_t/m)(1 + \
+                      1/i)";
 /// Reason why a slipping grain may deviate from the rigid solution.
 const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, \
-                    t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t of the spin, μ g_n t_s/v of the velocity, twice that of the way";
+                    t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that for the displacement";
 
 /// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
 /// overlap of `ratio`·R.
@@ -236,8 +238,8 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
     });
     computed(
         left,
-        "momentum about the contact fixes it: what e^{−λt} leaves of the slip, λ being the slower rate of the damped tangential \
-         spring, and two roundings a step",
+        "angular momentum about the contact determines the value; remaining slip e^{−λt}, with λ the slower rate of \
+         the damped tangential spring, and two roundings per step",
     )
 }
 
@@ -277,8 +279,9 @@ fn exponent(slope: Slope) -> Claim {
         )
         .within(computed(
             expected * middle.powf(expected),
-            "the next power, of the overlap where it rolls, of its root where it slips, with a coefficient of its own size, \
-             changes the exponent by itself times its power: at the middle of the two decades, overlap/R = 1e-4",
+            "the next power (of the overlap for rolling, of its square root for slipping), with a coefficient of the \
+             same size, changes the exponent by its value times its power; taken at the middle of the two decades, \
+             overlap/R = 1e-4",
         ))
         .refuses(telling(slope))
         .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
@@ -297,7 +300,7 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
         let tolerance = if slope.sticks {
             computed(
                 NEARLY_RIGID,
-                "compliance, and a torque arm between R and R − overlap/2: both ∝ overlap/R, here 1e-5",
+                "compliance, and a lever arm between R and R − overlap/2: both ∝ overlap/R, here 1e-5",
             )
         } else {
             computed(pick(allowed), LATE)
@@ -318,9 +321,9 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
 }
 
 /// Reason for the tolerance under parameter variation.
-const ELSEWHERE: &str = "rolling: overlap/R for the torque arm, beside it the spring's stretch over the way, or the \
-     speed at which it would ring undamped; slipping: half a period of each spring before friction acts in full, over \
-     the time";
+const ELSEWHERE: &str = "rolling: overlap/R for the lever arm, plus the spring displacement over the total \
+                         displacement, or the velocity of its undamped vibration; slipping: half a period of each \
+                         spring until friction acts in full, over the time";
 
 /// Returns the largest deviation from the rigid solution on a slope with any parameters, for displacement, velocity and
 /// spin, as fractions.
@@ -400,14 +403,14 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "displacement",
             "Displacement down the slope",
-            "dem:lammps at overlap/R = 1e-3 (markers) and the rigid answer (dashes).",
+            "dem:lammps at overlap/R = 1e-3 (markers) and the rigid solution (dashes).",
             [Axis::linear("time t (s)"), Axis::linear("displacement x (m)")],
             displacement,
         ),
         Figure::graph(
             "spin",
             "Spin",
-            "The same runs: what a grain that only slides would miss.",
+            "The same runs. A grain that only slides would have no rotation.",
             [Axis::linear("time t (s)"), Axis::linear("spin Ω (rad/s)")],
             spin,
         ),

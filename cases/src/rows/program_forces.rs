@@ -9,7 +9,8 @@ use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
-const BECAUSE: &str = "the same cycle, whose positions round alike; in units of the largest force";
+const BECAUSE: &str = "rounding only, because both programs use the same integration cycle and round positions alike; \
+                       in units of the largest force";
 
 fn stiffer() -> Control {
     Control::ours("stiffness off by 1e-6 in ours", |scene| {

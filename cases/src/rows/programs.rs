@@ -60,7 +60,7 @@ fn telling() -> Control {
 }
 
 fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
-    let allowed = rounding(1.0, "the same cycle; in units of R");
+    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
     row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
         let scene = &done[0].scene;
         let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
@@ -85,7 +85,11 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
                     law.stiffness_damping *= 1.001;
                 });
             });
-            let allowed = rounding(1.0, "the same cycle; in units of the approach velocity");
+            let allowed = rounding(
+                1.0,
+                "rounding only, because both programs use the same integration cycle; in units \
+                                         of the approach velocity",
+            );
             claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
                 Ok(Measurement::new(restitution_coefficient(&done[0])?, restitution_coefficient(&done[1])?, 1.0))
             }));
@@ -162,7 +166,11 @@ pub fn turning_walls(
         let control = Control::ours("walls that turn faster by 1e-6 in ours", |scene| {
             scene.walls.iter_mut().flat_map(|wall| &mut wall.motion.phases).for_each(|phase| phase.spin *= 1.0 + 1e-6);
         });
-        let allowed = rounding(places, "the same cycle: sliding contacts carry on what was rounded of places up to 3R");
+        let allowed = rounding(
+            places,
+            "rounding only, because both programs use the same integration cycle: sliding \
+                                        contacts preserve the rounding of positions up to 3R",
+        );
         row("position while the walls turn, worst", "m", allowed, runs, control, move |done| {
             worst(done, &NINE_DISCS, travel(&done[0]))
         })
@@ -175,7 +183,11 @@ pub fn turning_walls(
 pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
     let mut claims = Vec::new();
     for pair in PAIRS {
-        let allowed = rounding(1.0, "the same cycle; relative to the velocity before");
+        let allowed = rounding(
+            1.0,
+            "rounding only, because both programs use the same integration cycle; relative to \
+                                     the velocity before",
+        );
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
         let control = Control::ours("E* × 1.00001 in ours", |scene| {
             scene.change_laws(|law| law.scale_normal(1.00001));
@@ -184,7 +196,11 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
         }));
         if turns {
-            let allowed = rounding(1.0, "the same cycle; relative to the velocity before over the radius");
+            let allowed = rounding(
+                1.0,
+                "rounding only, because both programs use the same integration cycle; relative \
+                                         to the velocity before over the radius",
+            );
             let control = Control::ours("G* × 1.00001 in ours", |scene| {
                 scene.change_laws(|law| law.scale_tangential(1.00001));
             });
@@ -201,7 +217,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
 #[must_use]
 pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Vec<Claim> {
     let rolling_rows = |pair: [&'static str; 2]| {
-        let same = rounding(1.0, "the same cycle; in units of R");
+        let same = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
         let allowed = if pair[1] == "lammps" { same } else { ahead.clone() };
         let runs = pair.map(|solver| Run::new(variant, solver, step));
         let control = Control::ours("rolling resistance × 1.00001 in ours", |scene| {
@@ -216,7 +232,7 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
 /// solver.
 #[must_use]
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
-    let allowed = rounding(1.0, "the same cycle; in units of R");
+    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
     let runs = PAIRS[1].map(tilted);
     let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
         scene.change_laws(|law| law.rolling_damping *= 0.999);
@@ -230,7 +246,11 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let allowed = rounding(1.0, "the same cycle; relative to the velocity before");
+            let allowed = rounding(
+                1.0,
+                "rounding only, because both programs use the same integration cycle; relative \
+                                         to the velocity before",
+            );
             let control = Control::ours("friction ×1.001 in ours", |scene| {
                 scene.change_laws(|law| law.friction *= 1.001);
             });
@@ -238,7 +258,11 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
             claims.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
             }));
-            let allowed = rounding(1.0, "the same cycle; relative to the largest force of the spring, v√(km)");
+            let allowed = rounding(
+                1.0,
+                "rounding only, because both programs use the same integration cycle; relative \
+                                         to the largest force of the spring, v√(km)",
+            );
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());

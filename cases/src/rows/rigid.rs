@@ -118,7 +118,7 @@ fn between_arms(case: &Case, row: Row) -> Claim {
         .runs(fine(row))
         .between(
             [0.0, 1.0],
-            Source::Derived("v(1 + i(R/a)²) = g_t t, a from R to R − δ/2 (derived beside the row)"),
+            Source::Derived("v(1 + i(R/a)²) = g_t t, a from R to R − δ/2 (derived with the claim)"),
             |done| {
                 let places = done.iter().map(|done| {
                     let (t, state) = last(done)?;
@@ -135,7 +135,7 @@ fn between_arms(case: &Case, row: Row) -> Claim {
         )
         .within(computed(
             coarsest * coarsest / width,
-            "(h/t)² of the coarsest, in units of what the arms differ by, δ i/(R (1 + i))",
+            "(h/t)² of the coarsest step, in units of the effect of the lever arms, δ i/(R (1 + i))",
         ))
         .refuses(wrong(row))
 }
@@ -153,21 +153,25 @@ fn arm(case: &Case, row: Row) -> (f64, f64) {
 }
 
 fn incline(case: &Case, row: Row) -> Vec<Claim> {
-    const X: &str = "positions are ahead of their velocities by h/t = 5.2e-4, h = Δt/4 (symplectic Euler); where \
-                     turning lifts the contact point off, friction lacks the impulse of the fall";
-    const LIFTED: &str = "turning lifts the contact point off for parts of a step: friction lacks μ m |v_n|, which ends at \
-                          finer steps";
+    const X: &str = "positions are ahead of the velocities by h/t = 5.2e-4, h = Δt/4 (symplectic Euler); if rotation \
+                     lifts the contact point off, friction lacks the impulse of the fall";
+    const LIFTED: &str = "rotation lifts the contact point off for part of a step: friction lacks μ m |v_n|, which \
+                          vanishes at smaller steps";
     let (overlap, i) = arm(case, row);
     let of_arm = |factor: f64, because: &str| computed(factor * overlap, because);
     let [v, omega] = match row.lifts {
         Some(most) => most.map(|most| estimated(most, LIFTED)),
         None if row.rolls => [
-            of_arm(2.0 * i / (1.0 + i), "an arm between R and R − δ, of v(1 + i(R/a)²) = g_t t: 2i/(1 + i) of δ/R"),
-            of_arm((1.0 - i) / (1.0 + i), "an arm between R and R − δ, of Ω = v/a: (1 − i)/(1 + i) of δ/R"),
+            of_arm(
+                2.0 * i / (1.0 + i),
+                "lever arm between R and R − δ in v(1 + i(R/a)²) = g_t t: 2i/(1 + i) times \
+                                         δ/R",
+            ),
+            of_arm((1.0 - i) / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: (1 − i)/(1 + i) times δ/R"),
         ],
         None => [
-            rounding(1.0, "friction is constant where it slips"),
-            of_arm(1.0, "friction's torque has an arm between R and R − δ: δ/R"),
+            rounding(1.0, "friction is constant during slip"),
+            of_arm(1.0, "the torque of friction has a lever arm between R and R − δ: δ/R"),
         ],
     };
     let mut claims = against(row, OneGrain::rigid_incline, wrong(row), [estimated(2e-3, X), v, omega]);
@@ -194,7 +198,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
     claim("velocity at 1 s, arm R − δ/2", "m/s")
         .run(run(row.variant, Resolution::substeps(32)))
         .equals(
-            Source::Derived("v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived beside the row)"),
+            Source::Derived("v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived with the claim)"),
             |done| {
                 let (t, state) = last(&done[0])?;
                 let exact = rolling(&OneGrain::from_scene(&done[0].scene), t);
@@ -203,7 +207,8 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
         )
         .within(computed(
             lag / END * i / (1.0 + i) * overlap,
-            "the overlap is reached with exp(−t/τ), τ = 2ζ/(2πf) = .053 s: τ/t of what the arm is worth, i/(1 + i) of δ/R",
+            "the overlap approaches its value with exp(−t/τ), τ = 2ζ/(2πf) = .053 s: τ/t times the effect of the lever \
+             arm, i/(1 + i) times δ/R",
         ))
         .refuses(wrong(row))
 }
@@ -215,14 +220,18 @@ pub fn backspins(case: &Case, rows: &[Row]) -> Vec<Claim> {
 }
 
 fn backspin(case: &Case, row: Row) -> Vec<Claim> {
-    const X: &str = "while RΩ² exceeds g the contact point lifts off faster than the grain can fall: friction starts a \
-                     part of a step late, and then acts in bursts";
+    const X: &str = "while RΩ² exceeds g, the contact point lifts off faster than the grain can fall: friction starts \
+                     up to a step late and is intermittent";
     let (overlap, i) = arm(case, row);
     let of_arm = |factor: f64, because: &str| computed(factor * overlap, because);
     let allowed = [
         estimated(2e-3, X),
-        of_arm((1.0 - i) / (1.0 + i), "an arm between R and R − δ, of v = iR²Ω₀a/(a² + iR²): (1 − i)/(1 + i) of δ/R"),
-        of_arm(2.0 / (1.0 + i), "an arm between R and R − δ, of Ω = v/a: 2/(1 + i) of δ/R"),
+        of_arm(
+            (1.0 - i) / (1.0 + i),
+            "lever arm between R and R − δ in v = iR²Ω₀a/(a² + iR²): (1 − i)/(1 + i) times \
+                                       δ/R",
+        ),
+        of_arm(2.0 / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: 2/(1 + i) times δ/R"),
     ];
     against(row, OneGrain::rigid_backspin, stronger_friction(), allowed)
 }
@@ -257,10 +266,10 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     });
     Ok(Figure::graph(
         "rigid-substeps",
-        "rigid: error against the rigid answer",
-        "A rigid-body engine has no compliance to pay for; what is left is its time step. Positions of symplectic Euler are \
-         off by h/t (dashed), h being a quarter of a substep; above it, turning lifts contact points off. Steps in which a \
-         grain turns too far have no point.",
+        "`rigid`: error relative to the rigid solution",
+        "A rigid-body engine has no compliance, only the error of its time step. Positions of symplectic Euler have an \
+         error of h/t (dashed), with h a quarter of a substep. At larger errors, rotation lifts contact points off. \
+         Steps in which a grain rotates too far have no point.",
         [Axis::log("substeps in 1/60 s"), Axis::log("|x − x_rigid| / x_rigid at 1 s")],
         curves,
     ))
@@ -276,7 +285,7 @@ pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<M
         })
         .within(rounding(
             1.0,
-            "rapier reverses the approach velocity times e once, at the end of the step of the impact",
+            "rapier applies −e times the approach velocity once, at the end of the step of the impact",
         ))
         .refuses(Control::scene("damping ×1.05", |scene| {
             scene.change_laws(|law| {
@@ -296,7 +305,7 @@ pub fn momentum(
     claim(quantity, "kg m/s")
         .run(Run::new(variant, RIGID, DEFAULT))
         .holds("equal and opposite impulses", move |done| worst(&done[0]))
-        .within(rounding(1.0, "in units of one grain's momentum"))
+        .within(rounding(1.0, "in units of the momentum of one grain"))
         .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
 }
 
@@ -311,8 +320,8 @@ pub fn angular_momentum(
         .holds("equal and opposite impulses at one point", move |done| worst(&done[0]))
         .within(estimated(
             3e-3,
-            "normal and arms are those of the beginning of the step, and the grains have moved on when the impulse \
-                  acts: ∝ v Δt, in units of m v R",
+            "normal and lever arms are taken at the start of the step, and the grains have moved when the impulse \
+             acts: ∝ v Δt, in units of m v R",
         ))
         .refuses(Control::scene("the inertia of spheres", |scene| {
             scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
@@ -334,9 +343,9 @@ pub fn gas_energy(
         .holds("conservation of energy", move |done| worst(&done[0]))
         .within(judged(
             1.5e-2,
-            "impacts one at a time keep it to rounding; a disc that meets two others in one step is given back one \
-                  approach velocity after the other, and the second undoes a part of the first. It happens \
-                  once in this run: finer steps make it rarer, not smaller",
+            "single impacts conserve it to rounding. If a disc hits two others in one step, the two approach \
+             velocities are reversed one after the other, and the second reversal undoes part of the first. This \
+             happens once in this run; smaller steps make it rarer, not smaller",
         ))
         .refuses(Control::scene("dashpots of a hundredth of critical", move |scene| {
             let law = scene.laws[0].unwrap_or_default();
@@ -350,8 +359,8 @@ pub fn gas_energy(
 #[must_use]
 pub fn refuses_cycles(variant: &'static str) -> Claim {
     claim("refusal of a length in calculation cycles", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
-        "a cycle is a fraction of the period of the contacts' springs, which rigid contacts do not have",
-        Control::scene("a length in seconds, walls at rest, no forces asked for", |scene| {
+        "a cycle is a fraction of the period of the contact springs, and rigid contacts have no springs",
+        Control::scene("a length in seconds, walls at rest, no recorded forces", |scene| {
             scene.duration = Duration::Seconds(0.1);
             scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
             scene.probes.clear();

@@ -136,8 +136,9 @@ impl FreeVibration {
         let softened = |cells| {
             computed(
                 case.variant(self.variant).map_or(f64::NAN, |scene| self.softened(scene, cells)),
-                "springs between surfaces are as soft as .4 cells of material: under F/2a they give way by .4 h F/(2a E'), \
-                 π h/5a of F/(πE') at every contact, and half of their part of the compliance is the frequency's",
+                "springs between surfaces are as soft as .4 cells of material: under F/2a they yield by .4 h F/(2a \
+                 E'), which is π h/5a of F/(πE') at every contact; the relative change of the frequency is half that \
+                 of the compliance",
             )
         };
         let rings = |run: Run, cells: f64| {

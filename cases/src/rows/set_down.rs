@@ -20,7 +20,7 @@ use grainbench_scene::scene::{Duration, Sampling};
 
 const SPRINGS: ClaimFigure = ClaimFigure {
     name: "set-down",
-    title: "Set down half as deep again as it rests",
+    title: "Set down with 1.5 times the static overlap",
     caption: "A contact that neither opens nor slips shows its springs and dashpots.",
     axes: ["time t (s)", "overlap δ (m)"],
     logarithmic: false,
@@ -47,8 +47,8 @@ const STICKING: f64 = 5.0;
 const TIMES: [f64; 2] = [40.0, 0.2];
 
 const SOURCE: Source = Source::Derived("damped oscillators along the normal and along the slope (derivation)");
-const BECAUSE: &str = "steps of a hundredth of the critical one: the dashpot lags by half a step, 1 % of ζ; the torque arm \
-                       is between R and R − overlap";
+const BECAUSE: &str = "steps of a hundredth of the critical one: the dashpot is late by half a step, 1 % of ζ; the \
+                       lever arm is between R and R − overlap";
 
 /// Damped oscillator that is released at unit distance from equilibrium.
 #[derive(Clone, Copy)]

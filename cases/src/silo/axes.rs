@@ -39,7 +39,7 @@ fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
         [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
     Some(vec![
         Lines {
-            label: "smallest and middle axis of T, √|principal value of its deviator| long".to_owned(),
+            label: "smallest and middle axis of T, length √|principal value of its deviator|".to_owned(),
             lines: lines(&[smallest, middle].concat(), scale, WIDTHS[0]),
         },
         Lines { label: "largest axis of T".to_owned(), lines: lines(&largest, scale, WIDTHS[1]) },
@@ -64,14 +64,14 @@ fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<F
     let apart = apart.map_or_else(|_| String::new(), |mean| format!("; largest axes {mean:.1}° apart from 6 τ on"));
     let title = format!("t = {time} τ, blocks of 5 d{apart}");
     let sheet = Sheet { title, seen, marked: Some(part(flow)), kinds: kinds.to_vec() };
-    let caption = "Axes of the deviator of the stress of blocks of 5 d by 8 d by 5 d, of one moment and projected on the \
-                   plane, and of the rate of deformation where the block flows (figure 4 of the paper). The paper finds \
-                   both within about 12° of one another wherever there is appreciable deformation, smooth stresses, and \
-                   none of the shocks of limit-state plasticity. The black frame is the part of the next figure; where \
-                   the paper's lies its text does not say.";
+    let caption = "Axes of the deviatoric stress of blocks of 5 d by 8 d by 5 d at one moment, projected on the plane, \
+                   and of the rate of deformation if the block flows (figure 4 of the paper). The paper finds both \
+                   within about 12° of one another wherever there is appreciable deformation, smooth stresses, and \
+                   none of the shocks of limit-state plasticity. The black frame is the region of the next figure. The \
+                   paper does not state the position of its region.";
     Some(Figure::lines(
         "axes",
-        "Axes of stress and of rate",
+        "Axes of stress and of deformation rate",
         caption,
         LinePlot { axes: labels(), to_scale: true, sheets: vec![sheet] },
     ))
@@ -87,7 +87,8 @@ fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Optio
     let mean = forces.iter().map(|row| row[4]).sum::<f64>() / forces.len() as f64;
     let line = |row: &[f64; 5]| ([row[0], row[1]], [row[2], row[3]], row[4] / largest);
     let label = format!(
-        "force between two grains, as wide as it is large; {} of them, mean {mean:.1}, largest {largest:.0} m g",
+        "force between two grains, width proportional to the force; {} forces, mean {mean:.1}, largest {largest:.0} m \
+         g",
         forces.len()
     );
     let seen = part(flow);
@@ -98,12 +99,12 @@ fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Optio
         Sheet { title: format!("axes, t = {time} τ"), seen, marked: None, kinds },
         Sheet { title: "single forces, all along the period of 8 d".to_owned(), seen, marked: None, kinds: of_forces },
     ];
-    let caption = "Left: the part that is framed above. Right: the forces of its contacts from centre to centre. They differ \
-                   from one to the next by more than their mean, in chains that show no element, and yet the axes of the \
-                   blocks are smooth (figure 5 of the paper).";
+    let caption = "Left: the framed region of the figure above. Right: its contact forces, drawn from centre to \
+                   centre. Neighbouring forces differ by more than their mean and form chains without visible \
+                   elements; the axes of the blocks are smooth nevertheless (figure 5 of the paper).";
     Some(Figure::lines(
         "forces",
-        "Axes, and the forces that they are means of",
+        "Axes of the blocks and the single forces",
         caption,
         LinePlot { axes: labels(), to_scale: true, sheets },
     ))

@@ -62,7 +62,8 @@ const PLATEAU: [&str; 2] = ["packing fraction of tracers strained by more than .
 const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median", "1"];
 
 /// Reason for tolerances from the spread over packings.
-const PACKINGS: &str = "a deposit is one draw of many: the 99 % interval of the difference of two, from ten of our own";
+const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the difference of two deposits, from ten of our \
+                        own";
 
 /// Returns the control: half the friction.
 fn half_the_friction() -> Control {
@@ -187,7 +188,7 @@ impl Silo {
         let flow = self.flow;
         let (scale, in_units) = if unit == "deg" { (45.0, "of 45°") } else { (cited.value.abs(), "of the value") };
         let allowed = (self.spread(quantity) + cited.uncertainty) / scale;
-        let because = format!("{PACKINGS}, and what the prototype says of its own mean; in units {in_units}");
+        let because = format!("{PACKINGS}, plus the uncertainty of the prototype's mean; in units {in_units}");
         claim(quantity, unit)
             .run(self.run.clone())
             .equals_cited(cited, scale, move |done| read(&done[0], flow))
@@ -201,13 +202,13 @@ impl Silo {
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
             .run(self.run.clone())
             .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
-            .within(exactly("asked for before: the source tells the range and not how many elements are in it"))
+            .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
             .refuses(tangent_for_sine())
     }
 
     /// Claims two correlations, which vanish for shuffled elements.
     fn correlations(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
-        let asked = cited.map(|cited| format!("asked for before; the prototype has {}", cited.value));
+        let asked = cited.map(|cited| format!("required in advance; the prototype has {}", cited.value));
         let [for_criteria, for_rates] = asked;
         let [criteria, rates] = cited.map(|cited| cited.source());
         let shuffled = "each element beside the friction of another";
@@ -253,7 +254,11 @@ impl Silo {
             .holds("scene, walls and slit are their own mirror image in x = 0", |done| {
                 Ok(Measurement::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
             })
-            .within(judged(0.03, "the deposit is not its own mirror image; 10° of gravity are .07 in the prototype"))
+            .within(judged(
+                0.03,
+                "the deposit is not mirror-symmetric; gravity tilted by 10° gives .07 in the \
+                                  prototype",
+            ))
             .refuses(turned_gravity())
     }
 
@@ -272,8 +277,8 @@ impl Silo {
                 })
                 .within(required(
                     0.008,
-                    "asked for before: two drains of the prototype are .005 to .008 apart; in units of φ; bins up to |I₀| = .1, \
-                     which have elements enough to tell so much",
+                    "required in advance: two runs of the prototype differ by .005 to .008; in units of φ; bins up to \
+                     |I₀| = .1 have enough elements for this tolerance",
                 ))
                 .refuses(no_springs()),
             claim(mean_off, "1")
@@ -303,7 +308,7 @@ impl Silo {
         let control = Control::ours("tangential springs a millionth as stiff in ours", |scene| {
             scene.change_laws(|law| law.scale_tangential(1e-6));
         });
-        let because = format!("chaos makes them two draws after .8 τ; {PACKINGS}");
+        let because = format!("because of chaos the two runs are independent samples after .8 τ; {PACKINGS}");
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
         let allowed = computed(apart / mean, format!("{because}; in units of the mean of ten packings"));
         row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
@@ -318,7 +323,8 @@ impl Silo {
         let time = if self.run.set == Set::Long { 0.05 } else { 0.2 };
         let allowed = rounding(
             2.0 * (0.2_f64 / 0.033).exp(),
-            "order of sums, which grows by e every .033 τ, up to .2 τ; of an energy twice that of velocities",
+            "order of sums: the difference grows by e every .033 τ, up to .2 τ; an energy has twice the relative error \
+             of velocities",
         );
         let control =
             Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));

@@ -66,7 +66,7 @@ impl ComparedFlow {
 pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .run(run)
-        .agrees(Source::Ourselves("what is kept of that silo's run"), move |done| {
+        .agrees(Source::Ourselves("stored result of the run of that silo"), move |done| {
             let other = other.done()?;
             let theirs = ensemble::over_inertia(&other)?;
             let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
@@ -75,7 +75,7 @@ pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [
             let [found, expected] = ensemble::worst(&pairs);
             Ok(Measurement::new(found, expected, 1.0))
         })
-        .within(required(0.008, "asked for before: two drains of the prototype are .005 to .008 apart; in units of φ"))
+        .within(required(0.008, "required in advance: two runs of the prototype differ by .005 to .008; in units of φ"))
         .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
 }
 
@@ -86,20 +86,20 @@ const FEW_STRAINS: usize = 3;
 pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .run(run)
-        .agrees(Source::Ourselves("what is kept of the other silos' runs"), move |done| {
+        .agrees(Source::Ourselves("stored results of the runs of the other silos"), move |done| {
             let ours = ensemble::over_strain(&done[0], &STRAIN)?;
             let mut pairs = Vec::new();
             for other in others {
                 let theirs = ensemble::over_strain(&other.done()?, &STRAIN)?;
                 for bin in FEW_STRAINS..FEW_STRAINS + other.strained {
                     let lacking =
-                        || MissingData(format!("tracers with |E| of {:?}, or {} has none", STRAIN[bin], other.label));
+                        || MissingData(format!("tracers with |E| of {:?}; {} has none", STRAIN[bin], other.label));
                     pairs.push([ours[bin].ok_or_else(lacking)?, theirs[bin].ok_or_else(lacking)?]);
                 }
             }
             let [found, expected] = ensemble::worst(&pairs);
             Ok(Measurement::new(found, expected, 1.0))
         })
-        .within(required(0.013, "asked for before: runs of the prototype agree within .013 there; in units of φ"))
+        .within(required(0.013, "required in advance: runs of the prototype agree within .013 there; in units of φ"))
         .refuses(Control::misread("radii a hundredth too large", ensemble::larger_radii))
 }

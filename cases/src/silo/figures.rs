@@ -75,10 +75,9 @@ fn film(done: &FinishedRun) -> Option<Figure> {
     }
     let field =
         Sheet { grid, units: Units { length: "d", time: "τ" }, clock: "time t (τ)".to_owned(), times, shown }.film()?;
-    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d, beside each other; lengths \
-                  in d, rates in 1/τ, speeds in d/τ. Cells of fewer than eight grains and those at the surface are \
-                  blank. The paper sees a funnel over the slit, a plug above it that hardly shears, and sin φ \
-                  between .2 and .6.";
+    let caption = "Speed, sin φ, packing fraction and shear rate of elements of 2.5 d; lengths in d, rates in 1/τ, \
+                   speeds in d/τ. Cells with fewer than eight grains and cells at the surface are blank. The paper \
+                   finds a funnel over the slit, a plug with little shear above it, and sin φ between .2 and .6.";
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
@@ -98,9 +97,9 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
     let line = [5e-4, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
-    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction falls \
-                  along one curve, which is no straight line; the paper's fit |I₀| = .123 (.635 − φ) is that of slow \
-                  elements alone.";
+    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction \
+                   decreases along one curve, which is not a straight line. The paper's fit |I₀| = .123 (.635 − φ) \
+                   holds for slow elements only.";
     Some(Figure::graph(
         "inertia",
         "Packing fraction over the inertial number",
@@ -132,9 +131,8 @@ fn along_tracers(done: &FinishedRun) -> Option<Figure> {
         last.extend(course.last());
         cloud.extend(course);
     }
-    let caption = "Tracers begin on the right, come to their largest sin φ while they are still dense, and then \
-                  dilate to the left. The paper sees .6 before any dilation; at a tenth of its size it is .5 to \
-                  .6.";
+    let caption = "Tracers begin on the right, reach their largest sin φ while they are still dense, and then dilate \
+                   to the left. The paper finds .6 before any dilation; at a tenth of its size it is .5 to .6.";
     Some(Figure::graph(
         "tracers",
         "sin φ over the packing fraction along tracers",
@@ -154,8 +152,8 @@ fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let means = over_strain(done, &STRAIN).ok()?;
     let means =
         STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
-    let caption = "The packing fraction of labelled boxes of 5 d over the Hencky strain |E| that they went through: \
-                  it falls to a plateau by |E| = .4, whatever the flow; the paper sees the same collapse.";
+    let caption = "The packing fraction of labelled boxes of 5 d over their Hencky strain |E|. It decreases to a \
+                   plateau at |E| = .4 in every flow. The paper finds the same collapse.";
     Some(Figure::graph(
         "strain",
         "Packing fraction over strain",

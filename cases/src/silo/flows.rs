@@ -36,10 +36,10 @@ fn over_rate(flows: &Flows) -> Figure {
     }
     let line = [0.0, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
     curves.push(Curve::new("|I₀| = .123 (.635 − φ), the paper's fit", Stroke::Dashed, line));
-    let caption = "Small points are elements at one moment of the steady flow, large ones means of bins (figure 6 of the \
-                   paper, which sees one curve and fits the dashed line). The silos that drain lie on one curve, which is \
-                   no line. The pushed bed is looser at the same |I₀|, in LAMMPS as in ours: it is still on its way to \
-                   where it shears steadily.";
+    let caption = "Small points are elements at one moment of the steady flow, large points are means of bins (figure \
+                   6 of the paper, which finds one curve and fits the dashed line). The draining silos lie on one \
+                   curve, which is not a straight line. The pushed bed is looser at the same |I₀| in LAMMPS and in our \
+                   solver, because it has not reached steady shear.";
     let axes = [Axis::linear("inertial number |I₀| (1)"), Axis::linear("packing fraction φ (1)")];
     Figure::graph("inertia-of-flows", "Packing fraction over the inertial number, three flows", caption, axes, curves)
 }
@@ -85,9 +85,9 @@ fn along_tracers(flows: &Flows) -> Figure {
         .filter_map(|(label, done)| Some(format!("{:.2} ({label})", ensemble::onset(done).ok()?)))
         .collect();
     let caption = format!(
-        "Each line is the course of an element (figure 7 of the paper). They begin at the right; those that fail go up to \
-         their largest sin φ while they are dense, and then to the left. The paper sees about .6 before any dilation; here \
-         the median of the largest sin φ of an instant before φ has dropped by .02 is {}.",
+        "Each line is the path of an element (figure 7 of the paper). The paths begin on the right. Failing elements \
+         first rise to their largest sin φ while they are dense, and then move to the left. The paper finds about .6 \
+         before any dilation. Here the median of the largest instantaneous sin φ before φ has decreased by .02 is {}.",
         medians.join(", ")
     );
     Figure::lines("tracers-of-flows", "sin φ over the packing fraction along tracers, three flows", &caption, plot)
@@ -112,8 +112,8 @@ fn over_strain(flows: &Flows) -> Figure {
     let seen = [[strain[0], packing[0]], [strain[1], packing[1]]];
     let plot = traces(flows, ["strain", "packing_fraction"], axes, seen, means.into_iter().collect());
     let caption = format!(
-        "Each line is the course of an element (figure 8 of the paper, which sees a sharp collapse of its simulations). They \
-         begin with the packing fraction of their deposits and come to one plateau, beyond |E| = .4 of {}.",
+        "Each line is the path of an element (figure 8 of the paper, which finds a sharp collapse of its simulations). \
+         The paths begin with the packing fraction of their deposits and reach one plateau, with the values {} beyond |E| = .4.",
         plateau.join(", ")
     );
     Figure::lines("strain-of-flows", "Packing fraction over strain, three flows", &caption, plot)

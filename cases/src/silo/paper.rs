@@ -78,7 +78,7 @@ fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, co
             let [found, expected] = ensemble::worst(&pairs);
             Ok(Measurement::new(found, expected, 1.0))
         })
-        .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+        .within(asked(0.008, "two runs of the prototype differ by .005 to .008; in units of φ"))
         .refuses(control)
 }
 
@@ -119,7 +119,10 @@ impl PaperSize {
                     let range = [paper::LOWEST_SINE.value, paper::HIGHEST_SINE.value];
                     Ok(share(&steady(&done[0], flow, "sine_of_friction")?, range))
                 })
-                .within(exactly("asked for before: the source tells the range and not how many elements are in it"))
+                .within(exactly(
+                    "required in advance: the source states the range but not the fraction of elements in \
+                                 it",
+                ))
                 .refuses(tangent()),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
@@ -171,7 +174,7 @@ impl PaperSize {
                             all.last().copied().flatten().ok_or_else(|| MissingData("elements so fast".to_owned()))?;
                         Ok(Measurement::new(found, last.value, 1.0))
                     })
-                    .within(asked(0.008, "two drains of the prototype are .005 to .008 apart; in units of φ"))
+                    .within(asked(0.008, "two runs of the prototype differ by .005 to .008; in units of φ"))
                     .refuses(larger()),
             );
         }

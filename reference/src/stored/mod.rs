@@ -107,7 +107,7 @@ impl StoredRun {
         let solver = program.name().to_owned();
         if !self.is_of(scene, resolution) {
             let reason = format!(
-                "`{}` was made from another scene or at another time step; `grainbench reference build` makes it anew",
+                "`{}` belongs to another scene or time step; `grainbench reference build` computes it again",
                 self.directory.file_name().unwrap_or_default().to_string_lossy()
             );
             return Err(RunError::Stale { solver, reason });
