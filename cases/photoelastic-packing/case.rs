@@ -220,7 +220,8 @@ const HORIZON: u64 = 620;
 
 /// Reason why our solver cannot follow LIGGGHTS in each digit.
 const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0. It keeps the tangential spring displacement \
-                             of an opened contact while the pair is on its neighbour list (plane-shear), and here contacts open and close again";
+                             of an opened contact while the pair is on its neighbour list (plane-shear), and here \
+                             contacts open and close again";
 
 /// Returns a run that both external solvers support. LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {

@@ -207,7 +207,7 @@ pub(super) fn claims() -> Vec<Claim> {
         claim(format!("plastic strain without slip over that with friction, {percent}"), "1")
             .runs([slab("mpm:no-slip"), slab("mpm")])
             .at_least(5.0, FIGURE_6, |done| Ok(yielded(&done[0])? / yielded(&done[1])?))
-            .within(exactly(""extensive" compared with "fairly little" is read as five times as much"))
+            .within(exactly("'extensive' compared with 'fairly little' is read as five times as much"))
             .refuses(Control::solver("contacts glued", "mpm:no-slip")),
         claim(format!("largest shear over normal force of a contact, {percent}"), "1")
             .run(slab("mpm"))

@@ -61,9 +61,7 @@ fn pores() -> Claim {
         // At −1 there is no void.
         .runs([whole("seed-1", "mpm:no-slip").known(NO_VOIDS).up_to(1.0), whole("seed-1", "mpm").aside()])
         .at_least(5.0, FIGURE_6, |done| Ok(voids(&done[0], end(&done[0])?) / voids(&done[1], end(&done[1])?).max(1.0)))
-        .within(exactly(
-            ""large voids" is read as five times as many, required before the solver was written",
-        ))
+        .within(exactly("'large voids' is read as five times as many, required before the solver was written"))
         .refuses(Control::scene("every second of the larger grains a tenth as large, so that there are voids", shrunk))
 }
 
@@ -75,8 +73,10 @@ fn other_contacts() -> Vec<Claim> {
             // At −1 there is no plastic strain without slip.
             .runs([whole("seed-1", "mpm:2001").known(REACHES).up_to(1.0), whole("seed-1", "mpm:no-slip").aside()])
             .at_least(5.0, FIGURE_6, |done| Ok(1.0 / over(done, 0.8, plastic_strain)?))
-            .within(exactly(""extensive" compared with "fairly little" is read as five times as much, as with springs \
-                 between surfaces"))
+            .within(exactly(
+                "'extensive' compared with 'fairly little' is read as five times as much, as with springs \
+                 between surfaces",
+            ))
             .refuses(Control::without_the_error("springs between surfaces", "mpm", grid(75.0))),
         claim("plastic strain over that with springs between surfaces, 80 % shear", "1")
             .runs([whole("seed-1", "mpm:2001"), whole("seed-1", "mpm").aside()])

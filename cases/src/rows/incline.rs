@@ -215,7 +215,8 @@ const SWINGS: &str = "the tangential spring vibrates by up to twice its static d
                       1/i)";
 /// Reason why a slipping grain may deviate from the rigid solution.
 const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, \
-                    t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that for the displacement";
+                    t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that \
+                    for the displacement";
 
 /// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
 /// overlap of `ratio`·R.

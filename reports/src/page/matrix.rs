@@ -119,7 +119,8 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
             }
             @if !report.judged.is_empty() {
                 p.note {
-                    "The last columns are external solvers, with stored results of earlier runs (" a href="#peers" { "details" } ")."
+                    "The last columns are external solvers, with stored results of earlier runs ("
+                    a href="#peers" { "details" } ")."
                 }
             }
         }
