@@ -38,7 +38,10 @@ pub enum JudgementError {
     #[error("there is no case `{0}`; there are {known}", known = names())]
     NoSuchCase(String),
     /// The case has no solver-independent claim.
-    #[error("the case `{0}` has no gate that is fair to any solver: all judge a convention of the solvers they name")]
+    #[error(
+        "the case `{0}` has no solver-independent claim: all claims test a convention of the solvers that they \
+             name"
+    )]
     NothingFair(String),
 }
 

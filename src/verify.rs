@@ -30,11 +30,11 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
         allowed: ALLOWED,
         tolerance: ToleranceOrigin::Computed,
         evidence: Evidence::OtherCode,
-        ..Verdict::open(reference.case.name, "the stored run, run again", "1")
+        ..Verdict::open(reference.case.name, "the stored run, repeated", "1")
     };
     let directory = folder(reference.program, &reference.id);
     if !directory.is_dir() {
-        return Ok(vec![row.left(Outcome::NoReference, "nothing is stored of that name")]);
+        return Ok(vec![row.left(Outcome::NoReference, "nothing is stored under this name")]);
     }
     let ended = |error: &RunError| vec![row.clone().ended(error)];
     let stored = match StoredRun::load(&directory) {
@@ -53,7 +53,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     };
     let provenance = stored.provenance();
     let source = format!(
-        "{}, stored on {}; run again with {}",
+        "{}, stored on {}; repeated with {}",
         provenance.version,
         provenance.date,
         rerun.provenance.options.join(", ")
@@ -84,9 +84,10 @@ fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
         ..Measurement::new(worst.rerun, worst.stored, worst.scale)
     };
     let row = Verdict {
-        quantity: format!("the stored run, run again{until}: worst in {}", worst.name),
+        quantity: format!("the stored run, repeated{until}: worst in {}", worst.name),
         unit: worst.unit.clone(),
-        because: "a thousand times what one unit in the last place of one position grows to; in units of what moves"
+        because: "a thousand times the final effect of one unit in the last place of one position; relative to the \
+                  motion"
             .to_owned(),
         ..row.clone()
     };

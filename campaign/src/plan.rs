@@ -59,7 +59,7 @@ pub struct Head {
     /// Time (s) after which a lease expires if it is not renewed.
     #[serde(default = "lease")]
     pub lease_seconds: f64,
-    /// Hash of the program that planned; only the same program may run the tasks.
+    /// Hash of the program that wrote the plan. Only the same program may run the tasks.
     pub program: String,
     /// Version and commit of the program.
     pub version: String,

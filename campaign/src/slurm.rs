@@ -53,11 +53,7 @@ pub struct SubmitRequest<'a> {
 /// submitted before is an error too, unless `again` is set.
 pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fault> {
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
-        return Err(Fault::expected(
-            "options for sbatch",
-            "none that says which shards there are",
-            format!("`{option}`"),
-        ));
+        return Err(Fault::expected("options for sbatch", "an environment without shards", format!("`{option}`")));
     }
     let before = jobs(&plan.path)?;
     if !asked.again && !before.is_empty() {
@@ -110,7 +106,7 @@ pub fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
         job.ok().filter(|job| (1..=MOST).contains(&job.shards)).ok_or_else(|| {
             Fault::expected(
                 format!("{}:{}", path.display(), at + 1),
-                "a submission as this program leaves it",
+                "a submission record of this program",
                 "other text",
             )
         })

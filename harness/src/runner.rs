@@ -319,7 +319,7 @@ impl Runner {
     /// Returns the stored result of a run.
     fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
         let of_control = by.control.map(|control| control.name);
-        let none = || self.unusable(run, "nothing is kept of it; `grainbench reference keep` does it".to_owned());
+        let none = || self.unusable(run, "no result is stored; `grainbench reference keep` stores it".to_owned());
         let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
         let StoredResult { record, tables, made } = kept?;
         Ok((Arc::new(record), Arc::new(tables), Some(made)))

@@ -68,7 +68,7 @@ impl Source {
             Self::Derived(words) | Self::Ourselves(words) => words.to_owned(),
             Self::Printed(work, place) => format!("{}: {place}", work.cited),
             Self::Program => "the program, run on the deck of the same scene".to_owned(),
-            Self::Regression(words) => format!("what this solver gave before: {words}"),
+            Self::Regression(words) => format!("an earlier result of this solver: {words}"),
         }
     }
 

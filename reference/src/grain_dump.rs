@@ -91,7 +91,7 @@ impl GrainDump {
             Err(error) => return Err(error),
         }
         if self.rows.kind != DumpKind::Atoms {
-            let expected = "a dump of grains, `ITEM: ATOMS` (one of contacts goes beside it)";
+            let expected = "a dump of grains, `ITEM: ATOMS` (a dump of contacts is a second file)";
             return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
         }
         self.check_units()?;

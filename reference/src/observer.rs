@@ -264,7 +264,7 @@ impl<'s> Observer<'s> {
         let column = |name: &str| snapshot.column(names.in_file(name));
         let id = column("id");
         if id.is_none() && self.scene.grains.len() > 1 {
-            return Err(missing("`id`, for there are several grains"));
+            return Err(missing("`id`, because there are several grains"));
         }
         let mut position = [None; 3];
         for axis in 0..3 {

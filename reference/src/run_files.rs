@@ -204,7 +204,7 @@ impl Snapshots {
         let is_there = self.moments.read(&mut next)?;
         if is_there != (self.read == 0) {
             let found = if is_there { "several" } else { "none" };
-            return Err(ReadError::at(name, 1, "one moment, as a list of files or its name tells its time", found));
+            return Err(ReadError::at(name, 1, "one moment, with its time in a list of files or in its name", found));
         }
         self.read += 1;
         if is_there {

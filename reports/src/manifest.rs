@@ -40,8 +40,7 @@ impl Manifest {
 pub fn refuse_mixed(directory: &Path) -> Result<(), String> {
     match Manifest::read(directory) {
         Some(Manifest { whole: false, .. }) => Err(format!(
-            "{}: expected the files of one run, found a directory that a process was ended in while it replaced them: run \
-             it again",
+            "{}: expected the files of one run, found the directory of an interrupted replacement: repeat the run",
             directory.join(MANIFEST).display()
         )),
         _ => Ok(()),

@@ -181,7 +181,7 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
 /// Returns a note with the names of the records that lack the quantity.
 fn not_told(mute: &[&NamedRecord<'_>]) -> String {
     let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
-    if names.is_empty() { String::new() } else { format!(" Not told by {}.", names.join(", ")) }
+    if names.is_empty() { String::new() } else { format!(" Not recorded by {}.", names.join(", ")) }
 }
 
 /// Returns up to `count` evenly spaced snapshots, including the last. The first is left out if there are several.
@@ -222,8 +222,8 @@ fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {
     Some(Figure::forces(
         &name,
         format!("Contact forces {when} {}", if several { &named.name } else { "" }).trim_end(),
-        "Bars through the contacts with the orientation of the force, as long as the radii together and as wide as the force is \
-         strong (Cundall and Strack 1979); radii show how far grains have turned.",
+        "Bars through the contacts along the force, with the length of both radii and a width proportional to the \
+         force (Cundall and Strack 1979). Radii show the rotation of the grains.",
         force_plot(last),
     ))
 }
@@ -272,8 +272,8 @@ const fn words(quantity: Quantity) -> (&'static str, &'static str) {
 fn caption(quantity: Quantity) -> String {
     match quantity {
         Quantity::StressDifference => {
-            "Difference of the principal stresses: of material points where there are some, else by the \
-            elastic solution of every disc under its contact forces."
+            "Difference of the principal stresses: of the material points if there are any, otherwise from the elastic \
+             solution of every disc under its contact forces."
                 .to_owned()
         }
         Quantity::Fringes(constant) => {
@@ -344,7 +344,7 @@ mod tests {
         for name in ["stress", "rotation"] {
             let figure = figures.iter().find(|figure| figure.name == name).unwrap();
             let Drawing::Field(field) = &figure.drawing else { unreachable!() };
-            assert!(field.panels.len() == 1 && figure.caption.contains("Not told by dump"), "{name}");
+            assert!(field.panels.len() == 1 && figure.caption.contains("Not recorded by dump"), "{name}");
         }
     }
 

@@ -153,9 +153,10 @@ fn backspin() -> Section {
                      *√(m/k)* and changes v by less than 10⁻⁴.\n\n\
                      | μ | t* (s) |\n|---|---|\n| 0.2 | 0.291 |\n| 0.4 | 0.146 |\n"
             .into(),
-        weak: "One contact only: neighbour search and history transfer are not tried. The end speed is blind to the \
-               value of μ; only **t\\*** tells it."
-            .into(),
+        weak:
+            "One contact only: neighbour search and history transfer are not tested. The final speed does not depend \
+               on μ; only **t\\*** depends on it."
+                .into(),
         figures: vec![
             Figure {
                 name: "convergence".into(),

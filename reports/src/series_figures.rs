@@ -50,7 +50,7 @@ fn figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), window: (
         Figure::graph(
             &format!("probe-{quantity}"),
             &format!("Probes: {words}"),
-            &format!("{words} as the scene's probes tell it.{left_out}"),
+            &format!("{words} from the probes of the scene.{left_out}"),
             [Axis::linear("time t (s)"), Axis::linear(&label)],
             curves,
         )
@@ -74,6 +74,6 @@ mod tests {
         let named = [NamedRecord { name: String::new(), record: &record }];
         let figures = figures(&named, (f64::NEG_INFINITY, f64::INFINITY));
         assert!(!figures.is_empty() && figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
-        assert!(super::figures(&named, (1e9, 2e9)).is_empty(), "a window in which nothing was told shows nothing");
+        assert!(super::figures(&named, (1e9, 2e9)).is_empty(), "a window without samples shows nothing");
     }
 }

@@ -285,11 +285,11 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         .filter(|shot| shot.frames.iter().any(|snapshot| snapshot.contacts.is_none()))
         .map(|shot| shot.title.as_str())
         .collect();
-    let missing = if missing.is_empty() { String::new() } else { format!(" Not told by {}.", missing.join(", ")) };
+    let missing = if missing.is_empty() { String::new() } else { format!(" Not recorded by {}.", missing.join(", ")) };
     Some(Figure::field(
         "forces",
         "Contact forces",
-        &format!("Bars from centre to centre, as wide as the force of the contact is strong.{missing}"),
+        &format!("Bars from centre to centre, with a width proportional to the contact force.{missing}"),
         field(&view, &shots_with_contacts, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
     ))
 }
@@ -376,7 +376,7 @@ mod tests {
             Shot { title: "dem".to_owned(), frames: vec![&with_contacts] },
         ];
         let figure = forces(&both).unwrap();
-        assert!(figure.caption.contains("Not told by dump"));
+        assert!(figure.caption.contains("Not recorded by dump"));
     }
 
     #[test]

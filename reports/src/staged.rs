@@ -43,7 +43,7 @@ impl StagedDir {
 
     fn prepare(&mut self) -> io::Result<()> {
         if self.target.exists() && !self.target.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file of this name is in the way"));
+            return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file with this name exists"));
         }
         // An existing directory may be `.` or have a read-only parent, so its files are collected inside it.
         let parent = if self.target.is_dir() { self.target.as_path() } else { parent_of(&self.target) };
@@ -489,7 +489,7 @@ mod tests {
         assert!(staged.write("/a.txt", "a").is_err());
         fs::write(dir.path().join("file"), "x").unwrap();
         let message = StagedDir::new(dir.path().join("file")).unwrap_err().to_string();
-        assert!(message.contains("a file of this name is in the way"), "{message}");
+        assert!(message.contains("a file with this name exists"), "{message}");
     }
 
     /// A link inside the directory is neither written through nor removed through.

@@ -148,8 +148,8 @@ fn render(columns: &[Column]) -> Result<String, DrawError> {
             header id="summary" {
                 p.kicker { "grainbench" }
                 h1 { "The trend over " (columns.len()) " reports" }
-                p.lead { "Verdicts, and what runs counted, from the oldest report to this one. Counts do not depend on the \
-                    machine: where they change, the program does." }
+                p.lead { "Verdicts and operation counts, from the oldest report to this one. Counts do not depend on \
+                          the machine, so a change shows that the program changed." }
             }
             @for (figure, svg) in figures.iter().zip(&drawn) {
                 figure { div class="plot graph" { (PreEscaped(svg)) } figcaption { (figure.caption) } }
@@ -170,8 +170,8 @@ fn verdicts(columns: &[Column]) -> Figure {
     };
     Figure::graph(
         "trend-verdicts",
-        "Rows by how they ended",
-        "From the left, the reports in the order of the table below.",
+        "Results by outcome",
+        "The reports from left to right, in the order of the table below.",
         [Axis::linear("report"), Axis::linear("rows")],
         KINDS.iter().map(curve).collect(),
     )
@@ -192,7 +192,7 @@ fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
     (!curves.is_empty()).then(|| {
         Figure::graph(
             "trend-counts",
-            "What runs counted, over the first report",
+            "Operation counts relative to the first report",
             "The sums over the runs that all reports have.",
             [Axis::linear("report"), Axis::linear("count / that of the first report")],
             curves,
@@ -245,7 +245,7 @@ fn changed_rows(columns: &[Column]) -> Markup {
     html! {
         section id="rows" {
             h2 { "Rows that changed" }
-            @if count == 0 { p { "None: every row ended alike in all reports." } }
+            @if count == 0 { p { "None: every result has the same outcome in all reports." } }
             @else {
                 @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
                 (scrolling("Rows that changed", &table))
@@ -278,7 +278,7 @@ fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
     html! {
         section id="counts" {
             h2 { "Counts that changed" }
-            @if count == 0 { p { "None: every run that all reports have counted the same." } }
+            @if count == 0 { p { "None: every run of all reports has the same counts." } }
             @else {
                 @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
                 (scrolling("Counts that changed", &table))

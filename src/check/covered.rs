@@ -131,7 +131,7 @@ impl Coverage {
     pub(super) fn why_not(&self) -> Option<String> {
         let short = || match self.whole {
             Some(whole) => format!("{} s of {} s", number::significant(self.reached, 6), number::significant(whole, 6)),
-            None => "an unknown part, for nothing tells the time step (--time-step gives it)".to_owned(),
+            None => "an unknown part, because the time step is unknown (--time-step sets it)".to_owned(),
         };
         (!self.is_whole()).then(|| format!("the files show {}", short()))
     }
@@ -169,7 +169,7 @@ impl Coverage {
         if self.partial {
             return row.left(Outcome::Known, format!("{found}; a part of the run is meant (--partial)"));
         }
-        row.left(Outcome::Fail, format!("{found}; --partial judges what is there"))
+        row.left(Outcome::Fail, format!("{found}; --partial judges the existing samples"))
     }
 
     /// Checks the interval between the sample times of a comparison (s): the result is amber if they lie too far apart.
@@ -194,7 +194,7 @@ impl Coverage {
             source: "duration of the scene".to_owned(),
             tolerance: ToleranceOrigin::Exact,
             because: format!(
-                "what was not seen to its end is not judged; half a step, and digits of the time{}",
+                "a run is judged only if its end is known; half a step, plus the digits of the time{}",
                 outputs
                     .origin()
                     .map(|origin| format!("; times count from the first sample, {}", at(origin)))
@@ -212,7 +212,7 @@ impl Coverage {
             (Outcome::Fail, true) => row.left(Outcome::Known, "a part of the run is meant (--partial)"),
             (Outcome::Fail, false) => {
                 let shown = self.why_not().unwrap_or_default();
-                row.left(Outcome::Fail, format!("{shown}; --partial judges what is there"))
+                row.left(Outcome::Fail, format!("{shown}; --partial judges the existing samples"))
             }
             _ => row,
         }

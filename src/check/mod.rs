@@ -46,7 +46,10 @@ pub enum CheckError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The output matches the start of several variants.
-    #[error("{file}: expected the name of a variant, for several of {case} start so; found none of {variants}")]
+    #[error(
+        "{file}: expected the name of a variant, because several variants of {case} have this start; found none of \
+             {variants}"
+    )]
     Ambiguous {
         /// Files of the output.
         file: String,
@@ -58,7 +61,7 @@ pub enum CheckError {
     /// The time step is not below the critical one.
     #[error(
         "{file}: expected a time step below the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
-         {:.3} of it (--allow-unstable judges it all the same)",
+         {:.3} of it (--allow-unstable permits it)",
         .step / .critical
     )]
     Unstable {
@@ -317,7 +320,7 @@ fn section(
     }
     verdicts.extend(of_claims.into_iter().flatten());
     let amber = |reason: String| (Outcome::NoReference, reason);
-    let unknown = || amber("the files do not tell the time step (--time-step gives it)".to_owned());
+    let unknown = || amber("the files do not contain the time step (--time-step sets it)".to_owned());
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
     let of_ours = plan.and_then(|plan| against_ours(&candidate.scene, plan).map_err(amber));
     let (verdicts_of_ours, figures) = match of_ours {
@@ -331,7 +334,7 @@ fn section(
             (vec![no_comparison(&row, Outcome::Known, reason)], Vec::new())
         }
         Err((Outcome::Fail, reason)) => {
-            let reason = format!("{reason}; --partial judges what is there");
+            let reason = format!("{reason}; --partial judges the existing samples");
             (vec![no_comparison(&row, Outcome::Fail, reason)], Vec::new())
         }
         Err((outcome, reason)) => (vec![no_comparison(&row, outcome, reason)], Vec::new()),
@@ -343,7 +346,7 @@ fn section(
     }
     let (derivation, weak) = match subject.case() {
         Some(case) => (case.derivation, case.weakness),
-        None => ("", "Of a scene that is no case there is no exact answer here: our solvers alone are the measure."),
+        None => ("", "A scene without a case has no exact solution here. Our solvers are the only reference."),
     };
     Section {
         name: subject.name(),
@@ -394,7 +397,7 @@ fn against_ours(scene: &Scene, plan: Plan) -> Result<OwnRuns, String> {
 fn rows_of_ours(made: &CheckInputs<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
     let mut rows = made.compare(made.observed, row);
     if rows.is_empty() {
-        let reason = "fewer than two samples are at times of our runs, or nothing that is compared was told";
+        let reason = "fewer than two samples are at times of our runs, or the files contain no compared quantity";
         rows.push(no_comparison(row, Outcome::NoReference, reason.to_owned()));
     }
     rows.extend(made.power(power, row));
@@ -473,7 +476,7 @@ fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
     // A widening below a thousandth of the tolerance is not reported.
     if open > 1e-3 * row.allowed {
         let digits = outputs.significant_digits();
-        let words = format!("; widened by {} for the digits printed, {digits} at most", number::fraction(open));
+        let words = format!("; plus {} for the printed digits, at most {digits}", number::fraction(open));
         row.because.push_str(&words);
     }
     row

@@ -53,7 +53,10 @@ impl Plan {
             (None, _) => longest,
             (_, None) => shortest,
             (Some(time), _) => {
-                return Err((Outcome::Fail, format!("the time {time} s is no whole number of steps of {longest} s")));
+                return Err((
+                    Outcome::Fail,
+                    format!("the time {time} s is not a whole number of steps of {longest} s"),
+                ));
             }
         };
         let steps: Vec<u64> = times.iter().map(|time| (time / step).round() as u64).collect();
@@ -83,7 +86,7 @@ impl Plan {
 pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {
-        return Err(format!("{last} steps of {} s are more than our solvers are run for here", plan.step));
+        return Err(format!("{last} steps of {} s exceed the limit for our solvers here", plan.step));
     }
     let peer = |convention: Convention| {
         let run = |parts: u64| plan.run(scene, convention, parts).map(|record| record.series);

@@ -123,7 +123,7 @@ impl CheckInputs<'_> {
             rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
         }
         rows.extend(self.unjudged().map(|names| {
-            let because = "a wrong value there cannot be seen".to_owned();
+            let because = "a wrong value cannot be detected there".to_owned();
             let row = Verdict { because, ..row("columns of probes not judged".to_owned()) };
             row.left(Outcome::NoReference, names)
         }));

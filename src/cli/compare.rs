@@ -129,11 +129,11 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
         claim: format!("Whether both have the same values: {}.", counts(comparison)),
         derivation:
             "Rows are matched by id, coordinates are unscaled, and tolerances are widened by half a unit of the last \
-             printed place of each file. Where steps differ the second is interpolated in straight lines, and an eighth \
-             of its largest second difference is left open."
+             printed place of each file. If the steps differ, the second file is interpolated linearly, with a \
+             tolerance of an eighth of its largest second difference."
                 .to_owned(),
-        weak: "Two outputs that agree may both be wrong; and grains in motion part, however right both are, once \
-               differences of rounding have grown."
+        weak: "Two outputs that agree may both be wrong. Moving grains diverge in two correct outputs too, when \
+               rounding differences have grown."
             .to_owned(),
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
         verdicts: shared(comparison, arguments.partial, &a, &b)
@@ -162,7 +162,7 @@ fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict;
         let row = Verdict {
             solver: b.to_owned(),
             allowed: slack / scale,
-            because: "what only one of them has is not compared".to_owned(),
+            because: "values in only one file are not compared".to_owned(),
             evidence: Evidence::Invariant,
             source: a.to_owned(),
             ..Verdict::open("compare", quantity, unit)
@@ -202,7 +202,7 @@ fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
     let row = |(name, file): (&String, &str)| {
         let row = Verdict {
             solver: b.to_owned(),
-            because: "what only one of them has is not compared".to_owned(),
+            because: "values in only one file are not compared".to_owned(),
             source: a.to_owned(),
             ..Verdict::open("compare", quantity(name), "1")
         };
@@ -218,7 +218,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
         allowed: tolerance + open,
         tolerance: ToleranceOrigin::Required,
         because: format!(
-            "asked for {}, and {} for the printed digits of both",
+            "required {}, plus {} for the printed digits of both",
             number::fraction(tolerance),
             number::fraction(open)
         ),

@@ -80,7 +80,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let meter = Meter::new(&cache, wanted, &solvers);
     let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
     if pieces == 0 {
-        return Err(Fault::input("expected at least one point, found none of the cases and solvers named"));
+        return Err(Fault::input("expected at least one point, found none for the selected cases and solvers"));
     }
     let start = Instant::now();
     let prices = arguments.prices || arguments.cases.is_empty();
@@ -120,7 +120,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         print(&study_json(&study).map_err(Fault::input)?)?;
     } else {
         print(&text(&study, &arguments.out))?;
-        print(&format!("{reused} of {pieces} points were measured before and taken as they were\n"))?;
+        print(&format!("{reused} of {pieces} points are from an earlier measurement\n"))?;
     }
     Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
@@ -155,7 +155,7 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     }
     if found.is_empty() {
         return Err(Fault::input(
-            "expected a case with a row against an exact answer of one run, found none of those named",
+            "expected a case with an exact solution for a single run, found none in the selection",
         ));
     }
     Ok(found)
@@ -190,7 +190,7 @@ pub(crate) fn text(study: &Study, out: &Path) -> String {
     if let Some(old) = &study.against {
         text.push_str(&format!("against {old}: "));
         if study.changes.is_empty() {
-            text.push_str("counts are the same to the last, and no time differs by more than noise explains\n");
+            text.push_str("all counts are equal, and no time differs by more than noise\n");
         } else {
             text.push('\n');
         }

@@ -123,7 +123,7 @@ impl EarlierReport {
         red.extend(other);
         if moved > 0 {
             let total = number::count(now.len() as u64);
-            red.push(format!("{moved} of {total} rows ended as they did and have another value"));
+            red.push(format!("{moved} of {total} results have the same outcome and another value"));
         }
         red
     }

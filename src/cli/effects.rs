@@ -123,7 +123,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
         keep_study("effects", &study)?;
     }
     let reused = follower.end();
-    tell(&study, arguments, &format!("{reused} of {pieces} pieces were done before\n"))
+    tell(&study, arguments, &format!("{reused} of {pieces} parts were finished before\n"))
 }
 
 fn is_scene(name: &str) -> bool {
@@ -150,7 +150,9 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
     follower.done(false);
     if whole.series.columns.is_empty() {
-        return Err(Fault::input(format!("{name}: expected probes to tell what an effect changes, found none")));
+        return Err(Fault::input(format!(
+            "{name}: expected probes, which show the influence of an effect, found none"
+        )));
     }
     let mut study = Study::new(provenance(vec!["effects".to_owned(), name.to_owned()], 0.0));
     for effect in effects {

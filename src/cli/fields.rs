@@ -148,9 +148,7 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         let what = if arguments.between { "two snapshots or more" } else { "a snapshot" };
         let hint =
             if arguments.source.is_dir() { " (a large run keeps them with `simulate --write parquet`)" } else { "" };
-        return Err(Fault::input(format!(
-            "{there}: expected {what} between the times that are asked for, found fewer{hint}"
-        )));
+        return Err(Fault::input(format!("{there}: expected {what} in the selected time interval, found fewer{hint}")));
     };
     let summary = Summary::new(&course, there.to_string(), usize::from(arguments.blocks));
     write_elements(&arguments.out, &course, &summary, arguments.parquet).map_err(Fault::writing)?;
@@ -296,7 +294,7 @@ fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension:
         let name = ["x", "y", "z"][axis];
         if !(length > 0.0 && length.is_finite()) {
             return Err(Fault::input(format!(
-                "expected a box that is wide along {name}, found {length} m from {} to {}: say --low and --high",
+                "expected a box that is wide along {name}, found {length} m from {} to {}: set --low and --high",
                 low[axis], high[axis]
             )));
         }

@@ -34,7 +34,7 @@ pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fa
 pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
     let path = program.folder().join(KEEPS);
     let wrong = |found: String| {
-        Fault::input(format!("{KEEPS} beside the manifest: expected what `--update-stored` leaves, found {found}"))
+        Fault::input(format!("{KEEPS} beside the manifest: expected the output of `--update-stored`, found {found}"))
     };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     ExternalResults::read(&text).map_err(|error| wrong(error.to_string()))

@@ -56,7 +56,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     let known = kept::cases();
     let names = || known.iter().map(|case| case.name);
     if let Some(unknown) = arguments.cases.iter().find(|name| !names().any(|known| known == name.as_str())) {
-        return Err(Fault::unknown("a case that keeps runs", unknown, names()));
+        return Err(Fault::unknown("a case with stored runs", unknown, names()));
     }
     let is_named = |case: &&&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
     let largest = if arguments.paper_size { Set::Paper } else { Set::Long };
@@ -110,7 +110,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
             lines.push_str(&format!("{outcome:6} {}/{}\n", case.name, one.id));
             if interrupt.is_asked() {
                 print(&lines)?;
-                return Err(Fault::Broken("interrupted: what is done is kept".to_owned()));
+                return Err(Fault::Broken("interrupted: finished runs are stored".to_owned()));
             }
         }
     }
@@ -175,7 +175,7 @@ impl StorageTask<'_> {
         fs::create_dir_all(folder).map_err(|error| Fault::input(format!("{}: {error}", folder.display())))?;
         let from = if path.exists() { Some(read(&path)?) } else { None };
         if let Some(from) = &from {
-            say("note", &format!("{}: goes on from step {} of its checkpoint", self.wanted.id, from.step()));
+            say("note", &format!("{}: continues from step {} of its checkpoint", self.wanted.id, from.step()));
         }
         let mut watcher = Watcher { of: self, progress: None, is_new: true };
         let place = Place { path: &path, every: EVERY };
@@ -184,7 +184,7 @@ impl StorageTask<'_> {
             Ok(record) => Ok(FinishedRun::new(Arc::clone(&self.given), Arc::new(record))),
             Err(error @ RunError::Interrupted { .. }) if path.exists() => {
                 let path = path.display();
-                Err(Fault::Broken(format!("{}: {error}; the same command goes on from {path}", self.wanted.id)))
+                Err(Fault::Broken(format!("{}: {error}; the same command continues from {path}", self.wanted.id)))
             }
             Err(error @ RunError::Checkpoint(_)) => Err(Fault::input(format!("{}: {error}", path.display()))),
             Err(error) => Err(Fault::Broken(error.to_string())),

@@ -206,10 +206,10 @@ fn verify(arguments: &Verify) -> Outcome {
         title: "Stored runs, run again".to_owned(),
         claim: "The programs that are installed give what is stored.".to_owned(),
         derivation:
-            "Each program is run on the deck of the scene as it is now, and compared with the stored samples: one \
-                     by one up to the step to which the run can be predicted, and by means over blocks after it."
+            "Each program runs the deck of the current scene and is compared with the stored samples: sample by sample \
+             up to the predictability horizon, and by means over blocks afterwards."
                 .to_owned(),
-        weak: "A program that was wrong when the run was stored, and still is, is not seen.".to_owned(),
+        weak: "An error of a program that already existed when the run was stored is not detected.".to_owned(),
         figures: Vec::new(),
         verdicts,
         controls: Vec::new(),

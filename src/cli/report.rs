@@ -92,7 +92,8 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         let found = if arguments.dir.is_dir() { "another" } else { "none" };
         let there = arguments.dir.display();
         return Err(Fault::input(format!(
-            "{there}: expected a directory that `run`, `cost`, `stability`, `effects` or `simulate` left, found {found}"
+            "{there}: expected a directory written by `run`, `cost`, `stability`, `effects` or `simulate`, found \
+             {found}"
         )));
     }
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
@@ -102,9 +103,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     if arguments.is_of_pictures() {
         let there = arguments.dir.display();
-        return Err(Fault::input(format!(
-            "{there}: expected {RECORD_FILE}, which `simulate` leaves, to make pictures of"
-        )));
+        return Err(Fault::input(format!("{there}: expected {RECORD_FILE}of `simulate` for figures")));
     }
     if holds(STUDY_FILE) {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;

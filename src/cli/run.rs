@@ -187,8 +187,8 @@ fn run(cases: &[String], options: &Options) -> Outcome {
     }
     let mut words = words(cases, options);
     if left > 0 {
-        let kept = if cache.is_some() { ", and the next run goes on from the runs that were" } else { "" };
-        let what = format!("interrupted: {left} checks were left out; the report holds what was finished{kept}");
+        let kept = if cache.is_some() { ", and the next run continues with the finished runs" } else { "" };
+        let what = format!("interrupted: {left} checks were omitted; the report contains the finished checks{kept}");
         exit::say("warning", &what);
         words.push(interrupted(left));
     }
@@ -225,7 +225,7 @@ fn run(cases: &[String], options: &Options) -> Outcome {
     github::tell(&report, options.json)?;
     if let Some(earlier) = &earlier {
         let changes = earlier.changes(&report, is_whole);
-        let none = ["nothing: every row and every control ended as it did, with the same value".to_owned()];
+        let none = ["nothing: every result and every control has the same outcome and value".to_owned()];
         let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
         lines.iter().for_each(|line| exit::say("changed", line));
     }
@@ -267,7 +267,7 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     needed.dedup_by_key(|data| data.name);
     if needed.is_empty() {
         return Err(Fault::input(
-            "--data: expected rows that begin with data of others, found none among those asked for",
+            "--data: expected claims that start from third-party data, found none in the selection",
         ));
     }
     let not_made: Vec<SceneDataError> = needed.iter().filter_map(|data| (data.scene)(folder).err()).collect();
@@ -504,7 +504,7 @@ impl<'a> Work<'a> {
             Some(Ok(figures)) => figures,
             Some(Err(error)) => {
                 let case = self.selected.case.name;
-                exit::say("warning", &format!("{case}: its figures are left out: {error}"));
+                exit::say("warning", &format!("{case}: its figures are omitted: {error}"));
                 Vec::new()
             }
             None => Vec::new(),

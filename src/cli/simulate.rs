@@ -129,7 +129,7 @@ impl Arguments {
         };
         let solver = &self.solver;
         Err(Fault::input(format!(
-            "{option}: how finely `{solver}` works here is said by {own}; expected none of another kind"
+            "{option}: the resolution of `{solver}` is set by {own}; other resolution options are not supported"
         )))
     }
 
@@ -192,7 +192,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if arguments.state.is_some() && Method::from_name(&arguments.solver) != Some(Method::Dem) {
         let solver = &arguments.solver;
         return Err(Fault::input(format!(
-            "--state: expected `dem`, found `{solver}`, which does not tell its end state"
+            "--state: expected `dem`, found `{solver}`, which does not report its final state"
         )));
     }
     check_writable(&arguments.out)?;
@@ -335,7 +335,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
         let courant = arguments.courant.unwrap_or(Resolution::COURANT);
         if courant >= 1.0 && !arguments.allow_unstable {
             return Err(Fault::input(format!(
-                "Courant number: expected less than 1, found {courant} (--allow-unstable takes it all the same)"
+                "Courant number: expected less than 1, found {courant} (--allow-unstable permits it)"
             )));
         }
         return Ok(Resolution::Grid { cells, points, courant });
@@ -351,7 +351,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
     if scene.is_unstable_at(step) && !arguments.allow_unstable {
         return Err(Fault::input(format!(
             "time step: expected less than the critical step 2√(m_min/k_max) = {critical:.6e} s, found {step:.6e} s, {} of \
-             it (--allow-unstable takes it all the same)",
+             it (--allow-unstable permits it)",
             number::significant(step / critical, 4)
         )));
     }
@@ -465,9 +465,9 @@ impl Watcher {
     fn warning(&self, ahead: RunOutline, seconds: f64) -> String {
         let shorter = match self.method {
             Some(Method::Grid) => {
-                "A step is what a wave takes through part of a cell: softer moduli or larger cells (--cells)"
+                "The step is the time of a wave through part of a cell: softer moduli or larger cells (--cells)"
             }
-            _ => "A step is part of √(m/k): softer springs",
+            _ => "The step is a fraction of √(m/k): softer springs",
         };
         format!(
             "warning: this takes about {}, {} steps of {:.3e} s for {} particles. {shorter} make it shorter; --checkpoint FILE \

@@ -13,7 +13,7 @@ pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
         return Ok(outside(name)?);
     }
     if let Some(now) = solvers::renamed(name) {
-        eprintln!("note: `{name}` is the earlier name of `{now}`, which is used");
+        eprintln!("note: `{name}` is the old name of `{now}`, which is used");
     }
     let solver = solvers::by_name(name).ok_or_else(|| {
         let names = solvers::names();
@@ -33,7 +33,7 @@ pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
     let outside = ExternalProgram::read(Path::new(path)).map_err(Fault::input)?;
     let name = outside.manifest().name.as_str();
     if solvers::by_name(name).is_some() {
-        return Err(Fault::input(format!("{path}: name: expected one that no solver has, found `{name}`")));
+        return Err(Fault::input(format!("{path}: name: expected an unused name, found `{name}`")));
     }
     Ok(Arc::new(outside))
 }

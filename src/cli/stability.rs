@@ -208,9 +208,7 @@ pub(crate) fn select<'a>(
         pieces.extend(asked.map(|name| WorkItem::Hard(hard, name)));
     }
     if pieces.is_empty() {
-        return Err(Fault::input(
-            "expected at least one case that one of the solvers named is asked about, found none",
-        ));
+        return Err(Fault::input("expected at least one case for the selected solvers, found none"));
     }
     Ok(pieces)
 }

@@ -86,7 +86,7 @@ pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let run =
         run.min_by_key(|run| !matches!(run.resolution, Resolution::TimeStep(_) | Resolution::CriticalFraction(_)));
     let Some(run) = run else {
-        return Err(Fault::input(format!("expected a case with a gate that is fair to any solver, found `{text}`")));
+        return Err(Fault::input(format!("expected a case with a solver-independent claim, found `{text}`")));
     };
     let mut scene = named.case.variant(run.variant)?;
     if let Some((_, change)) = &run.adjustment {

@@ -147,7 +147,7 @@ fn sound(record: &Record) -> Result<(), String> {
     let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
     let series = &record.series;
     if !series.time.iter().chain(series.values.iter().flatten()).all(|value| value.is_finite()) {
-        return Err("no number in the series of a run that is told to be fine".to_owned());
+        return Err("no number in the series of a run that is reported as valid".to_owned());
     }
     for snapshot in &record.snapshots {
         let grains = snapshot.grains.iter().all(|grain| {
@@ -162,7 +162,7 @@ fn sound(record: &Record) -> Result<(), String> {
         });
         let walls = snapshot.walls.iter().all(|wall| wall.force.as_ref().is_none_or(finite));
         if !(grains && contacts && points && walls) {
-            return Err(format!("no number in snapshot {} of a run that is told to be fine", snapshot.step));
+            return Err(format!("no number in snapshot {} of a run that is reported as valid", snapshot.step));
         }
     }
     let mut store = SnapshotStore::for_output(&std::env::temp_dir().join("fuzz"));

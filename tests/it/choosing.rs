@@ -81,7 +81,7 @@ fn an_earlier_report_is_compared_with() {
         answer.err
     };
     changed(here, |_| ());
-    assert_eq!(against(), "changed: nothing: every row and every control ended as it did, with the same value\n");
+    assert_eq!(against(), "changed: nothing: every result and every control has the same outcome and value\n");
     changed(here, |old| old["verdicts"][0]["verdict"] = "fail".into());
     assert!(against().starts_with("changed: was fail, is pass: oblique-impact"), "{}", against());
     changed(here, |old| drop(old["verdicts"].as_array_mut().unwrap().remove(0)));

@@ -143,7 +143,7 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     let answer = grainbench(path, &[&command[..], &cells].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
-    assert!(untold.out.contains("No contacts were told: there is no stress."), "{}", untold.out);
+    assert!(untold.out.contains("No contacts were recorded, so there is no stress."), "{}", untold.out);
 
     // Result of the library without wall contacts, which this dump does not contain.
     let mut alone = packing;
@@ -176,7 +176,7 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     same("untold", "stress_zz (Pa)", &|_| None);
     same("untold", "pressure (Pa)", &|_| None);
     let image = std::fs::read_to_string(path.join("untold/elements/elements-000000.vti")).unwrap();
-    assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "no pressure is told as such");
+    assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "an undefined pressure is written as NaN");
 }
 
 /// For a dump without velocities and times, packing and stress are known, but no motion. Its time is the step.

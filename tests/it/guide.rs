@@ -73,7 +73,7 @@ fn a_wrong_dialogue_is_refused() {
         ("steps      …", "steps      …\n# exit 1"),
     ] {
         assert!(right.contains(from));
-        assert!(tried(&right.replace(from, to)).is_err(), "`{to}` in the place of `{from}` is taken");
+        assert!(tried(&right.replace(from, to)).is_err(), "`{to}` instead of `{from}` is accepted");
     }
     let wrong = "$ grainbench run sqash\nerror: …\n# exit 2";
     assert_eq!(tried(wrong), Ok(()));

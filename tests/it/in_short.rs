@@ -121,7 +121,7 @@ fn the_last_state_of_a_large_run_that_breaks_is_kept() {
         lattice = { origin = [0.05, 0.05], spacing = [0.2, 0.2], count = [460, 460] }\n[output]\nevery_cycles = 3\n";
     std::fs::write(path.join("fall.toml"), fall).unwrap();
     let run = crate::common::grainbench(path, &["simulate", "fall.toml", "--solver", "dem", "--out", "out"]);
-    assert!(run.code == Some(1) && run.err.contains("its last state too"), "{:?} {}", run.code, run.err);
+    assert!(run.code == Some(1) && run.err.contains("with its last state"), "{:?} {}", run.code, run.err);
     let files = crate::common::files(&path.join("out"));
     assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
 }

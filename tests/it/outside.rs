@@ -178,7 +178,7 @@ fn a_wrong_manifest_is_refused() {
         answer.err
     };
     let wrong = [
-        ("name = \"liar\"", "name = \"dem\"", "SOLVER.toml: name: expected one that no solver has, found `dem`"),
+        ("name = \"liar\"", "name = \"dem\"", "SOLVER.toml: name: expected an unused name, found `dem`"),
         ("name = \"liar\"", "name = \"\\u001b[2J\"", "SOLVER.toml: name: expected up to 40 letters"),
         ("\"{scene}\", ", "", "SOLVER.toml: run: expected a word with `{scene}`"),
         ("[2, 3]", "[4]", "SOLVER.toml: can.dimension: expected 2 and 3 alone, found 4"),

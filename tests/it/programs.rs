@@ -18,7 +18,11 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     let simulate = ["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"];
     let answer = grainbench_alone(directory.path(), &simulate);
     assert_eq!(answer.code, Some(2));
-    assert_eq!(answer.err, "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, where no file is\n");
+    assert_eq!(
+        answer.err,
+        "error: lammps is not available: GRAINBENCH_LAMMPS names `nowhere/lmp`, which is not a \
+                            file\n"
+    );
 }
 
 /// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a

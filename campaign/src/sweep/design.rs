@@ -19,7 +19,11 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
         Err(Fault::expected(format!("{}: {key}", path.display()), expected, found))
     };
     if let (Design::Grid, Some(points)) = (file.design, file.points) {
-        return wrong("points".to_owned(), "none of a grid, whose factors say how many there are", points.to_string());
+        return wrong(
+            "points".to_owned(),
+            "none for a grid, whose factors set the number of points",
+            points.to_string(),
+        );
     }
     for (name, factor) in &file.factors {
         let is_range = factor.from.is_some() || factor.to.is_some() || factor.count.is_some();
@@ -39,7 +43,11 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
         match (factor.from, factor.to) {
             (Some(from), Some(to)) if from.is_finite() && to.is_finite() && from < to => {
                 if factor.spacing == Spacing::Log && from <= 0.0 {
-                    return wrong(key + ".from", "a number above zero, for ratios are equal", from.to_string());
+                    return wrong(
+                        key + ".from",
+                        "a number above zero, because the spacing is logarithmic",
+                        from.to_string(),
+                    );
                 }
             }
             (from, to) => return wrong(key, "`from` below `to`", format!("{from:?} and {to:?}")),
@@ -48,7 +56,7 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
             (Design::Grid, Some(2..)) | (Design::Random | Design::LatinHypercube, None) => {}
             (Design::Grid, count) => return wrong(key + ".count", "two values or more", format!("{count:?}")),
             (_, Some(count)) => {
-                return wrong(key + ".count", "none, for `points` says how many there are", count.to_string());
+                return wrong(key + ".count", "none, because `points` sets their number", count.to_string());
             }
         }
     }

@@ -55,7 +55,12 @@ impl EvaluatedQuantity {
     ) -> Result<Self, Fault> {
         let place = format!("{}: gates", path.display());
         let Some(case) = case else {
-            return Err(Fault::expected(place, "`scene` to be a case, which has claims", "a scene by itself"));
+            return Err(Fault::expected(
+                place,
+                "a case as `scene`, because only cases have claims",
+                "a scene by \
+                 itself",
+            ));
         };
         let elsewhere = |claim: &Claim| claim.elsewhere.as_ref().map(|elsewhere| elsewhere.quantity);
         let mut claims = (case.claims)();
@@ -99,14 +104,14 @@ impl EvaluatedQuantity {
             return Err(Fault::expected(place("allowed"), "a number of zero or more", "another"));
         }
         if recorded.allowed.is_some() && recorded.equals.is_none() {
-            return Err(Fault::expected(place("equals"), "what is expected, for it may be off by `allowed`", "none"));
-        }
-        if recorded.equals.is_some() && recorded.allowed.is_none() {
             return Err(Fault::expected(
-                place("allowed"),
-                "the largest error that passes, because of `equals`",
+                place("equals"),
+                "an expected value, because `allowed` is its tolerance",
                 "none",
             ));
+        }
+        if recorded.equals.is_some() && recorded.allowed.is_none() {
+            return Err(Fault::expected(place("allowed"), "a tolerance, because `equals` is set", "none"));
         }
         Ok(Self::Own(Box::new(SweepQuantity {
             quantity: recorded.quantity.clone(),

@@ -327,7 +327,7 @@ impl Sweep {
             last = Some(record);
         }
         let missing =
-            || RunError::Resolution { solver: solver.name(), reason: "no repetition was asked for".to_owned() };
+            || RunError::Resolution { solver: solver.name(), reason: "no repetition was requested".to_owned() };
         Ok((last.ok_or_else(missing)?, timings))
     }
 
@@ -388,7 +388,7 @@ impl Sweep {
 fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     let Some(line) = &file.line else { return Ok(None) };
     let place = format!("{}: line", path.display());
-    let Some(axes) = &file.map else { return Err(Fault::expected(place, "`map`, on which it is drawn", "none")) };
+    let Some(axes) = &file.map else { return Err(Fault::expected(place, "`map`, which the figure needs", "none")) };
     let formula_fault =
         |error| Fault::expected(format!("{place}.formula"), "arithmetic", format!("`{}`: {error}", line.formula));
     let formula = Expression::read(&line.formula).map_err(formula_fault)?;

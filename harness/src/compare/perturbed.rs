@@ -66,12 +66,15 @@ pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim 
     claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
         .runs(runs)
         .equals(
-            Source::Regression("steps until a run and its perturbed run, one position moved by one unit in the last place, part"),
+            Source::Regression(
+                "steps until a run and its perturbed run, one position moved by one unit in the last place, part",
+            ),
             move |done| Ok(Measurement::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
         )
         .within(computed(
             0.25,
-            "growth of a disturbance is exponential: a factor ten in it, or in where it begins, is a quarter of the way",
+            "a disturbance grows exponentially: a factor of ten in its rate or in its initial value changes the \
+             horizon by a quarter",
         ))
         .refuses(Control::scene("a run that ends before perturbed runs can part", |scene| {
             scene.duration = Duration::Cycles(400);
@@ -106,8 +109,8 @@ pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -
         })
         .within(computed(
             ALLOWED,
-            "ten times what they have parted by at the horizon, for two programs round every sum otherwise; relative \
-             to the largest value",
+            "ten times the difference of perturbed runs at the horizon, because two programs round every sum \
+             differently; relative to the largest value",
         ))
         .refuses(control)
 }

@@ -13,8 +13,8 @@ pub(super) const PROPERTY: Property = Property {
     flaw: Flaw::Drag,
     evidence: Evidence::Analytic,
     source: "x + vt + gt²/2, constant spin",
-    because: "every step rounds velocity and position by ε; under gravity, a solver that does not claim the second order \
-                  may be off by gΔt/2; of the fastest grain",
+    because: "rounding of velocity and position by ε per step; under gravity, gΔt/2 for a solver without claimed \
+              second order; relative to the fastest grain",
     check,
 };
 

@@ -12,7 +12,7 @@ pub(super) const PROPERTY: Property = Property {
     claim: "the mirror image of a scene ends as the mirror image of its end",
     flaw: Flaw::Handed,
     evidence: Evidence::Invariant,
-    source: "contact laws know no left and right",
+    source: "contact laws do not distinguish left and right",
     because: ROUNDING,
     check,
 };

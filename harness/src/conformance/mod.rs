@@ -142,7 +142,7 @@ pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
         })
         .collect();
     for control in controls.iter().filter(|control| !control.turned_red) {
-        lines.push(format!("{} {}: did not see {}", control.variant, control.quantity, control.wrong_physics));
+        lines.push(format!("{} {}: did not detect {}", control.variant, control.quantity, control.wrong_physics));
     }
     for less in terms.less {
         let owed = |row: &&Verdict| {
@@ -151,7 +151,7 @@ pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
                 && row.quantity.starts_with(less.quantity)
         };
         if !rows.iter().any(|row| owed(&row)) {
-            lines.push(format!("{} {}: said to be owed less, and kept", less.property, less.quantity));
+            lines.push(format!("{} {}: documented as an exception, but satisfied", less.property, less.quantity));
         }
     }
     if rows.iter().all(|row| row.outcome != Outcome::Pass) {

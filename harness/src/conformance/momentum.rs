@@ -16,7 +16,7 @@ pub(super) const PROPERTY: Property = Property {
     flaw: Flaw::Drag,
     evidence: Evidence::Invariant,
     source: "equal and opposite forces, along the line of centres without friction",
-    because: "every step rounds each grain's share by ε; of the sum of shares",
+    because: "rounding of the momentum of each grain by ε per step; relative to the sum of their magnitudes",
     check,
 };
 

@@ -22,12 +22,11 @@ pub(super) const PROPERTY: Property = Property {
     flaw: Flaw::SlowerWalls,
     evidence: Evidence::Analytic,
     source: "forces of the frame at rest and the centrifugal one",
-    because: "at a distance d from the axis, over an angle θ: second order, d (ΩΔt)² (1 + θ)², and of a grain on springs \
-              2 d (Ω/ω)² ωT (ωΔt)²/24; of a solver that claims no order d ΩΔt (1 + θ). Lever arms meet the surface \
-              within the overlap δ: spins off by 2Ωδ/R, and places by 2δθ where that moves the centre. \
-              That Ωδ differs from side to side turns the swing on springs, d (Ω/ω)² θ. Rigid grains \
-              stand 2 d (Ω/ω)² + δ off. Bodies grow by at most ρΩ²R²/E, and \
-              (ΩΔt)² (1 + θ), and lose twice as much spin",
+    because: "at a distance d from the axis, over an angle θ: time step, d (ΩΔt)² (1 + θ)², for a grain on springs \
+              also 2 d (Ω/ω)² ωT (ωΔt)²/24; for a solver without claimed order d ΩΔt (1 + θ). Lever arms differ from \
+              the surface by up to the overlap δ: errors of 2Ωδ/R in spins, and of 2δθ in positions if the centre \
+              moves. Different Ωδ on the two sides turn the vibration on springs, d (Ω/ω)² θ. Rigid grains differ by 2 \
+              d (Ω/ω)² + δ. Bodies grow by at most ρΩ²R²/E and (ΩΔt)² (1 + θ), and lose twice as much spin",
     check,
 };
 
@@ -195,9 +194,11 @@ fn strained(scene: &Scene, record: &Record) -> f64 {
 fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let points = record.snapshots.last().map_or(&[][..], |last| &last.points);
     if points.is_empty() {
-        return Err(
-            RunError::Unsupported { solver: solver.name(), reason: "it tells no material points".to_owned() }.into()
-        );
+        return Err(RunError::Unsupported {
+            solver: solver.name(),
+            reason: "it reports no material points".to_owned(),
+        }
+        .into());
     }
     let gyration = |place: fn(&PointState) -> Vector3<f64>| {
         let centre = points.iter().map(place).sum::<Vector3<f64>>() / points.len() as f64;

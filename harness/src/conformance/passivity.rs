@@ -19,11 +19,11 @@ pub(super) const PROPERTY: Property = Property {
             without slip yields no work",
     flaw: Flaw::Pumped,
     evidence: Evidence::Invariant,
-    source: "springs store what they are given at most",
+    source: "springs store at most the work done on them",
     because: "central differences keep ½mv² + ½k x x′ of two steps in a contact, which opens and closes within a step: \
-              (ωΔt)²/4 of the energy for each of N contacts, ω of the stiffest spring there; levels are compared by \
-              Δt to the claimed order. Without springs, rounding in each step. Of a cycle: a \
-              force that is a step late, 2/n of what a spring stores in a leg of n steps",
+              (ωΔt)²/4 of the energy for each of N contacts, with ω of the stiffest spring; levels are scaled by Δt to \
+              the claimed order. Without springs, rounding in each step. Closed cycle: a force that is one step late, \
+              2/n of the energy of a spring in a leg of n steps",
     check,
 };
 

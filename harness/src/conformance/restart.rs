@@ -36,7 +36,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 }
 
 fn no_checkpoint(solver: &dyn Solver) -> RunError {
-    RunError::Unsupported { solver: solver.name(), reason: "it leaves no checkpoints to continue from".to_owned() }
+    RunError::Unsupported { solver: solver.name(), reason: "it writes no checkpoints".to_owned() }
 }
 
 /// Stores the checkpoint after half of the steps.

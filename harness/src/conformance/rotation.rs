@@ -12,7 +12,7 @@ pub(super) const PROPERTY: Property = Property {
     claim: "a scene that is turned ends as its end turned",
     flaw: Flaw::Anisotropic,
     evidence: Evidence::Invariant,
-    source: "contact laws know no axes",
+    source: "contact laws do not depend on the axes",
     because: ROUNDING,
     check,
 };

@@ -49,7 +49,7 @@ impl LiveProgram {
         let executable = match env::var_os(&variable).filter(|path| !path.is_empty()) {
             Some(path) => Some(PathBuf::from(&path))
                 .filter(|path| path.is_file())
-                .ok_or_else(|| format!("{variable} names `{}`, where no file is", PathBuf::from(path).display())),
+                .ok_or_else(|| format!("{variable} names `{}`, which is not a file", PathBuf::from(path).display())),
             None => env::var_os("PATH")
                 .and_then(|path| env::split_paths(&path).map(|folder| folder.join(usual)).find(|path| path.is_file()))
                 .ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),

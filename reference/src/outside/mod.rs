@@ -157,7 +157,7 @@ impl ExternalProgram {
         };
         let failed = |what: String, lines: Vec<String>| {
             let last_words =
-                if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) };
+                if lines.is_empty() { String::new() } else { format!("; last message: {}", lines.join(" | ")) };
             format!("`{}` {what}{last_words}", one_line(&command.join(" ")))
         };
         let ended = process::run(&started, self.limits(time, MOST_PRINTED))
@@ -429,7 +429,7 @@ impl ProgramMessage {
             let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
             let screen = String::from_utf8_lossy(&screen).into_owned();
             let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
-            return Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} and gave no reason")));
+            return Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} without a reason")));
         }
         match own.failed {
             Some(failed) => Self::Failed(Failure::Crash(failed.words())),

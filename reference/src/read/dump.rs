@@ -101,7 +101,7 @@ impl<'r> DumpReader<'r> {
         // The declared number is not trusted. Memory grows with the rows that are present.
         snapshot.values.clear();
         if header.rows > self.most_rows {
-            let expected = format!("at most {} rows, for no more can belong to the scene", self.most_rows);
+            let expected = format!("at most {} rows, because the scene has no more", self.most_rows);
             return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, header.rows.to_string()));
         }
         for row in 0..header.rows {

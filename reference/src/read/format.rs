@@ -91,7 +91,7 @@ pub(crate) fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<
     if grains as u64 <= most_rows {
         return Ok(());
     }
-    let expected = format!("at most {most_rows} grains, for no more can belong to the scene");
+    let expected = format!("at most {most_rows} grains, because the scene has no more");
     Err(ReadError::at(name, 1, expected, grains.to_string()))
 }
 

@@ -152,7 +152,7 @@ impl DumpSnapshot {
     /// Returns an error if the numbers differ from those of an earlier snapshot with the same step or time.
     pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
         let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
-        let expected = format!("{expected} as before at step {}, which is there twice", self.step);
+        let expected = format!("{expected} as before at step {}, which occurs twice", self.step);
         Err(ReadError::at(file, self.first_line + row as u64, expected, found))
     }
 

@@ -76,7 +76,7 @@ pub fn of_all(tables: &[PublishedTable]) -> Vec<DataFinding> {
 #[must_use]
 pub fn table_of(rows: &[DataFinding]) -> String {
     let mut text =
-        "## What the published data says of itself\n\nComputed by `grainbench reference import dosta-2024 DIR` from \
+        "## Consistency of the published data\n\nComputed by `grainbench reference import dosta-2024 DIR` from \
                     the tables in DIR. Where these are copies: to be confirmed against the source.\n\n\
                     | table | of | quantity | found | expected |\n|---|---|---|---|---|\n"
             .to_owned();

@@ -55,8 +55,8 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
     out.write("elements/elements.pvd", crate::export::vtk::collection(&files))?;
     if let Some(field) = film(course, &DRAWN) {
         let caption = format!(
-            "Velocity, friction, packing fraction and rate of shear, {}. Cells of too few grains are left blank; of each \
-             quantity what is beyond its scale stands at its end.",
+            "Velocity, friction, packing fraction and rate of shear, {}. Cells with too few grains are blank. Values \
+             beyond a scale have the colour of its end.",
             summary.velocity
         );
         let title = format!("Granular elements, {}", cells(summary));

@@ -100,7 +100,7 @@ impl Summary {
         let (which, none) = if self.stress {
             (format!(", {}", self.which_stress), "")
         } else {
-            (String::new(), " No contacts were told: there is no stress.")
+            (String::new(), " No contacts were recorded, so there is no stress.")
         };
         let outside = match self.outside {
             0 => String::new(),

@@ -151,7 +151,7 @@ fn stable(stability: &Stability, hold: &Hold) -> Markup {
                 dt { "hard cases" }
                 dd {
                     (hold.holds) "/" (hold.asked()) " held"
-                    @if hold.wrong > 0 { ", " b.bad { (hold.wrong) " quietly wrong" } }
+                    @if hold.wrong > 0 { ", " b.bad { (hold.wrong) " wrong without an error" } }
                 }
             }
         }

@@ -98,7 +98,8 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
                  cases."
             @if !stamp.changed.is_empty() {
-                " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or are not known to be the same."
+                " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or it is unknown whether \
+                     they changed."
             }
         }
     }

@@ -43,8 +43,8 @@ pub enum StoreError {
     },
     /// The checkpoint comes from a run that stored no snapshots.
     #[error(
-        "expected a checkpoint with the snapshots before it, found that of a run that kept none: continue without --write, or \
-         with --write none"
+        "expected a checkpoint with the earlier snapshots, found a checkpoint of a run without snapshots: continue \
+         without --write, or with --write none"
     )]
     LeftOut,
     /// The list of snapshots in the checkpoint cannot be read.
@@ -157,7 +157,7 @@ impl SnapshotStore {
                 return Err(lost("found nothing"));
             }
             if !seal.fits(&from) {
-                return Err(lost("found other files than were written"));
+                return Err(lost("the files differ from the written files"));
             }
             let refused = |source| WriteError::new(&from, source);
             let to = self.folder().map_err(refused)?.join(&seal.name);

@@ -181,7 +181,7 @@ fn check(field: &Field) -> io::Result<(u32, u32)> {
         return Err(wrong("frames of different sizes"));
     }
     if field.times.is_empty() || field.panels.iter().any(|panel| panel.frames.len() != field.times.len()) {
-        return Err(wrong("not one frame for each time"));
+        return Err(wrong("the numbers of frames and times differ"));
     }
     Ok(size)
 }

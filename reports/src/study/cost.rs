@@ -88,7 +88,7 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
     }
     for line in lines {
         if is_hidden(diagram, line, target) {
-            parts.push(format!("{line} in less time than its start varies by"));
+            parts.push(format!("{line} in less time than the variation of its start-up"));
             continue;
         }
         let best = of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
@@ -143,14 +143,13 @@ pub fn figure(diagram: &Diagram) -> Figure {
         curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
     }
     let failures = diagram.points.iter().any(|point| point.standing == PointStatus::Failed);
-    let crosses =
-        if failures { " Crosses at the top are runs that failed, at the time they took until then." } else { "" };
+    let crosses = if failures { " Crosses at the top are failed runs, at the time until the failure." } else { "" };
     Figure::graph(
         &crate::page::slug(&diagram.quantity),
         &format!("{}, {}: {}", diagram.case, diagram.variant, diagram.quantity),
         &format!(
-            "Every point is a setting. Filled markers joined by a line: those of a solver that no other of its settings beats \
-             in both error and time; hollow ones are beaten.{crosses} Exact answer: {}.",
+            "Every point is a setting. Filled markers joined by a line: no other setting of this solver is both faster \
+             and more accurate. Hollow markers: other settings.{crosses} Exact solution: {}.",
             diagram.source
         ),
         [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error|")],

@@ -93,7 +93,7 @@ pub(crate) fn render(study: &Study) -> Markup {
             }
             p {
                 (count(EffectResult::Needed)) " needed, "
-                (count(EffectResult::NotWorthSimulating)) " not worth simulating where they are on, "
+                (count(EffectResult::NotWorthSimulating)) " without influence in scenes that enable them, "
                 (count(EffectResult::Inert)) " inert, " (count(EffectResult::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }
@@ -205,7 +205,7 @@ fn table(ledger: &[Entry]) -> Markup {
                     th scope="col" { "Effect" }
                     th scope="col" { "Turned on by" }
                     th scope="col" { "Worth" }
-                    th scope="col" { "What changes most without it" }
+                    th scope="col" { "Largest change without it" }
                     th.n scope="col" { "Gates red" }
                     th.n scope="col" { "Counts, with / without" }
                     th.n scope="col" { "CPU time, with / without" }

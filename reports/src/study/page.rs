@@ -110,7 +110,7 @@ fn changes(study: &Study, old: &str) -> Markup {
     html! {
         h3 { "Against " (old) }
         @if study.changes.is_empty() {
-            p { "Counts are the same to the last, and no time differs by more than noise explains." }
+            p { "All counts are equal, and no time differs by more than noise." }
         } @else {
             ul.failing aria-label="What changed" {
                 @for change in &study.changes { li { (change.what) ": " (change.how) } }
@@ -160,7 +160,7 @@ fn which(study: &Study) -> Markup {
 /// Returns the reason why a solver has no setting at 1 %.
 fn not_reached(diagram: &Diagram, line: &str) -> String {
     if cost::is_hidden(diagram, line, 0.01) {
-        return "in less time than its start varies by".to_owned();
+        return "in less time than the variation of its start-up".to_owned();
     }
     let best = cost::of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
     match (best, cost::of_line(diagram, line).next().map(|point| point.standing)) {
@@ -220,7 +220,7 @@ fn points(diagram: &Diagram) -> Markup {
                     th.n scope="col" { "Contact evaluations" }
                     th.n scope="col" { "Node updates" }
                     th.n scope="col" { "Bytes" }
-                    th scope="col" { "What the error is made of" }
+                    th scope="col" { "Parts of the error" }
                 }
             }
             tbody { @for point in &diagram.points { (row(point)) } }

@@ -65,7 +65,7 @@ impl Hardness {
             Self::Holds => "holds",
             Self::HoldsAtASmallerStep => "holds at a smaller step",
             Self::TypedFailure => "typed failure",
-            Self::QuietlyWrong => "quietly wrong",
+            Self::QuietlyWrong => "wrong without an error",
             Self::Unsupported => "cannot express it",
             Self::NotAvailable => "not installed",
         }
@@ -203,7 +203,7 @@ fn totals(lines: &[Hold]) -> Markup {
                     th.n scope="col" { "Hard cases that hold" }
                     th.n scope="col" { "at a smaller step" }
                     th.n scope="col" { "end in an error" }
-                    th.n scope="col" { "quietly wrong" }
+                    th.n scope="col" { "wrong without an error" }
                 }
             }
             tbody {
@@ -244,8 +244,8 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
     let pictures: Vec<Markup> = figures(&stability.limits).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         p.lead {
-            "The largest stable step of every solver, found by bisection on a typed failure, beside the exact limit where "
-            "there is one; and hard cases, each with what must hold."
+            "The largest stable step of every solver, found by bisection on a typed failure, with the exact limit if "
+            "there is one; and hard cases, each with its requirement."
         }
         h3 { "Totals" }
         (totals(&stability.lines))
@@ -276,7 +276,7 @@ fn matrix(rows: &[HardCaseResult]) -> Markup {
     let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
     let table = html! {
         table.cases {
-            thead { tr { th scope="col" { "Case and what must hold" } @for solver in &solvers { th scope="col" { (solver) } } } }
+            thead { tr { th scope="col" { "Case and requirement" } @for solver in &solvers { th scope="col" { (solver) } } } }
             tbody {
                 @for case in distinct(rows.iter().map(|row| row.case.as_str())) {
                     tr {
@@ -305,7 +305,7 @@ fn details_of(rows: &[HardCaseResult]) -> Markup {
     let telling = |row: &&HardCaseResult| !row.detail.is_empty() && !matches!(row.standing, Hardness::NotAvailable);
     html! {
         details {
-            summary { "What was seen" }
+            summary { "Observations" }
             ul {
                 @for row in rows.iter().filter(telling) {
                     li { (row.case) " · " (row.solver) " · " (row.standing.word()) ": " (row.detail) }

@@ -55,8 +55,8 @@ fn work(sweep: &Sweep) -> Option<Figure> {
     (!curves.is_empty()).then(|| {
         Figure::graph(
             "work",
-            "What accuracy takes, over all points of the design",
-            "The worst error of what is looked at, against the steps of a grain or material point in the middle run: a point a \
+            "Cost of accuracy over all points of the design",
+            "The worst error of the recorded quantities over the particle steps of the median run, one point per \
              level. Counts do not depend on the machine.",
             [Axis::log("particle-steps in the middle run"), Axis::log("|error|")],
             curves,

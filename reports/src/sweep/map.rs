@@ -30,7 +30,13 @@ const APART: [f64; 2] = [36.0, 15.0];
 const COLOURS: [&str; 4] = ["#009e73", "#f0c36a", "#d55e00", "#e4e7eb"];
 /// Signs of a cell, so that the meaning does not depend on colour.
 const SIGNS: [&str; 4] = ["", "·", "×", "–"];
-const WORDS: [&str; 4] = ["within what is allowed at every other factor", "at some", "at none", "cannot be asked"];
+const WORDS: [&str; 4] = [
+    "within the tolerance for all values of the other factors",
+    "at some",
+    "at none",
+    "cannot be \
+     asked",
+];
 
 /// Returns the maps: file name, caption and SVG.
 pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
@@ -46,7 +52,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let rows = panels.len().div_ceil(columns);
     let height = TOP + pitch * rows as f64 + if sweep.line.is_some() { 58.0 } else { 34.0 };
     let names: Vec<&str> = sweep.quantities.iter().map(|quantity| quantity.words.as_str()).collect();
-    let title = format!("Where each solver is within what is allowed: {}", names.join("; "));
+    let title = format!("Solvers within the tolerance: {}", names.join("; "));
     let svg = html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
             aria-label=(title) font-family=(FONTS) {
@@ -63,9 +69,9 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     };
     let labels = [x, y].map(|place| sweep.factors[place].label.as_str());
     let caption = format!(
-        "A cell is a pair of {} and {}: green where every point there is within what is allowed, whatever the other factors \
-         are, yellow with a dot where some are, red with a cross where none is. The number over a panel is the share of its \
-         points that are within.",
+        "A cell is a pair of {} and {}: green if every point is within the tolerance for all values of the other \
+         factors, yellow with a dot if some points are, red with a cross if none is. The number over a panel is the \
+         fraction of its points within the tolerance.",
         labels[0], labels[1]
     );
     vec![("map".to_owned(), caption, svg.into_string())]

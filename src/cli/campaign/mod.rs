@@ -33,10 +33,7 @@ fn enter(path: &Path) -> Result<Plan, Fault> {
     let whole = std::fs::canonicalize(path).map_err(|error| Fault::input(format!("{}: {error}", path.display())))?;
     std::env::set_current_dir(&plan.head.directory).map_err(|error| {
         let place = plan.head.directory.display();
-        Fault::input(format!(
-            "{}: directory: expected a directory that is there, found {place}: {error}",
-            path.display()
-        ))
+        Fault::input(format!("{}: directory: expected an existing directory, found {place}: {error}", path.display()))
     })?;
     plan.path = whole;
     Ok(plan)

@@ -223,7 +223,7 @@ impl Study for CostStudy {
             words.push("--levels all".to_owned());
         }
         if self.wanted.counts {
-            words.push("--counts: times are of one run, with others beside it".to_owned());
+            words.push("--counts: times are from one run while others run".to_owned());
         }
         words.extend(how.words.iter().cloned());
         let mut study = Report::new(provenance(words, how.seconds));

@@ -297,7 +297,13 @@ impl Study for ClaimStudy {
                 }
                 WorkItem::Owed(at) => {
                     let solver = owing[at].0.name();
-                    new("conformance".to_owned(), solver, String::new(), "what it owes".to_owned(), CONFORMANCE)
+                    new(
+                        "conformance".to_owned(),
+                        solver,
+                        String::new(),
+                        "conformance properties".to_owned(),
+                        CONFORMANCE,
+                    )
                 }
             }
         };
@@ -361,7 +367,7 @@ impl Study for ClaimStudy {
                     continue;
                 }
                 (TaskResult::Crash(detail), _) => {
-                    exit::say("warning", &format!("figures or what a solver owes are left out: {detail}"));
+                    exit::say("warning", &format!("figures or conformance properties are omitted: {detail}"));
                     continue;
                 }
             };
@@ -369,7 +375,7 @@ impl Study for ClaimStudy {
                 WorkItem::Row(at, _) | WorkItem::Figures(at) => {
                     if let Some(error) = part.without {
                         let case = &sections[at].name;
-                        exit::say("warning", &format!("{case}: its figures are left out: {error}"));
+                        exit::say("warning", &format!("{case}: its figures are omitted: {error}"));
                     }
                     runs[at].extend(part.keys.into_iter().zip(part.section.runs));
                     sections[at].figures.extend(part.section.figures);

@@ -149,7 +149,7 @@ pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     head.inputs = study.inputs();
     let tasks = study.tasks(&head.program)?;
     if tasks.is_empty() {
-        return Err(Fault::input("expected at least one task, found none of the cases and solvers named"));
+        return Err(Fault::input("expected at least one task, found none for the selected cases and solvers"));
     }
     if tasks.len() > u32::MAX as usize {
         return Err(Fault::input(format!("expected at most 4294967295 tasks, found {}", tasks.len())));

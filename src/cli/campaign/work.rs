@@ -103,7 +103,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
         print(&words(&summary))?;
     }
     if summary.left > 0 {
-        exit::say("warning", &format!("{} tasks are left: the same command goes on with them", summary.left));
+        exit::say("warning", &format!("{} tasks remain: the same command continues them", summary.left));
         return Ok(ExitCode::from(RED));
     }
     Ok(ExitCode::SUCCESS)

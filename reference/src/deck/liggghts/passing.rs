@@ -18,8 +18,8 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
         );
     }
     if scene.stays.removal.is_some() {
-        return Err("grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only when it \
-                    makes its lists anew, which is at no step of the scene's"
+        return Err("grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only \
+                    when it rebuilds its lists, which is at no step of the scene"
             .to_owned());
     }
     if scene.walls.iter().any(|wall| wall.piston.is_some()) {

@@ -73,7 +73,7 @@ impl<'b> Reader<'b> {
                 ["POINT_DATA", count] => {
                     entities_of = ArrayEntities::Points;
                     if number(count, &here)? != points {
-                        return Err(wrong(&format!("`POINT_DATA {points}`, for there are so many points")));
+                        return Err(wrong(&format!("`POINT_DATA {points}`, which is the number of points")));
                     }
                 }
                 ["CELL_DATA", count] => (entities_of, cells) = (ArrayEntities::Cells, number(count, &here)?),
@@ -127,7 +127,7 @@ impl<'b> Reader<'b> {
                         keep(&mut arrays, entities_of, array);
                     }
                 }
-                _ => return Err(wrong("a section of points and of what is told of them")),
+                _ => return Err(wrong("a section of points or of point data")),
             }
         }
         let positions = positions.ok_or_else(|| self.bytes.error("`POINTS`"))?;
