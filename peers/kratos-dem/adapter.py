@@ -1,7 +1,7 @@
 """Scenes of grainbench in Kratos DEM 10.4: linear springs by pair, dashpots where Kratos' own relation holds, Hertz, planes.
 
 The model is built in memory. Velocity Verlet leaves positions and velocities at the same time, so samples are taken as they are.
-A plane is one triangle (in the plane: one edge), so no grain crosses a seam, where its tangential spring would be reset.
+A plane is one triangle (in the plane: one edge), so that no grain crosses a seam, where its tangential spring would start anew.
 """
 
 import csv
