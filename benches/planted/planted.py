@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Which planted defects do the gates find? Sixty are drawn by lot, each is planted, and it is written down what turns red.
+"""Tests which planted defects the claims detect: plants sixty random defects one by one and records the red results.
 
     python3 benches/planted/planted.py [--seed N] [--each 15] [--only-run] [--longest SECONDS]
 
-Signs, factors, indices and terms of sums, as many each of grains on springs, material points, scenes (what resolves them
-and their probes too) and readers of files. All are built into one copy of the tree under `target/planted`, in which the
-environment variable PLANTED chooses the one that acts: with none chosen every row must equal the plain build to the last
-bit. Each defect meets the main job, `grainbench run`; those that it lets pass meet the tests, quickest first. What is known
-is kept in `results.jsonl`, so that a run that was stopped goes on where it was. Needs python 3.9 and nothing else; takes
-about a minute a defect after a build, and as long as the tests for each one that the main job lets pass.
+A defect changes a sign, a factor, an index or a term of a sum. There are as many defects in grains on springs, in material
+points, in scenes (with the code that resolves them and their probes) and in readers of files. One copy of the tree under
+`target/planted` contains all of them, and the environment variable PLANTED activates one. Without an active defect every
+result must equal the plain build to the last bit. Each defect is tested by the main job, `grainbench run`, and if that
+passes by the tests, quickest first. Results are stored in `results.jsonl`, so that an interrupted run continues. Needs
+python 3.9 only. After the build a defect takes about a minute, plus the time of the tests if the main job passes.
 """
 
 import argparse

@@ -9,7 +9,7 @@ use std::str::FromStr;
 pub const MOST: u32 = 1_000_000;
 /// Shortest expected duration of a shard (s): a batch system takes about a second to start one.
 pub const SECONDS: f64 = 60.0;
-/// Shortest duration that is assumed for a task (s); it covers the overhead beside the run.
+/// Shortest duration that is assumed for a task (s); it covers the overhead of a task.
 const LEAST: f64 = 1e-3;
 
 /// One shard of a plan, counted from 1.

@@ -128,7 +128,7 @@ fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> = VARIANTS.into_iter().flat_map(of_both).collect();
     claims.extend(stopped());
     claims.push(kick());
-    // At step 0, the dashpot of LIGGGHTS sees a moving belt, and our dashpot a resting one: see `kick`.
+    // At step 0, the belt moves for the dashpot of LIGGGHTS and rests for our dashpot: see `kick`.
     claims.extend(programs::one_grain(&VARIANTS).into_iter().filter(|claim| !is_kicked(claim)));
     claims
 }

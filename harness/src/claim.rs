@@ -98,7 +98,7 @@ pub fn claim(quantity: impl Into<String>, unit: &'static str) -> Quantity {
 }
 
 /// A claim without an expectation.
-#[must_use = "a claim ends with what it refuses"]
+#[must_use = "a claim needs a negative control"]
 pub struct Quantity {
     quantity: String,
     unit: &'static str,
@@ -106,7 +106,7 @@ pub struct Quantity {
 }
 
 /// A claim with an expectation and without a tolerance.
-#[must_use = "a claim ends with what it refuses"]
+#[must_use = "a claim needs a negative control"]
 pub struct ClaimWithExpectation {
     pub(crate) quantity: Quantity,
     pub(crate) expectation: Expectation,
@@ -116,7 +116,7 @@ pub struct ClaimWithExpectation {
 }
 
 /// A claim without a negative control.
-#[must_use = "a claim ends with what it refuses"]
+#[must_use = "a claim needs a negative control"]
 pub struct ClaimWithTolerance {
     expecting: ClaimWithExpectation,
     tolerance: Tolerance,
@@ -269,7 +269,7 @@ impl Quantity {
         let refused = |run| Run { standing: ExpectedOutcome::Refused, ..run };
         let quantity = Self { runs: self.runs.into_iter().map(refused).collect(), ..self };
         quantity
-            .expects(Expectation::Refusal, Source::Derived("what the method is"), |_| {
+            .expects(Expectation::Refusal, Source::Derived("definition of the method"), |_| {
                 Ok(Measurement::new(1.0, 0.0, 1.0))
             })
             .within(exactly(because))

@@ -71,14 +71,14 @@ pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingDat
 type RunReader<T> = Arc<dyn Fn(&FinishedRun) -> Result<T, MissingData> + Send + Sync>;
 
 /// A claim about a time series, without an expectation.
-#[must_use = "a claim ends with what it refuses"]
+#[must_use = "a claim needs a negative control"]
 pub struct Series {
     quantity: Quantity,
     read: RunReader<Points>,
 }
 
 /// A claim about an error over resolution levels, without an expectation.
-#[must_use = "a claim ends with what it refuses"]
+#[must_use = "a claim needs a negative control"]
 pub struct Sweep {
     quantity: Quantity,
     read: RunReader<(f64, f64)>,

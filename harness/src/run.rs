@@ -115,8 +115,8 @@ impl Run {
 
     /// The run of a known error with a second bound: a larger |error|, in units of the claim's scale, is red.
     ///
-    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It holds what was found before, so it is
-    /// evidence of a change and not of an answer.
+    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It covers earlier results, so it
+    /// is evidence of a change and not of an answer.
     #[must_use]
     pub fn up_to(self, error: f64) -> Self {
         Self { known_up_to: error, ..self }

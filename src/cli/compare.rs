@@ -138,7 +138,12 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
         verdicts: shared(comparison, arguments.partial, &a, &b)
             .into_iter()
-            .chain(comparison.differences.iter().map(|difference| row(difference, comparison.key, arguments.tolerance, &a, &b)))
+            .chain(
+                comparison
+                    .differences
+                    .iter()
+                    .map(|difference| row(difference, comparison.key, arguments.tolerance, &a, &b)),
+            )
             .chain(lonely(comparison, &a, &b))
             .collect(),
         controls: Vec::new(),

@@ -133,7 +133,7 @@ impl StorageTask<'_> {
     /// Does the run, stores the result, and then deletes the checkpoint.
     fn done(&self) -> Result<(), Fault> {
         let Self { wanted, runner, .. } = self;
-        // A snapshot reader sees each snapshot once, and checkpoints do not contain its state.
+        // A snapshot reader receives each snapshot once, and checkpoints do not contain its state.
         let is_resumable = wanted.run.reading.is_none() && !solvers::is_program(wanted.run.solver);
         let done = if is_resumable {
             self.resumed()?

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     progress: bool,
     #[command(flatten)]
     collect: CollectOptions,
-    /// Another directory written by `simulate`, shown beside the first one at equal times; repeatable.
+    /// Another directory written by `simulate`, compared with the first one at equal times; repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
     /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in figures of a simulation; three fringes by default.
@@ -132,7 +132,7 @@ fn is_red(study: &Study) -> bool {
         }
 }
 
-/// Draws the figures of a simulation and of the simulations beside it.
+/// Draws the figures of a simulation and of those compared with it.
 fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> =

@@ -78,8 +78,8 @@ pub(crate) struct Options {
     /// by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
-    /// Repeat only the failed claims and controls of the report in `--out`, and what an interrupted run left out; with
-    /// `--resume`, the failed tasks of the plan.
+    /// Repeat only the failed claims and controls of the report in `--out`, and the omitted parts of an interrupted
+    /// run; with `--resume`, the failed tasks of the plan.
     #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
     retry_failed: bool,
     /// Print the rows and controls whose outcome differs from this earlier report.

@@ -142,7 +142,7 @@ impl Arguments {
     }
 }
 
-/// Formats of snapshots, as they are asked for.
+/// Requested formats of snapshots.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum SnapshotOption {
     Dump,

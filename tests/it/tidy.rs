@@ -449,3 +449,48 @@ fn the_readme_has_the_two_commands() {
         assert!(text.contains(command), "README.md says nothing of `{command}`");
     }
 }
+
+/// Own texts contain no banned phrase. Data, stored results and texts of others are omitted, and so are the adapters in
+/// `peers`, because their hashes belong to stored results. In the sources of the solvers only comments are searched.
+#[test]
+fn no_banned_phrases() {
+    const BANNED: [&str; 11] = [
+        "so many",
+        "whoever",
+        "anew",
+        "of ours",
+        "of theirs",
+        "is told",
+        "are told",
+        "told in short",
+        "hangs on",
+        "in the place of",
+        "has it that",
+    ];
+    let is_own = |name: &str| {
+        let folders: Vec<&str> = name.split('/').collect();
+        let is_stored = folders.contains(&"kept") || folders.contains(&"data") || folders[0] == "shared";
+        let is_of_others = ["reference/lammps/", "reference/liggghts/", "reference/literature/"];
+        let is_hashed = folders[0] == "peers" && !name.ends_with(".md");
+        let is_list = name == "tests/it/tidy.rs";
+        let is_text =
+            [".rs", ".toml", ".md", ".py", ".html", ".css", ".js", ".snap"].iter().any(|end| name.ends_with(end));
+        is_text && !is_stored && !is_hashed && !is_list && !is_of_others.iter().any(|start| name.starts_with(start))
+    };
+    let mut found = Vec::new();
+    for (name, text) in texts().into_iter().filter(|(name, _)| is_own(name)) {
+        let is_solver = name.starts_with("solvers/") && name.contains("/src/");
+        // A phrase may continue on the next line, behind the mark of a comment or of a continued string.
+        let mut joined = String::new();
+        for line in text.lines() {
+            let line = if is_solver { line.split_once("//").map_or("", |(_, comment)| comment) } else { line };
+            joined += line.trim().trim_start_matches(['/', '!', '#']).trim_start().trim_end_matches('\\').trim_end();
+            joined.push(' ');
+        }
+        // The old spelling of an option.
+        let joined = joined.to_lowercase().replace("--anew", "");
+        found
+            .extend(BANNED.iter().filter(|phrase| has_word(&joined, phrase)).map(|phrase| format!("{name}: {phrase}")));
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}

@@ -47,8 +47,8 @@ impl FixedBoundaries {
     /// Adds the contribution of the mirror image to the inner nodes, before velocities are computed.
     ///
     /// The mirror image of gravity (m/s²) has the opposite direction along the normal. Mass m that is folded back from
-    /// beyond a side must feel m times mirrored gravity. Nodes are later accelerated by gravity with all of their mass,
-    /// so the difference is added here.
+    /// beyond a side must carry m times mirrored gravity. Nodes are later accelerated by gravity with all of their
+    /// mass, so the difference is added here.
     pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>], gravity: S::Vector) {
         for side in &self.sides {
             let pull = side.mirrored::<S>(gravity) - gravity;

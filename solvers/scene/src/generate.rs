@@ -232,7 +232,7 @@ impl PlacedSpheres {
 mod tests {
     use super::*;
 
-    /// The work of grains that find room late is bounded, and the error tells it from a lack of room.
+    /// The work of grains that find room late is bounded, and the error distinguishes it from a lack of room.
     #[test]
     fn a_costly_search_ends() {
         let high = Vector3::new(1.0, 1.0, 0.5);

@@ -64,7 +64,7 @@ pub(crate) struct PlanOptions {
 }
 
 impl PlanOptions {
-    /// Returns the arguments of a plan; none if no plan is asked for.
+    /// Returns the arguments of a plan; none if no plan is requested.
     pub(crate) fn arguments(&self, what: &str, cases: &[String], solver: &[String]) -> Option<Arguments> {
         let out = self.plan.clone()?;
         let (what, cases, solver) = (what.to_owned(), cases.to_vec(), solver.to_vec());

@@ -18,9 +18,11 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
         );
     }
     if scene.stays.removal.is_some() {
-        return Err("grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only \
+        return Err(
+            "grains are taken out of it: LIGGGHTS has no `fix evaporate`, and loses grains beyond its box only \
                     when it rebuilds its lists, which is at no step of the scene"
-            .to_owned());
+                .to_owned(),
+        );
     }
     if scene.walls.iter().any(|wall| wall.piston.is_some()) {
         return Err("it has a wall that is pressed: the servo wall of LIGGGHTS (`mesh/surface/stress/servo`) is a controller that \
