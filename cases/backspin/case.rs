@@ -19,7 +19,7 @@ const RIGID: &[Row] =
 pub(crate) static CASE: Case = Case {
     name: "backspin",
     title: "Backspin",
-    claim: "A spinning grain set down on a flat plane slides, is driven forwards by friction, and rolls on at f RΩ₀, \
+    claim: "A spinning grain on a flat plane slides, is accelerated forwards by friction, and finally rolls at f RΩ₀, \
             with f = 1/3 for a disc and 2/7 for a sphere.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

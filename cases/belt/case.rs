@@ -25,8 +25,8 @@ const STOPPED: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "belt",
     title: "A grain on a belt",
-    claim: "A grain laid on a belt of speed V slides at μ g, and rolls on at f V, with f = 1/3 for a disc and 2/7 for a sphere; \
-            where the belt stops, it comes to rest.",
+    claim: "A grain on a belt of speed V slides with the acceleration μ g and then rolls at f V, with f = 1/3 for a \
+            disc and 2/7 for a sphere. When the belt stops, the grain comes to rest.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The final velocity does not depend on friction, stiffness or damping; velocity and displacement during sliding \

@@ -10,8 +10,8 @@ const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::Ti
 pub(crate) static CASE: Case = Case {
     name: "bulk-pairs",
     title: "Pairs of the round robin of bulk processes",
-    claim: "Between M1, M2 and steel, and at walls of steel, the force of a pair that meets obliquely and the torque about it \
-            are those of LIGGGHTS, step by step.",
+    claim: "In oblique impacts between M1, M2 and steel, and at steel walls, force and torque agree with LIGGGHTS in \
+            each step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Each pair has one impact at one speed and one spin. LIGGGHTS runs without its tangential dashpot, which our law \

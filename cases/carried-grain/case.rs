@@ -11,7 +11,7 @@ const STEP: Level = LEVELS[2];
 pub(crate) static CASE: Case = Case {
     name: "carried-grain",
     title: "A grain is carried round by two",
-    claim: "Tangential springs between grains turn with their contact: with its normal, and about it.",
+    claim: "Tangential springs between grains rotate with their contact: with its normal and about its normal.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "No contact slips. The springs are linear, with equal stiffness along the normal and the tangent.",

@@ -25,8 +25,8 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "chain",
     title: "A linear chain, driven at one end",
-    claim: "A disturbance travels along a chain of discs with the dispersion of the discrete lattice: bead velocities follow \
-            the Bessel answer to second order in Δt.",
+    claim: "A disturbance travels along a chain of discs with the dispersion of the discrete lattice: bead velocities \
+            follow the Bessel solution to second order in Δt.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The case has one dimension, no friction and linear springs. Contacts never open and grains never rotate. It \

@@ -31,9 +31,9 @@ const SLIDING: Source = Source::Derived("a contact that slides throughout has th
 pub(crate) static CASE: Case = Case {
     name: "chung-ooi",
     title: "Impacts of Hertz spheres",
-    claim: "Elastic impacts have Hertz's deepest overlap, force and duration; a coefficient of restitution is given back \
-            exactly; a contact that slides leaves the velocity and the spin of its friction impulse, on a plane, between \
-            spheres alike and unlike; angular momentum about the contact stays on any branch.",
+    claim: "Elastic impacts have the overlap, force and duration of Hertz. A prescribed coefficient of restitution is \
+            reproduced exactly. Velocity and spin after a sliding contact follow from the friction impulse, on a plane \
+            and between equal and unequal spheres. Angular momentum about the contact is conserved on any branch.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Each impact has one contact. Only friction and restitution influence the sliding branch: each tangential spring \

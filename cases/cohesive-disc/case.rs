@@ -13,8 +13,8 @@ const STRENGTH: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "cohesive-disc",
     title: "A cohesive disc on an inclined plane",
-    claim: "Cohesion adds to the strength of a contact: the threshold between rolling and sliding is met to a thousandth, \
-            and beyond it the disc slides at the rate that the strength leaves.",
+    claim: "Cohesion adds to the strength of a contact: the threshold between rolling and sliding is correct to a \
+            thousandth, and beyond it the slip grows at the exact rate.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Cohesion is here a shear strength without load, and only for overlapping grains. Tension is not tested, because \

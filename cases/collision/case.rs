@@ -15,8 +15,9 @@ const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-
 pub(crate) static CASE: Case = Case {
     name: "collision",
     title: "Two discs collide",
-    claim: "A linear spring and dashpot give the restitution of their closed form, whether the dashpot may pull at release or \
-            not; momentum is kept to rounding, and angular momentum where the tangential forces act at one point.",
+    claim: "A linear spring and dashpot give the restitution of their closed form, with and without tension of the \
+            dashpot at release. Momentum is conserved to rounding, and angular momentum too if the tangential forces \
+            act at one point.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The restitution is one number of a head-on impact. Damping that depends on the overlap could give the same \

@@ -12,8 +12,8 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 pub(crate) static CASE: Case = Case {
     name: "cooling-gas",
     title: "A gas that cools",
-    claim: "Ten thousand smooth discs with e = .9 lose their energy by Haff's law, as fast as hard discs do; LAMMPS and \
-            LIGGGHTS cool the same gas at the same rate.",
+    claim: "Ten thousand smooth discs with e = .9 lose their energy according to Haff's law, at the rate of hard \
+            discs. LAMMPS and LIGGGHTS have the same cooling rate for the same gas.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The result is a mean over the gas, so an error in one of a hundred collisions is invisible. The gas has fifteen \

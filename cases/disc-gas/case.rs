@@ -9,8 +9,8 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 pub(crate) static CASE: Case = Case {
     name: "disc-gas",
     title: "A gas of discs",
-    claim: "Without damping and friction the energy of motion and springs together is kept over 10⁵ steps and hundreds of \
-            collisions.",
+    claim: "Without damping and friction the sum of kinetic and elastic energy is conserved over 10⁵ steps and \
+            hundreds of collisions.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "A wrong conservative force would pass, and so would a grain that crosses another grain. Few discs are in \

@@ -32,8 +32,8 @@ const GLUED: &str = "zig-zag-glued";
 pub(crate) static CASE: Case = Case {
     name: "disk-chains",
     title: "Chains of discs, struck at one end",
-    claim: "Force arrives at every contact of a line and of a zig-zag of discs when the modes of the assembly say so; \
-            a zig-zag that sticks passes it on sooner than one that slips, and so does the line.",
+    claim: "The arrival times of the force at the contacts of a line and of a zig-zag of discs follow from the modes \
+            of the assembly. A sticking zig-zag, and the line, transmit the force faster than a slipping zig-zag.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "In DEM a disc is one mass on springs, without internal stress waves or fringes. The arrival at a contact \

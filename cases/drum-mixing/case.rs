@@ -23,8 +23,9 @@ const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::Ti
 pub(crate) static CASE: Case = Case {
     name: "drum-mixing",
     title: "Mixing in a rotating drum",
-    claim: "From the published start as many small spheres are in the lower quarter of the drum, at every tenth of a second up \
-            to a second, as LIGGGHTS and MUSEN count there; and a small drum turns its bed as LIGGGHTS does.",
+    claim: "From the published start, the number of small spheres in the lower quarter of the drum agrees with \
+            LIGGGHTS and MUSEN at every tenth of a second up to one second. In a small drum the bed moves as in \
+            LIGGGHTS.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The published initial state is not part of the repository. Without it the claims that need it are \

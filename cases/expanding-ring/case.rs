@@ -24,8 +24,8 @@ const RADIAL: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "expanding-ring",
     title: "An expanding ring",
-    claim: "A ring of elastic material that is set moving outwards swings with the frequency of its breathing mode, thin or \
-            thick, and keeps its amplitude and energy.",
+    claim: "An elastic ring with an initial outward velocity vibrates with the frequency of its breathing mode, thin \
+            or thick, and keeps its amplitude and energy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Small strain and one mode. Shear has little influence. Large rotations do not occur. Two points \

@@ -18,8 +18,8 @@ const SINKING: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "heavy-cantilever",
     title: "A heavy cantilever",
-    claim: "A strip whose weight is ten times EI/L³ per length comes to rest as the elastica says, .70 of its length below its \
-            clamp, and stays there though its upper face is under tension.",
+    claim: "A strip whose weight is ten times EI/L³ per length comes to rest in the shape of the elastica, .70 of its \
+            length below its clamp, and stays there, although its upper face is under tension.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The strain at the clamp is a tenth, which the elastica neglects. One position represents the whole \

@@ -23,8 +23,7 @@ const SOURCE: Source =
 pub(crate) static CASE: Case = Case {
     name: "hertz-cylinder",
     title: "An elastic cylinder on an elastic block",
-    claim: "Pressed together, a cylinder and a block of different moduli touch over the width that Hertz gives, with \
-            his peak pressure.",
+    claim: "A cylinder pressed on a block of another modulus has the contact width and the peak pressure of Hertz.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Hertz's theory assumes half-spaces and small strain. Bodies of 8 b and strains of 5 % leave an error of 1 to 2 \

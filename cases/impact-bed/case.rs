@@ -36,8 +36,8 @@ const DERIVATION: &str = {
 pub(crate) static CASE: Case = Case {
     name: "impact-bed",
     title: "Impact of a ball on a bed",
-    claim: "A ball of steel that falls into a bed of 25,000 spheres is found where seven codes of the round robin of 2024 find \
-            it, within the spread between codes and between beds, and rebounds as there.",
+    claim: "The position and the rebound of a steel ball that falls into a bed of 25,000 spheres agree with seven \
+            codes of the round robin of 2024, within the spread between codes and between beds.",
     scene: include_str!("scene.toml"),
     derivation: DERIVATION,
     weakness: "The preparation of the published beds is unknown. Our beds are filled with a friction of 0.1, which gives the \

@@ -19,9 +19,9 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "janssen",
     title: "Janssen's silo",
-    claim: "On the floor of a column of spheres that slides down its side stands what Janssen's law leaves of the weight, with \
-            the friction at work on the side and the ratio of stresses that are measured half-way up; without friction all of \
-            it; and LAMMPS finds the same from the same fall.",
+    claim: "The floor of a column of spheres that slides down its side carries the load of Janssen's law, with the \
+            mobilised friction and the stress ratio measured at half height. Without friction the floor carries all of \
+            the weight. LAMMPS gives the same loads from the same start.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Janssen's law is a model. It assumes a constant stress ratio K over the height, which is correct here to a few \

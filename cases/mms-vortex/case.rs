@@ -24,8 +24,8 @@ const fn level(name: &'static str, cells: f64) -> Level {
 pub(crate) static CASE: Case = Case {
     name: "mms-vortex",
     title: "Manufactured vortex",
-    claim: "Displacements converge in a motion that turns and shears the material by far; points that are stretched \
-            that far do not let go of each other, until FLIP's noise has grown.",
+    claim: "Displacements converge in a motion with large rotation and shear. Strongly stretched material does not \
+            separate numerically until the noise of FLIP has grown.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "One material law, no contact, and no motion at the boundaries. The order at 16 and 32 cells does not persist: \

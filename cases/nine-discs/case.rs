@@ -32,9 +32,10 @@ const MODES: Source =
 pub(crate) static CASE: Case = Case {
     name: "nine-discs",
     title: "Nine discs in a box",
-    claim: "Compressed without slip, nine discs come to rest at closed-form forces and oscillate in two known modes: the \
-            solver follows the continuous answer to second order in Δt and the answer of its own cycle to rounding. The \
-            paper's findings on speed of loading, damping, stiffness ratio and friction angle are seen again.",
+    claim: "Compressed without slip, nine discs come to rest at closed-form forces and oscillate in two known modes: \
+            the solver follows the continuous solution to second order in Δt and the exact solution of its cycle to \
+            rounding. The findings of the paper on loading speed, damping, stiffness ratio and friction angle are \
+            reproduced.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "By symmetry no disc rotates, so inertia and lever arm have no influence before the distortion. The curves of \

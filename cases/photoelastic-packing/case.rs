@@ -22,10 +22,10 @@ const STEP: Resolution = Resolution::TimeStep(5e-3);
 pub(crate) static CASE: Case = Case {
     name: "photoelastic-packing",
     title: "197 discs between four walls",
-    claim: "Packings of the discs of the photoelastic test, led to the ratio of wall forces of its stage A, stand in \
-            equilibrium, and sheared until the vertical force has grown by 4.348 % they carry a horizontal force \
-            between that of the experiment and the largest of the paper's runs. LAMMPS and LIGGGHTS go the same way \
-            from the same start. Elastic discs, whose contacts need no stiffness, do as discs on springs do.",
+    claim: "Packings of the discs of the photoelastic test, with the ratio of wall forces of its stage A, are in \
+            equilibrium. After shear until the vertical force has grown by 4.348 %, the horizontal force is between \
+            the value of the experiment and the largest value of the paper's runs. LAMMPS and LIGGGHTS give the same \
+            forces from the same start. Elastic discs, whose contacts need no stiffness, behave like discs on springs.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The photographed packing is lost. The random packings have its sizes and not its positions, so single forces \

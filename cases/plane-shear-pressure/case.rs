@@ -20,7 +20,7 @@ pub(crate) static CASE: Case = Case {
     name: "plane-shear-pressure",
     title: "Plane shear at a given pressure",
     claim: "A layer that is sheared under a pressed lid carries the pressure of the lid and the shear stress of its walls \
-            everywhere; what friction and packing fraction it has depends on the inertial number alone, and is what LAMMPS finds \
+            everywhere. Its friction and packing fraction depend on the inertial number alone, and agree with LAMMPS \
             from the same start.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

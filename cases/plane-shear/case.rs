@@ -17,8 +17,8 @@ pub(crate) static CASE: Case = Case {
     name: "plane-shear",
     title: "Ten thousand discs in plane shear",
     claim: "In the conventions of LAMMPS and LIGGGHTS a dense, polydisperse, frictional and damped packing in shear \
-            moves as in the programs themselves, sum by sum, for as long as one unit in the last place of one \
-            position does not matter; after that it has the same mean energy, stress and coordination.",
+            moves as in these programs until rounding differences dominate. Afterwards it has the same mean energy, \
+            stress and coordination.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The references are other programs and not an exact solution, so a common error is invisible. After the horizon \

@@ -37,9 +37,9 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "polydisperse-shear",
     title: "A sheared slab of 369 grains",
-    claim: "Grains that stick to each other yield several times as much as grains that slide with friction, which \
-            roll and slide past each other in a band at the moving side. What walls bring in is stored, or lost to \
-            plastic flow and friction, and the method itself takes hardly any of it.",
+    claim: "Grains that stick to each other yield several times as much as grains with friction, which roll and slide \
+            past each other in a band at the moving side. The work of the walls is stored or dissipated by plastic \
+            flow and friction, with very little numerical loss.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The packing of the paper is not printed. Ours has its sizes, and packings differ by factors of two to three, so \

@@ -8,8 +8,8 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "rocking",
     title: "Rolling springs",
-    claim: "The rolling spring yields at its limit and lets a grain rock about where it came to rest; the memory of it \
-            belongs to the contact, whichever grain comes first.",
+    claim: "The rolling spring yields at its limit, and a grain then rocks about its rest position. The stored angle \
+            belongs to the contact, for either order of the grains.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The scene has no rolling dashpot.",

@@ -8,7 +8,8 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "rolling-off",
     title: "A ball rolls off a fixed ball",
-    claim: "A ball that rolls off another leaves it at cos θ = 10/17 if it is rough, and as Coulomb's law says if it slips.",
+    claim: "A ball that rolls off another ball separates at the angle of the exact solution, cos θ = (10/17) cos θ₀ if \
+            it is rough, and according to Coulomb's law if it slips.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The point of separation is computed from the final spin and velocity, not from the contact itself.",

@@ -9,8 +9,8 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 pub(crate) static CASE: Case = Case {
     name: "rolling-on-block",
     title: "A disc rolls on a deformable block",
-    claim: "Between two deformable bodies the disc rolls as on a rigid plane: a body behind the contact costs no \
-            accuracy.",
+    claim: "Between two deformable bodies the disc rolls as on a rigid plane: a deformable body at the contact does \
+            not reduce the accuracy.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The elastic reference is a prototype of the same family of methods and not a closed form.",

@@ -14,7 +14,7 @@ const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 pub(crate) static CASE: Case = Case {
     name: "rolling-resistance",
     title: "Rolling resistance",
-    claim: "A grain that rolls is slowed down at μ_r g/(1 + i), and stays at rest on a slope up to tan θ = μ_r.",
+    claim: "A rolling grain decelerates at μ_r g/(1 + i), and stays at rest on a slope up to tan θ = μ_r.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Only the limit of the rolling moment has an influence. The stiffness of the rolling spring differs between \

@@ -11,8 +11,8 @@ use grainbench_harness::source::CitedNumber;
 pub(crate) static CASE: Case = Case {
     name: "silo-push",
     title: "Wide silo, pushed from below: spheres read as granular elements",
-    claim: "Elements of 2.5 d of a deposit that is pushed have the friction and the packing fraction that an independent \
-            prototype finds, and LAMMPS from the same deposit.",
+    claim: "Elements of 2.5 d in a pushed deposit have the friction and the packing fraction of an independent \
+            prototype, and of LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,

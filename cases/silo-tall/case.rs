@@ -11,8 +11,8 @@ use grainbench_harness::prelude::*;
 pub(crate) static CASE: Case = Case {
     name: "silo-tall",
     title: "Tall silo, drained: spheres read as granular elements",
-    claim: "Elements of 2.5 d of a silo that drains dilate, shear and carry stress as an independent prototype finds it, and \
-            LAMMPS from the same deposit.",
+    claim: "Dilation, shear and stress of elements of 2.5 d in a draining silo agree with an independent prototype, \
+            and with LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,

@@ -11,8 +11,8 @@ use grainbench_harness::prelude::*;
 pub(crate) static CASE: Case = Case {
     name: "silo-wide",
     title: "Wide silo, drained: spheres read as granular elements",
-    claim: "Elements of 2.5 d of a wide silo that drains lie on the curves of the tall one, as an independent prototype finds \
-            it, and LAMMPS from the same deposit.",
+    claim: "Elements of 2.5 d in a wide draining silo lie on the curves of the tall silo, as in an independent \
+            prototype, and in LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,

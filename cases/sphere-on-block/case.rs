@@ -19,7 +19,7 @@ pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
     title: "A sphere rolls on a deformable plane",
     claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; \
-            the papers' contacts at nodes are slow by what they are known for.",
+            the nodal contacts of the papers have their known errors.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The elastic reference is a prototype of the same family of methods, on a rigid plane, and not a closed form.",

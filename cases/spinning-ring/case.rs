@@ -13,8 +13,8 @@ const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain
 pub(crate) static CASE: Case = Case {
     name: "spinning-ring",
     title: "A spinning ring",
-    claim: "A ring that spins keeps its angular momentum and grows by the strain of centrifugal forces, whether its stress \
-            follows from the deformation or is added up from step to step.",
+    claim: "A spinning ring conserves its angular momentum and expands by the strain of the centrifugal forces, for \
+            laws of the total deformation and for rate laws.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Two dimensions, small strain, one turn. The sum over all points is insensitive to errors that do not \

@@ -24,8 +24,8 @@ const FORCES: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "squash",
     title: "Two discs squashed between two walls",
-    claim: "The calculation cycle is that of the 1979 paper: forces of the first three cycles, and of 200, are those \
-            that the paper's equations give, to rounding.",
+    claim: "The calculation cycle is that of the 1979 paper: the forces of the first three cycles, and of 200 cycles, \
+            follow from the equations of the paper to rounding.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "One dimension, no friction, no rotation and no opening contact. The case tests the order of operations in a \

@@ -21,8 +21,7 @@ const SOURCE: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "squeezed-discs",
     title: "Nine elastic discs squeezed",
-    claim: "Elastic discs press on each other and on walls with the force that their elasticity gives, all contacts \
-            alike.",
+    claim: "Elastic discs press on each other and on walls with the exact elastic force, equal at all contacts.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "At a squeeze of 0.01 R the contacts are narrower than a cell, and the force depends on the position of the \

@@ -11,8 +11,8 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "turning-walls",
     title: "Grains ride on walls that turn",
-    claim: "Grains at rest relative to walls that turn stay so: the walls' spin reaches friction, its springs and the \
-            resistance against rolling.",
+    claim: "Grains at rest relative to rotating walls stay at rest relative to them: friction, tangential springs and \
+            rolling resistance include the spin of the walls.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Linear springs without dashpots, and one grain at a time.",

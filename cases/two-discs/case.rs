@@ -12,8 +12,8 @@ const TOUCH: f64 = 3.0 - SQRT_2;
 pub(crate) static CASE: Case = Case {
     name: "two-discs",
     title: "Two elastic discs collide",
-    claim: "Elastic discs meet when their surfaces do, keep energy and momentum, rebound with what vibration leaves, \
-            and turn each other by friction as much as they should.",
+    claim: "Contact of elastic discs begins when their surfaces touch and conserves energy and momentum. The rebound \
+            lacks only the energy of vibration, and friction gives the correct spins.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Restitution and spin come from an independent prototype of the same family of methods and not from a closed \

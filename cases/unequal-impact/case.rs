@@ -9,7 +9,8 @@ const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
 pub(crate) static CASE: Case = Case {
     name: "unequal-impact",
     title: "A small grain meets a large one at an angle",
-    claim: "Friction between grains of unequal size gives each a spin by its own lever arm, and both the same impulse.",
+    claim: "Friction between grains of unequal size gives both the same impulse, and each grain a spin with its own \
+            lever arm.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The grains slip all the time and have no dashpots: neither sticking nor a restitution below 1 is \

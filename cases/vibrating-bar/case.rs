@@ -45,8 +45,8 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "vibrating-bar",
     title: "A bar vibrates along its length",
-    claim: "A bar in its first mode keeps its period, its amplitude and its energy; of viscous material it loses what it must; \
-            stretched and let go it swings as a front runs through it.",
+    claim: "A bar in its first mode keeps its period, its amplitude and its energy. With viscous material it decays at \
+            the exact rate. A stretched and released bar follows the front that runs through it.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "Small strain, one direction, no contact.",

@@ -54,7 +54,7 @@ pub enum LoadError {
         source: io::Error,
     },
     /// The directory holds the output of a run that crashed or was ended.
-    #[error("{}: expected the record of a complete run, but the run did not finish; the file contains the reason", path.display())]
+    #[error("{}: expected a complete record, but the run did not finish; the file contains the reason", path.display())]
     Broken {
         /// Path of the file with the reason.
         path: PathBuf,

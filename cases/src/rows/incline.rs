@@ -29,8 +29,9 @@ pub(crate) const fn case(
     Case {
         name,
         title,
-        claim: "A grain released from rest rolls or slips as Coulomb friction says: displacement, velocity and spin follow \
-                the rigid answer up to the compliance of the contact, and the compliant answer to the step's own error.",
+        claim: "A grain released from rest rolls or slips according to Coulomb friction: displacement, velocity and \
+                spin follow the rigid solution up to the compliance of the contact, and the compliant solution up to \
+                the error of the time step.",
         scene,
         derivation,
         weakness: "One contact that never opens, with a constant normal and the static overlap as initial state. Impact, \
