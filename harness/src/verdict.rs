@@ -197,7 +197,7 @@ impl Verdict {
             let [allowed, most] = [self.allowed, most].map(|part| 100.0 * part);
             return self.left(
                 Outcome::NoReference,
-                format!("cannot tell: an error of {allowed:.3} % of the scale is allowed, above {most} %"),
+                format!("inconclusive: an error of {allowed:.3} % of the scale is allowed, above {most} %"),
             );
         }
         self
@@ -215,7 +215,7 @@ impl Verdict {
         };
         if self.outcome == Outcome::Pass && is_value && is_wide {
             let allowed = 100.0 * self.allowed;
-            let reason = format!("cannot tell: an error of {allowed:.3} % of the scale is allowed, 100 % or more");
+            let reason = format!("inconclusive: an error of {allowed:.3} % of the scale is allowed, 100 % or more");
             return self.left(Outcome::NoReference, reason);
         }
         self

@@ -23,14 +23,14 @@ def binary() -> str:
             return str(place)
     found = shutil.which("grainbench")
     if found is None:
-        raise FileNotFoundError("expected the program grainbench beside Python or on PATH, found none")
+        raise FileNotFoundError("expected the program grainbench next to Python or on PATH, found none")
     return found
 
 
 def run(words: Sequence[str]) -> str:
     """Runs the program and returns its output. Red results are not an error.
 
-    Raises ValueError if the program cannot do what is asked.
+    Raises ValueError if the program rejects the call.
     """
     done = subprocess.run([binary(), *words], capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1) or not done.stdout:

@@ -114,7 +114,7 @@ def judge(solver: Solver, cases: Sequence[str] = (), *, controls: bool = True) -
     if not isinstance(solver, Solver):
         raise TypeError(f"expected a function under @grainbench.solver, found {type(solver).__name__}")
     if not hasattr(socket, "AF_UNIX") or not hasattr(os, "fork"):
-        raise OSError("expected a system with fork and sockets of Unix; a SOLVER.toml goes everywhere")
+        raise OSError("expected a system with fork and Unix sockets; a SOLVER.toml works on every system")
     with _served(solver) as manifest, tempfile.TemporaryDirectory(prefix="grainbench-") as out:
         words = ["run", *cases, "--solver", str(manifest), "--json", "--out", os.path.join(out, "out")]
         results: dict[str, Any] = json.loads(run(words if controls else [*words, "--no-controls"]))

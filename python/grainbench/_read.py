@@ -102,7 +102,7 @@ def read(path: str | Path) -> Results | Run:
             return Results(json.load(file))
     if (folder / "record.json").is_file():
         return Run(folder)
-    raise ValueError(f"{folder}: expected `results.json` of gates or `record.json` of a run, found neither")
+    raise ValueError(f"{folder}: expected `results.json` of claims or `record.json` of a run, found neither")
 
 
 def frame(rows: list[dict[str, Any]]) -> Any:

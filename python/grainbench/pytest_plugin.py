@@ -21,7 +21,7 @@ from .worker import load
 _NOTHING: pytest.StashKey[bool] = pytest.StashKey()
 _COUNT: pytest.StashKey[_Count] = pytest.StashKey()
 # Message of the program about a case without a claim for this solver.
-_NOT_FAIR = "fair to any solver"
+_NOT_FAIR = "solver-independent claim"
 # Property of a report whose claim was evaluated. Workers of pytest-xdist send it to the process that decides.
 _JUDGED = "grainbench-judged"
 

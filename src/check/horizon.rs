@@ -76,7 +76,7 @@ fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     let row = row.judged(&Measurement::new(means.second, means.first, means.half_width));
     if row.outcome == Outcome::Pass && INTERVALS * means.half_width > WIDE * largest {
         let open = number::fraction(INTERVALS * means.half_width / largest);
-        return row.left(Outcome::NoReference, format!("cannot tell: the interval is {open} of the largest value"));
+        return row.left(Outcome::NoReference, format!("inconclusive: the interval is {open} of the largest value"));
     }
     row
 }

@@ -298,7 +298,7 @@ fn section(
     let steps = outputs.time_steps();
     let row = |quantity: String, unit: &str| {
         let resolution = match steps {
-            None => "step not told".to_owned(),
+            None => "step unknown".to_owned(),
             Some([shortest, longest]) if shortest == longest => Resolution::TimeStep(longest).to_string(),
             Some(steps) => format!("dt={}", steps_in_words(steps)),
         };
@@ -459,7 +459,7 @@ fn judged_in_time(
         }
         (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
             let most = 100.0 * WIDE;
-            let reason = format!("cannot tell: {wide} of {count} samples allow an error above {most} % of the scale");
+            let reason = format!("inconclusive: {wide} of {count} samples allow an error above {most} % of the scale");
             row.left(Outcome::NoReference, reason)
         }
         (Outcome::Pass, _) if wide > 0 => {

@@ -203,7 +203,7 @@ fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict 
         }
         (_, largest) => {
             let words = largest.map_or("any change", |largest| &largest.words);
-            row.left(Outcome::NoReference, format!("{}: {words} cannot be told from this output", family.name))
+            row.left(Outcome::NoReference, format!("{}: {words} cannot be detected in this output", family.name))
         }
     }
 }

@@ -13,7 +13,7 @@ use std::fs;
 /// File of stored results.
 const KEEPS: &str = "judged.json";
 /// Version of a program that reports none.
-const UNKNOWN: &str = "not told";
+const UNKNOWN: &str = "unknown";
 
 /// Returns the only selected external solver.
 pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {

@@ -187,7 +187,7 @@ pub fn heat(
                 };
                 match lap(raced) {
                     Ok(seconds) if seconds < SHORTEST => {
-                        raced.absent = Some(format!("too few steps to tell: a lap took {:.0} ms", 1e3 * seconds));
+                        raced.absent = Some(format!("too few steps: a lap took {:.0} ms", 1e3 * seconds));
                     }
                     Ok(seconds) => raced.rates.push(1e-6 * particle_steps / seconds),
                     Err(reason) => raced.absent = Some(reason.to_string()),

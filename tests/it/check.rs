@@ -482,7 +482,7 @@ fn what_cannot_be_told_is_amber() {
     };
     let (code, rows) = checked("time,a.x\n0,-1\n0.03,-1\n0.06,-1\n");
     assert_eq!((code, count(&rows[1..], "no-reference"), rows.len()), (Some(1), 2, 3), "{rows:#?}");
-    assert!(rows[1]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{}", rows[1]);
+    assert!(rows[1]["detail"].as_str().unwrap().starts_with("inconclusive: "), "{}", rows[1]);
     let (code, rows) = checked("time,contact.overlap\n0,0\n0.06,0\n");
     assert_eq!((code, rows.len(), &rows[1]["verdict"]), (Some(1), 2, &"no-reference".into()), "{rows:#?}");
 }
@@ -549,7 +549,7 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     // Digits with an uncertainty above 5 % of the scale are reported and do not count as a success.
     let (code, rows) = compared("step,v\n0,0.1\n1,0.4\n", "step,v\n0,0.1\n1,0.44\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["no-reference".to_owned()]), "{rows:#?}");
-    assert!(rows[0]["detail"].as_str().unwrap().starts_with("cannot tell: "), "{rows:#?}");
+    assert!(rows[0]["detail"].as_str().unwrap().starts_with("inconclusive: "), "{rows:#?}");
     // Columns that only one file has are listed. Grain types alone are no comparison.
     let (code, rows) = compared("step,type,v\n0,1,2.5\n", "step,type,w\n0,1,2.5\n", &[]);
     assert_eq!(

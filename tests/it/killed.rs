@@ -80,7 +80,7 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
         assert_eq!(answer.code, Some(0), "{}", answer.err);
         whole.push(standing(&out, pair.kind));
     }
-    assert_ne!(whole[0], whole[1], "the runs cannot be told apart");
+    assert_ne!(whole[0], whole[1], "the runs cannot be distinguished");
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed.to_le_bytes());
     let lot = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);

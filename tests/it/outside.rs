@@ -117,7 +117,7 @@ fn a_worker_that_lies_is_found_out() {
         ("ends", "exit 0", "broken", "the worker ended"),
         ("hangs", "sleep 1000", "broken", "not done after 2 s"),
         ("floods the disk", "head -c 10000000000 /dev/zero > big", "broken", "found more"),
-        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "when 0.5, where not told"),
+        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "when 0.5, where unknown"),
         (
             "tells no time",
             "echo '{\"ran\": {\"seconds\": -1}}'",
@@ -350,7 +350,7 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     }
     let bodies = ["column", "vibrating-bar"];
     let whole = example("continuum", "", None);
-    assert_eq!(passes(whole.path(), &bodies, &[]), (Some(0), 7), "its energy alone is not told");
+    assert_eq!(passes(whole.path(), &bodies, &[]), (Some(0), 7), "only its energy is not reported");
     let spoiled = [
         ("+ m * scene[\"gravity\"]", "+ 0.95 * m * scene[\"gravity\"]"),
         ("4 / 3 * material", "1 / 3 * material"),

@@ -320,7 +320,7 @@ fn a_run_that_breaks_leaves_what_there_is() {
         assert_eq!(last, broken["step"].to_string(), "the state that broke is the last");
         assert!(!path.join("out/record.json").exists(), "it is no record of a run");
         let report = grainbench(path, &["report", "out"]);
-        assert!(report.code == Some(2) && report.err.contains("the run did not come to its end"), "{}", report.err);
+        assert!(report.code == Some(2) && report.err.contains("the run did not finish"), "{}", report.err);
     }
 }
 

@@ -46,7 +46,7 @@ impl FailureReport {
     /// Returns the description as text.
     pub(super) fn words(&self) -> String {
         let text = |value: &Option<Value>| {
-            value.as_ref().map_or_else(|| "not told".to_owned(), |value| one_line(&value.to_string()))
+            value.as_ref().map_or_else(|| "unknown".to_owned(), |value| one_line(&value.to_string()))
         };
         format!("by its own report: when {}, where {}, why {}", text(&self.when), text(&self.place), text(&self.why))
     }

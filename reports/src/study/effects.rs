@@ -206,7 +206,7 @@ fn table(ledger: &[Entry]) -> Markup {
                     th scope="col" { "Turned on by" }
                     th scope="col" { "Worth" }
                     th scope="col" { "Largest change without it" }
-                    th.n scope="col" { "Gates red" }
+                    th.n scope="col" { "Red claims" }
                     th.n scope="col" { "Counts, with / without" }
                     th.n scope="col" { "CPU time, with / without" }
                 }

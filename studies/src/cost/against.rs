@@ -84,7 +84,7 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
         how.push(format!("was {:?}, is {:?}", old.standing, new.standing).to_lowercase());
     }
     let both = old.counts.named().into_iter().zip(new.counts.named());
-    let count = |count: Option<u64>| count.map_or("not told".to_owned(), |count| count.to_string());
+    let count = |count: Option<u64>| count.map_or("unknown".to_owned(), |count| count.to_string());
     how.extend(
         both.filter(|(a, b)| a.1 != b.1).map(|((name, was), (_, is))| format!("{name} {} → {}", count(was), count(is))),
     );
