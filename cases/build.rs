@@ -105,7 +105,7 @@ fn registry(root: &Path) -> Result<String, Failure> {
             None => writeln!(code, "#[path = {file:?}]\nmod {module};")?,
         }
     }
-    writeln!(code, "/// Every case, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
+    writeln!(code, "/// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
     for name in &names {
         writeln!(code, "    &{}::CASE,", name.replace('-', "_"))?;
     }
@@ -145,7 +145,7 @@ fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Res
         let file = root.join(name).join("cost.rs");
         writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
     }
-    writeln!(code, "/// What accuracy is measured by, of cases that say it themselves.")?;
+    writeln!(code, "/// Target functions of the cases that define their own.")?;
     writeln!(code, "pub(crate) static COSTS: &[TargetFunction] = &[")?;
     for name in &own {
         writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;

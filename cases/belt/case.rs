@@ -232,7 +232,7 @@ fn rounding() -> Tolerance {
     )
 }
 
-/// Claims rolling at the end, to rounding, with the torque arm of each convention.
+/// Claims rolling at the end, to rounding, with the lever arm of each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";

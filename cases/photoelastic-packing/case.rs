@@ -165,7 +165,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
                 "equilibrium: the forces of all walls on the discs add up to zero",
                 held(0.0, 1.0, |[a, b]| a.residual.max(b.residual)),
             )
-            .within(judged(1e-3, "what still moves"))
+            .within(judged(1e-3, "remaining motion"))
             .refuses(weight()),
         unbalanced("A", paper::UNBALANCED_A, "no more than in the paper's worst run", |[a, _]| a.unbalanced),
         unbalanced("B", paper::UNBALANCED_B, "no more than in the paper's better two runs", |[_, b]| b.unbalanced),

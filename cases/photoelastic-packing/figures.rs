@@ -96,7 +96,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     ]);
     figures.push(Figure::graph(
         "path",
-        "Wall forces on the way",
+        "Wall forces during the motion",
         "From discs in contact without force to stage A at a constant ratio of strains, then at equal and opposite \
          strains until F_V has grown by 4.348 %.",
         [Axis::linear("vertical strain (%)"), Axis::linear("F_H/F_V (1)")],

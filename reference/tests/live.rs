@@ -111,7 +111,7 @@ fn a_program_that_does_its_run() {
     let record = run(&whole("1", "0 1 2")).unwrap();
     assert_eq!(record.series.column("disc.x").unwrap(), [0.0, 1.0, 2.0]);
     assert_eq!(record.series.time, [0.0, 0.01, 0.02]);
-    assert!(record.series.column("disc.angle").is_none(), "no dump tells it");
+    assert!(record.series.column("disc.angle").is_none(), "no dump contains it");
     assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
     assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
     // Quantities that the program does not write must be absent and not zero.

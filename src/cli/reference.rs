@@ -169,7 +169,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
             progress.now(&claim.quantity);
             let before = uncertainty::find(case, claim);
             let estimate =
-                if claim.set() > set { before.ok_or("not asked for".to_owned()) } else { runner.estimate(claim) };
+                if claim.set() > set { before.ok_or("not requested".to_owned()) } else { runner.estimate(claim) };
             match estimate {
                 Ok(estimate) => stored.estimate.push(estimate),
                 Err(reason) => say("warning", &format!("{}: {}: {reason}", case.name, claim.quantity)),
@@ -204,7 +204,7 @@ fn verify(arguments: &Verify) -> Outcome {
     let section = Section {
         name: "reference".to_owned(),
         title: "Stored runs, run again".to_owned(),
-        claim: "The programs that are installed give what is stored.".to_owned(),
+        claim: "The installed programs reproduce the stored results.".to_owned(),
         derivation:
             "Each program runs the deck of the current scene and is compared with the stored samples: sample by sample \
              up to the predictability horizon, and by means over blocks afterwards."

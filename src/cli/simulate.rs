@@ -471,7 +471,7 @@ impl Watcher {
         };
         format!(
             "warning: this takes about {}, {} steps of {:.3e} s for {} particles. {shorter} make it shorter; --checkpoint FILE \
-             keeps what is done",
+             stores the finished steps",
             rough(seconds),
             number::count(ahead.steps),
             ahead.time_step,

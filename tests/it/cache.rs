@@ -25,7 +25,7 @@ fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u6
     let options = results["provenance"]["options"].as_array().unwrap();
     let count_text = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
     let page = fs::read_to_string(directory.join(out).join("index.html")).unwrap();
-    assert_eq!(page.contains("runs taken from the cache"), count_text.is_some(), "the page tells it too");
+    assert_eq!(page.contains("runs taken from the cache"), count_text.is_some(), "the page shows it too");
     (code, count_text.map_or(0, |(number, _)| number.parse().unwrap()))
 }
 

@@ -268,7 +268,7 @@ fn a_sweep_shares_the_cache_of_runs() {
         let slow = text.lines().filter(|line| line.contains("dt=0.0001"));
         slow.map(|line| line.rsplit_once(',').unwrap().1.to_owned()).collect()
     };
-    assert_eq!(times("p1"), times("p2"), "a run that is taken tells the time that it took when it was done");
+    assert_eq!(times("p1"), times("p2"), "a reused run reports its original time");
 }
 
 /// A crash of a solver and an unsupported scene are results with a type, which the report shows.

@@ -317,7 +317,7 @@ fn samples_far_apart_judge_no_course() {
     let is_end = move |at: usize| at == 0 || at == last;
     let (code, rows) = checked(&is_end, &[]);
     assert_eq!((code, count(&rows, "pass")), (Some(1), 4), "{rows:#?}");
-    // Values at the end are judged all the same, because no sample in between can change them.
+    // Values at the end are still judged, because no sample in between can change them.
     assert!(rows[1..].iter().all(|row| (row["evidence"] == "analytic") == (row["verdict"] == "pass")), "{rows:#?}");
     let detail = rows.iter().find(|row| row["verdict"] == "fail").unwrap()["detail"].as_str().unwrap();
     assert!(detail.starts_with("no sample for 1 s from t = 0 s, above 0.1"), "{detail}");

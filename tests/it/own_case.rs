@@ -182,7 +182,7 @@ fn a_wrong_file_is_refused() {
             "resolution: expected less than the critical step",
         ),
         ("variant = \"slips\"", "variant = \"slides\"", "expected one of the variants slips, found `slides`"),
-        ("gravity.slope_deg = 29.9", "gravity.slope_deg = 30.0", "control.set: expected what makes another scene"),
+        ("gravity.slope_deg = 29.9", "gravity.slope_deg = 30.0", "control.set: expected values that change the scene"),
         ("gravity.slope_deg = 29.9", "gravity.slop_deg = 29.9", "control.set: expected another scene, found"),
     ];
     for (right, instead, message) in slips {

@@ -209,7 +209,7 @@ fn files_hold_what_was_chosen() {
     }
     let size = |grain: &GrainState| grain.position.norm().max(1e-300);
     let [all, some, record] = &snapshots[..] else { panic!() };
-    assert_eq!(format!("{some:?}"), format!("{record:?}"), "a record of text tells the same");
+    assert_eq!(format!("{some:?}"), format!("{record:?}"), "a record of text is equal");
     let mut worst = 0.0_f64;
     for (whole, chosen) in all.iter().zip(some) {
         assert!(chosen.contacts.is_none() && whole.contacts.is_some() && chosen.grains.len() == whole.grains.len());

@@ -197,7 +197,7 @@ fn what_is_no_state_is_refused() {
     let answer =
         grainbench(path, &["simulate", "plain.toml", "--solver", "rigid", "--state", "x.state", "--out", "out"]);
     assert_eq!(answer.code, Some(2));
-    refusals += &format!("a solver that tells none\n    {}", answer.err);
+    refusals += &format!("a solver without an end state\n    {}", answer.err);
     assert!(!path.join("x.state").exists());
     insta::assert_snapshot!(refusals);
 }

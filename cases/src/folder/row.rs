@@ -256,7 +256,7 @@ fn control(controlled: &ControlEntry, source: &SceneSource, scene: &Scene) -> Re
     let set = controlled.set.iter().fold(source.clone(), |source, (key, value)| source.set(key, &value.to_string()));
     let given = set.scene(&read_grains).map_err(|error| wrong("control.set", "another scene", error.to_string()))?;
     if given == *scene {
-        return Err(wrong("control.set", "what makes another scene", "what leaves it as it is"));
+        return Err(wrong("control.set", "values that change the scene", "values that change nothing"));
     }
     if given.duration != scene.duration {
         return Err(wrong("control.set", "wrong physics in a run of the same length", "another length"));

@@ -347,7 +347,7 @@ fn elsewhere(scene: &Scene) -> State {
     }
 }
 
-/// Claims rolling at the end: v and ΩR to rounding, with the torque arm of each convention.
+/// Claims rolling at the end: v and ΩR to rounding, with the lever arm of each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";

@@ -84,7 +84,7 @@ fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, co
 
 /// Returns a tolerance that was required beforehand.
 fn asked(allowed: f64, what: &str) -> Tolerance {
-    required(allowed, format!("asked for before: {what}"))
+    required(allowed, format!("required in advance: {what}"))
 }
 
 impl PaperSize {

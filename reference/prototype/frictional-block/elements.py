@@ -86,7 +86,7 @@ class Block:
 
 
 def released(rows):
-    """Returns v_x + μ v_y − a t (m/s) at 0.3 s of the viscous block that is let go on 30°."""
+    """Returns v_x + μ v_y − a t (m/s) at 0.3 s of the viscous block released on 30°."""
     across, along = GRAVITY * 0.75**0.5, GRAVITY / 2
     shear = YOUNG / 2.6
     block = Block(rows, 0.3, across, retardation=3000.0 / shear)

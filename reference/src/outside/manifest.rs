@@ -248,7 +248,7 @@ impl Manifest {
             _ => {}
         }
         if !self.run.is_empty() && !self.run.iter().any(|word| word.contains("{scene}")) {
-            return wrong("run", "a word with `{scene}`: what is to be run", quoted(&self.run.join(" ")));
+            return wrong("run", "a word with `{scene}`, the scene of the run", quoted(&self.run.join(" ")));
         }
         if let Some(other) = self.can.dimension.iter().find(|count| ![2, 3].contains(*count)) {
             return wrong("can.dimension", "2 and 3 alone", other.to_string());

@@ -157,7 +157,7 @@ impl ExternalProgram {
         };
         let failed = |what: String, lines: Vec<String>| {
             let last_words =
-                if lines.is_empty() { String::new() } else { format!("; last message: {}", lines.join(" | ")) };
+                if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) };
             format!("`{}` {what}{last_words}", one_line(&command.join(" ")))
         };
         let ended = process::run(&started, self.limits(time, MOST_PRINTED))

@@ -1,4 +1,4 @@
-// What the page can do beyond being read: search, filter, sort, copy a row, stop a film, change colours.
+// Functions of the page: search, filter, sort, copy a row, stop a film, change colours.
 // Without it the page is whole, and everything is there to be read.
 "use strict";
 (() => {
@@ -111,7 +111,7 @@
     found.hidden = !isOn;
     if (!isOn) return;
     const sum = [...tally.values()].reduce((sum, of) => sum + of.all, 0);
-    found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases. `), make("span", "Passed by solver, and the worst error over what is allowed:"));
+    found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases. `), make("span", "Passed results by solver, and largest error / tolerance:"));
     const list = document.createElement("ul");
     for (const [solver, of] of [...tally].sort((a, b) => b[1].pass / b[1].all - a[1].pass / a[1].all || b[1].all - a[1].all)) {
       const item = make("li", "");
@@ -134,7 +134,7 @@
     if (key.key === "/" && !isTyping) { key.preventDefault(); search.focus(); search.select(); }
     if (key.key === "Escape") { ask({}); document.activeElement.blur(); }
   });
-  // What a cell or a card leads to: its rows and no others.
+  // Shows only the rows of a cell or a card.
   document.addEventListener("click", (click) => {
     const link = click.target.closest("a[data-solver]");
     if (!link || click.ctrlKey || click.metaKey) return;
@@ -209,7 +209,7 @@
     setTimeout(() => { button.textContent = "⧉"; }, 1200);
   });
 
-  // What scrolls in its box can be reached by keyboard.
+  // Boxes that scroll can be reached by keyboard.
   if (matchMedia("(max-width: 46rem)").matches) {
     for (const box of all(".plot.graph")) Object.assign(box, { tabIndex: 0, role: "region", ariaLabel: box.querySelector("title, img")?.textContent || "figure" });
   }

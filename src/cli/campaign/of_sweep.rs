@@ -37,7 +37,7 @@ pub(crate) struct SweepStudy {
 impl SweepStudy {
     pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
         if !is_manifest(file) {
-            return Err(Fault::unknown("`SWEEP.toml`, or what is planned", file, ["run", "cost", "stability"]));
+            return Err(Fault::unknown("`SWEEP.toml`, or a command with a plan", file, ["run", "cost", "stability"]));
         }
         arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;

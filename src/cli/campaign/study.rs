@@ -64,6 +64,6 @@ pub(crate) fn came<T: DeserializeOwned>(finished: &FinishedTasks, id: Id) -> Tas
     }
     match serde_json::from_str(&entry.json) {
         Ok(result) => TaskResult::Out(result),
-        Err(error) => TaskResult::Crash(format!("what was left of it cannot be read: {error}")),
+        Err(error) => TaskResult::Crash(format!("its result cannot be read: {error}")),
     }
 }

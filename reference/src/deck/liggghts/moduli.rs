@@ -69,7 +69,7 @@ pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f
             if (one.normal + other.normal - both.normal).abs() > ROUNDING * both.normal
                 || (one.tangential + other.tangential - both.tangential).abs() > ROUNDING * both.tangential
             {
-                return Err(not_of_materials("not sums of what two materials have"));
+                return Err(not_of_materials("not sums over two materials"));
             }
         }
         young.push(modulus);

@@ -40,14 +40,12 @@ pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
         if AxisPlane::from_wall(wall).is_none() {
             let name = &wall.name;
             return Err(format!(
-                "`{name}` is taken away and needs a mesh: one `fix wall/gran` has all meshes, and keeps them"
+                "`{name}` is removed and needs a mesh: one `fix wall/gran` has all meshes, and keeps them"
             ));
         }
         if asks_for_wall(scene, number) {
             let name = &wall.name;
-            return Err(format!(
-                "`{name}` is taken away, and its force is asked for: LIGGGHTS then has no wall to ask"
-            ));
+            return Err(format!("`{name}` is removed, and its force is requested: LIGGGHTS then has no wall"));
         }
     }
     Ok(())

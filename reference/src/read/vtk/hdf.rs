@@ -163,7 +163,7 @@ impl File {
     /// Returns the names of the groups and the arrays.
     fn members(&self, group: &Group) -> Result<(Vec<String>, Vec<String>), ReadError> {
         let members = group.member_names();
-        members.map_err(|error| self.fault(&format!("what is in `{}`", group.name()), &error.to_string()))
+        members.map_err(|error| self.fault(&format!("the content of `{}`", group.name()), &error.to_string()))
     }
 
     /// Returns a subgroup, or `None` if there is none of that name. A damaged subgroup is an error.

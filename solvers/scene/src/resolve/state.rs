@@ -29,7 +29,7 @@ impl Resolver<'_> {
             .find_map(|(part, given)| given.then_some(part))
         {
             let key = format!("grains.{name}.{given}");
-            return Err(check.error(&key, "none, because the state contains it", "one"));
+            return Err(check.error(&key, "none, for the state tells it", "one"));
         }
         // A single material is replaced by the material of the group, whatever its name.
         let materials: Vec<u16> = match &state.materials[..] {
