@@ -170,7 +170,7 @@ impl GrainDump {
         };
         let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));
         if radius.is_none() && beside.radius.is_none() {
-            return Err(missing("a column `radius` or `diameter`, or `--radius` beside the file"));
+            return Err(missing("a column `radius` or `diameter`, or the option `--radius`"));
         }
         let velocity = ["vx", "vy", "vz"].map(column);
         Ok(Columns {

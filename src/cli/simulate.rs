@@ -384,7 +384,7 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
     let effects = Effects::words(scene);
     let effects = match (effects.is_empty(), scene.grains.is_empty()) {
         (false, _) => effects.join(", "),
-        (true, true) => "none beside deformation".to_owned(),
+        (true, true) => "none with deformation".to_owned(),
         (true, false) => "contact springs only".to_owned(),
     };
     let count = |number: usize| number::count(number as u64);

@@ -24,7 +24,8 @@ pub(crate) fn refuse_what_neither_has(scene: &Scene) -> Result<(), String> {
     }
     if let Some(driven) = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0) {
         return Err(format!(
-            "driven grains `{}` have a spin or a motion beside their velocity, and decks write `fix move linear` alone",
+            "driven grains `{}` have a spin or a motion in addition to their velocity, and decks write only `fix move \
+             linear`",
             driven.name
         ));
     }
