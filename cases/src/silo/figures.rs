@@ -96,7 +96,8 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let ours = over_inertia(done).ok()?;
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
-    let line = [5e-4, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
+    // The fit is a straight line on linear axes, and a curve over the logarithm of |I₀|.
+    let line = (0..=40).map(|at| 5e-4 * 24_f64.powf(f64::from(at) / 40.0)).map(|rate| (rate, 0.635 - rate / 0.123));
     let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction \
                    decreases along one curve, which is not a straight line. The paper's fit |I₀| = .123 (.635 − φ) \
                    holds for slow elements only.";
@@ -109,7 +110,7 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
             Curve::new("mean of bins", Stroke::MarkedLine, ours),
             Curve::new("elements", Stroke::Beside, thinned(cloud, CLOUD)),
             Curve::new("prototype, mean of bins", Stroke::Markers, theirs),
-            Curve::new("fit of the paper", Stroke::Dashed, line),
+            Curve::new("fit of the paper", Stroke::Dashed, line.collect()),
         ],
     ))
 }
