@@ -221,8 +221,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let velocity = Figure::graph(
         "velocity",
         "From sliding to rolling",
-        "Velocity rises and surface speed falls at constant rates until they meet; from there the grain rolls. \
-         dem:lammps at overlap/R = 1e-3 (markers), rigid answer (dashes).",
+        "The velocity v rises and the surface speed ΩR falls at constant rates until they are equal. Then the grain \
+         rolls. `dem:lammps` at overlap/R = 1e-3 (markers) is compared with the exact solution of a rigid grain \
+         (dashes).",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     );

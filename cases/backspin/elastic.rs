@@ -128,10 +128,10 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     }
     Ok(Figure::graph(
         "elastic",
-        "Backspin of an elastic disc, R/4",
-        "The disc of `mpm` slides, then rolls and vibrates. With the contact of the 2000 paper the rotation presses \
-         new material into the contact region: the disc loses its spin at once, by several times the friction of its \
-         weight.",
+        "Backspin of an elastic disc, cells of R/4",
+        "With `mpm` the disc slides, then rolls with small vibrations. With the contact of the 2000 paper \
+         (`mpm:2000`), rotation presses new material into the contact patch. The spin drops at once, by several \
+         times the friction of the weight.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,
     ))

@@ -10,7 +10,8 @@ const SOURCE: Source = Source::Derived("waves in a line of material (derivation)
 const VELOCITY: ClaimFigure = ClaimFigure {
     name: "velocity",
     title: "Velocity of the right bar",
-    caption: "It grows while the bars are in contact, 2L/c, to the initial velocity of the left bar.",
+    caption: "The velocity grows during contact, which lasts 2L/c, up to the initial velocity of the left bar. L/20 \
+              to L/80 are cell lengths.",
     axes: ["time t (s); L/c = 1 s", "velocity (m/s)"],
     logarithmic: false,
 };
@@ -158,7 +159,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "stress",
         "Stress in the middle of the right bar",
-        "The front is a jump; grid solutions oscillate behind it.",
+        "The exact wave front is a jump. Stresses on a grid oscillate behind it. L/20 and L/40 are cell lengths.",
         [Axis::linear("time t (s); L/c = 1 s"), Axis::linear("stress / (ρcv/2)")],
         stresses,
     )])

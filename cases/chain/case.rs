@@ -16,8 +16,9 @@ const BESSEL: Source = Source::Derived("v_n = V∫(2n/s)J_2n(s)ds over 0 to 2ω�
 
 const CONVERGENCE: ClaimFigure = ClaimFigure {
     name: "convergence",
-    title: "Error against the step",
-    caption: "Root mean square over beads 5, 10, 15, 18, 20 and 22 at ω₀t = 20.",
+    title: "Error over the time step",
+    caption: "Root mean square error of the velocities of beads 5, 10, 15, 18, 20 and 22 at ω₀t = 20. The order of \
+              convergence is 2.",
     axes: ["time step Δt (s)", "rms error / V"],
     logarithmic: true,
 };
@@ -123,16 +124,17 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             snapshot.grains.iter().take(32).map(|grain| (f64::from(grain.id), grain.velocity.x / speed)).collect();
         profiles.push(Curve::new(format!("ω₀t = {:.0}, dem", omega * snapshot.time), Stroke::Markers, points));
     }
-    for (at, snapshot) in done.record.snapshots.iter().skip(1).enumerate() {
+    for snapshot in done.record.snapshots.iter().skip(1) {
         let x = 2.0 * omega * snapshot.time;
         let points = (1..=32).map(|n| (n as f64, bessel::velocity(n, x))).collect();
-        let label = if at == 0 { "exact".to_owned() } else { format!("exact, {:.0}", omega * snapshot.time) };
+        let label = format!("ω₀t = {:.0}, exact", omega * snapshot.time);
         profiles.push(Curve::new(label, Stroke::Dashed, points));
     }
     Ok(vec![Figure::graph(
         "profile",
         "Velocity along the chain",
-        "The front moves one bead per 1/ω₀ and leaves a dispersive tail; markers dem, dashes the Bessel answer.",
+        "The front moves one bead per 1/ω₀ and leaves a dispersive tail. `dem` (markers) is compared with the exact \
+         solution in Bessel functions (dashes).",
         [Axis::linear("bead n"), Axis::linear("velocity v / V")],
         profiles,
     )])

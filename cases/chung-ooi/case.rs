@@ -367,22 +367,24 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "force",
             "Force during the impact of two spheres (test 1)",
-            "R = 10 mm, ±10 m/s, elastic.",
+            "Elastic spheres of radius 10 mm meet at ±10 m/s. Materials: glass and limestone.",
             [Axis::linear("time t (µs)"), Axis::linear("normal force (kN)")],
             impacts,
         ),
         Figure::graph(
             "tangential-restitution",
             "Tangential restitution of an oblique impact (test 4)",
-            "Above 32.5° the impact slides throughout and depends on friction and restitution alone; below, Mindlin's \
-             spring sticks and vibrates: there is no closed form and no claim.",
+            "Above 32.5° the surfaces slide during the whole impact, and the result depends on friction and \
+             restitution alone (dashes). At smaller angles the surfaces stick and the tangential spring oscillates. \
+             No closed form is known there, and no claim is made.",
             [Axis::linear("angle of impact from the normal (°)"), Axis::linear("v_t after / v_t before")],
             restitution,
         ),
         Figure::graph(
             "spin",
             "Spin after an oblique impact (test 4)",
-            "The same runs.",
+            "Spin after the impact, from the runs of the previous figure. The dashed curve holds if the surfaces \
+             slide during the whole impact.",
             [Axis::linear("angle of impact from the normal (°)"), Axis::linear("spin ω (rad/s)")],
             spin,
         ),

@@ -110,20 +110,22 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     plane.push(Curve::new("slides throughout", Stroke::Dashed, line(7.0, 13.4, |before| before - 7.0)));
     balls.push(Curve::new("slides throughout", Stroke::Dashed, line(2.1, 6.0, |before| (before - 2.1) / 0.5)));
     let caption =
-        "If the surfaces stick, Mindlin's spring vibrates: there is no closed form, and the only claim is momentum.";
+        "Slip velocity s of the surfaces after the impact over the value before it, both divided by the normal \
+         velocity v_n. The dashed line holds if the surfaces slide during the whole impact. If they stick, the \
+         tangential spring oscillates. No closed form is known there, and only momentum is checked.";
     Ok(vec![
         Figure::graph(
             "recoil-elastic",
-            "Slide of the surfaces after an oblique elastic impact (test 5)",
+            "Slip of the surfaces after an oblique elastic impact (test 5)",
             caption,
-            [Axis::linear("s / (μ v_n) before"), Axis::linear("s′ / (μ v_n′) after")],
+            [Axis::linear("slip before, s / (μ v_n)"), Axis::linear("slip after, s′ / (μ v_n′)")],
             plane,
         ),
         Figure::graph(
             "recoil-turning",
-            "Slide of the surfaces after an impact of a sphere that turns (tests 6 and 8)",
+            "Slip of the surfaces after an impact of a rotating sphere (tests 6 and 8)",
             caption,
-            [Axis::linear("s / v_n before"), Axis::linear("s′ / v_n′ after")],
+            [Axis::linear("slip before, s / v_n"), Axis::linear("slip after, s′ / v_n′")],
             balls,
         ),
     ])

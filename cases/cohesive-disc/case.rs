@@ -98,7 +98,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "slip",
         "Slip of the surface",
-        "60°, μ = .2: without cohesion the disc would slide; with the threshold cohesion it rolls.",
+        "A disc on a plane at 60° with μ = .2. Without cohesion it slides. Above the threshold of cohesion it rolls \
+         and the slip velocity stays zero.",
         [Axis::linear("time t (s)"), Axis::linear("slip velocity v − ΩR (m/s)")],
         curves,
     )])

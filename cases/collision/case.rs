@@ -347,15 +347,15 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "force",
             "Normal force during the impact, ζ = .2",
-            "The two conventions differ only at the end: the dashpot pulls until the overlap is zero, or the contact \
-             is released earlier.",
+            "The two conventions differ only at the end. Either the dashpot pulls until the overlap is zero, or the \
+             contact ends when the force is zero.",
             [Axis::linear("time t (ms)"), Axis::linear("normal force (N)")],
             forces,
         ),
         Figure::graph(
             "restitution",
             "Error of the coefficient of restitution",
-            "First order in Δt; the scatter comes from the position of the release within a step.",
+            "The error is of first order in Δt. It scatters because the contact ends at some time within a step.",
             [Axis::log("Δt / critical step"), Axis::log("|e − exact|")],
             errors,
         ),

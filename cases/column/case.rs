@@ -11,8 +11,8 @@ const SOURCE: Source = Source::Derived("u_tt = c² u_yy − g on a fixed base (d
 const DISPLACEMENT: ClaimFigure = ClaimFigure {
     name: "displacement",
     title: "Displacement of the centre of mass",
-    caption: "Released at once: a chain of parabolas with the period 4H/c = 10 s; cells along the height in the \
-              legend.",
+    caption: "Gravity acts at once on a column at rest. The exact displacement is a sequence of parabolas with the \
+              period 4H/c = 10 s. H/12 to H/50 are cell lengths.",
     axes: ["time t (s)", "displacement (m)"],
     logarithmic: false,
 };

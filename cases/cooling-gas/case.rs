@@ -188,9 +188,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     curves.push(Curve::new("hard discs, event by event", Stroke::Dashed, line(COOLING_RATE.value)));
     Ok(vec![Figure::graph(
         "cooling",
-        "Haff's law",
-        "1/√T rises on a straight line, T is the energy per disc. The lines begin when the initially equal speeds have \
-         become a Maxwellian distribution.",
+        "Haff's law: cooling of a gas of inelastic discs",
+        "T is the kinetic energy per disc. In Haff's law 1/√T is a straight line in time. The dashed lines begin \
+         when the initial speeds, which are equal, have become a Maxwellian distribution.",
         [Axis::linear("time t (s)"), Axis::linear("1/√T (1/√J)")],
         curves,
     )])

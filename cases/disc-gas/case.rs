@@ -83,7 +83,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "energy",
         "Drift of the total energy",
-        "The same simulated time at three steps. Spikes are impacts in progress; steps are their lasting errors.",
+        "Relative error of the total energy at three time steps, over the same simulated time. Spikes occur during \
+         impacts. Jumps are the lasting error after an impact.",
         [Axis::linear("time t (s)"), Axis::linear("(E − E₀)/E₀ (10⁻³)")],
         curves,
     )])

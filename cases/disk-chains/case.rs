@@ -201,17 +201,18 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         figures.push(Figure::graph(
             variant,
             title,
-            "Normal forces. The arrival is at a tenth of the impedance force.",
-            [Axis::linear("time t c/d, transits of a disc"), Axis::linear("normal force / V√(k m)")],
+            "Normal forces between neighbouring discs, over the impedance force V√(k m). The arrival is the time at \
+             which a force reaches a tenth of the impedance force.",
+            [Axis::linear("time t c/d (1)"), Axis::linear("normal force / V√(k m)")],
             curves,
         ));
         arrivals.push(Curve::new(variant, Stroke::MarkedLine, arrived));
     }
     figures.push(Figure::graph(
         "arrivals",
-        "Arrival of force",
-        "At the contact of every disc with the one before it.",
-        [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
+        "Arrival times of the contact force",
+        "Time at which the force arrives at the contact of each disc with the previous disc.",
+        [Axis::linear("number of the disc"), Axis::linear("time of arrival t c/d (1)")],
         arrivals,
     ));
     figures.push(elastic::figure(runner)?);

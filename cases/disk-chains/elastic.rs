@@ -172,10 +172,11 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     }
     Ok(Figure::graph(
         "stress",
-        "Arrival of stress in elastic discs",
-        "Where the difference of the principal stresses at a disc's centre first exceeds .1 ρcv; 16 cells a diameter. \
-         In the zig-zag, shear also reaches the even discs: with glued contacts their fringes appear late.",
-        [Axis::linear("disc"), Axis::linear("time of arrival t c/d")],
+        "Arrival times of stress in elastic discs",
+        "Time at which the difference of the principal stresses at a disc's centre first exceeds .1 ρcv, with 16 \
+         cells per diameter. In the zig-zag, shear waves also reach the even discs. Fringes appear late there if \
+         contacts are glued.",
+        [Axis::linear("number of the disc"), Axis::linear("time of arrival t c/d (1)")],
         curves,
     ))
 }

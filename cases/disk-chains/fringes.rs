@@ -88,8 +88,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let constant = constant(&line);
     let quantity = Quantity::Fringes(constant);
     let resolution = format!(
-        "{} cells a diameter, c = {:.3} ρcv, bright without stress; the striker is on the left (the paper's on the \
-         right).",
+        "{} cells per diameter, c = {:.3} ρcv. Regions without stress are bright. The striker is on the left; in the \
+         paper it is on the right.",
         2.0 * cells,
         constant / impact_stress(&line)
     );
@@ -107,8 +107,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             &format!("fringes-{variant}"),
             &format!("Fringes: {title}"),
             &format!(
-                "cos((σ₁ − σ₂)/c) at the times of the paper's frames, {resolution} c is fitted once, so that at 7.7 \
-                 the first grey fringe is at the centre of the fourth disc of the line. {seen}"
+                "Fringes cos((σ₁ − σ₂)/c) at the times of the paper's frames. {resolution} The constant c is fitted \
+                 once: at t c/d = 7.7, the first grey fringe is at the centre of the fourth disc of the line. {seen}"
             ),
             pictures(quantity, &shots, PIXELS, None),
         ));
@@ -118,14 +118,14 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let moving = film(
         quantity,
         &[Shot { title: String::new(), frames }],
-        ("time t c/d, transits of a disc", &clock),
+        ("time t c/d (1)", &clock),
         FILM_PIXELS,
         None,
     );
     figures.push(Figure::field(
         "fringes-film",
-        "Fringes run along the line of four",
-        &format!("The line of Fig. 9 from the strike on, {resolution}"),
+        "Fringes along the line of four discs",
+        &format!("Animation of the line of Fig. 9 from the impact on. {resolution}"),
         moving,
     ));
     Ok(figures)

@@ -187,8 +187,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     figures.push(Figure::graph(
         "taken-along",
-        "A bed moved by the drum",
-        "Angular momentum of the grains about the axis of the small drum, which turns from the first step on.",
+        "Angular momentum of the bed in a rotating drum",
+        "Angular momentum of the grains about the axis of the small drum, which rotates from the first step on. Our \
+         solver is compared with LIGGGHTS.",
         [Axis::linear("time (ms)"), Axis::linear("angular momentum (10⁻⁶ kg m²/s)")],
         curves,
     ));

@@ -15,8 +15,9 @@ const SOURCE: Source = Source::Derived("u = A J₁(kr) + B Y₁(kr), no traction
 
 const RADIAL: ClaimFigure = ClaimFigure {
     name: "displacement",
-    title: "Radial displacement of a ring that breathes",
-    caption: "Two periods of the middle of the ring; cells through its thickness in the legend.",
+    title: "Radial displacement of a vibrating ring",
+    caption: "Two periods of the radial vibration of the middle of the ring. The cell length t/4 is a quarter of its \
+              thickness.",
     axes: ["time t (s)", "radial displacement u (m)"],
     logarithmic: false,
 };

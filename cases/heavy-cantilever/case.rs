@@ -10,7 +10,8 @@ const SOURCE: Source = Source::Derived("EI θ'' = −w (L − s) cos θ by shoot
 const SINKING: ClaimFigure = ClaimFigure {
     name: "sinking",
     title: "Displacement of the tip",
-    caption: "Released level, with damping; cells through the thickness in the legend.",
+    caption: "The strip is released at rest in a horizontal position and damped. The legend gives the cell length in \
+              parts of the thickness.",
     axes: ["time t (s)", "displacement (m)"],
     logarithmic: false,
 };

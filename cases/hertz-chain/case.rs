@@ -129,10 +129,10 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let (discrete, long_wave) = (level(COEFFICIENT), level(0.680_24));
     Ok(vec![Figure::graph(
         "speed",
-        "Speed of the solitary wave over F^(1/6)",
-        "Over the force of the wave; steel beads of 20 mm. The speed is divided by (4E*/(2Rρ^(3/2)))^(1/3) F^(1/6), \
-         which gives the coefficient. It is constant for Hertz contacts and has the value of discrete beads, not of a \
-         continuum.",
+        "Coefficient of the speed of the solitary wave",
+        "Steel beads of 20 mm. The coefficient is the speed over (4E*/(2Rρ^(3/2)))^(1/3) F^(1/6), with the peak \
+         force F of the wave. It does not depend on F for Hertz contacts. `dem` is compared with the values of a \
+         discrete chain and of the long-wave limit (dashes).",
         [Axis::log("peak force F (N)"), Axis::linear("coefficient of the speed (1)")],
         vec![
             Curve::new("dem", Stroke::Markers, measured),

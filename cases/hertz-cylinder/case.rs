@@ -239,7 +239,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "pressure",
         "Pressure in the block under a cylinder, 1.25 cells below its surface",
-        "Stress of the material points in the second layer of cells, compared with Hertz contact on a half-space.",
+        "Vertical stress of the material points in the second layer of cells (markers), compared with Hertz's \
+         contact on a half-space at the same depth (dashes). Lengths are over the half-width b of the contact.",
         [Axis::linear("x / b"), Axis::linear("pressure / p₀")],
         curves,
     )])

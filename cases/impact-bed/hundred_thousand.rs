@@ -42,8 +42,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "hundred-thousand",
         "Height of the ball, 100,000 grains",
-        "Height of the ball's centre over time on five of our own beds of 100,000 grains, and the height of two codes \
-         at 30 ms on one bed (Dosta et al. 2024, derived).",
+        "Height of the ball's centre on our five beds of 100,000 grains. The marker is the height of two codes at 30 \
+         ms on one bed (Dosta et al. 2024, derived).",
         [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
         curves,
     ))

@@ -77,9 +77,9 @@ pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figur
         let half = 2.0 * code.hypot(bed * (1.0 + 1.0 / PUBLISHED as f64).sqrt());
         [(time * 1e3, mean - half), (time * 1e3, mean + half)]
     });
-    let mut curves = vec![Curve::new("one bed of one more code, two deviations", Stroke::Bars, band.collect())];
+    let mut curves = vec![Curve::new("2 standard deviations of one bed of another code", Stroke::Bars, band.collect())];
     curves.push(Curve::new(
-        "seven codes, mean",
+        "mean of seven codes",
         Stroke::Dashed,
         within.iter().map(|[time, mean, ..]| (time * 1e3, *mean)).collect(),
     ));
@@ -88,22 +88,22 @@ pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figur
     }
     let scores = scores(done, published).unwrap_or_default();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];
-    let bound = |at: f64| Curve::new(format!("{at:+}"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
+    let bound = |at: f64| Curve::new(format!("{at:+}").replace('-', "−"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
     vec![
         Figure::graph(
             "heights",
             "Height of the ball",
-            "Height of the ball's centre over time on five of our own beds, and the mean of seven codes on ten beds \
-             (Dosta et al. 2024, derived) with two deviations for one bed of another code.",
+            "Height of the ball's centre on our five beds, compared with the mean of seven codes on ten beds (Dosta \
+             et al. 2024, derived). Grey bars are two standard deviations of a single bed of another code.",
             [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
             curves,
         ),
         Figure::graph(
             "score",
-            "Place among the codes",
-            "Difference between the mean of our five beds and the mean of seven codes over time, in deviations \
-             √(s_code² + s_bed² (1/5 + 1/10)).",
-            [Axis::linear("time (ms)"), Axis::linear("deviations")],
+            "Deviation of our height from the mean of seven codes",
+            "Difference of the mean height on our five beds from the mean of seven codes, in standard deviations \
+             √(s_code² + s_bed² (1/5 + 1/10)). The dashed lines are two standard deviations.",
+            [Axis::linear("time (ms)"), Axis::linear("difference (standard deviations)")],
             vec![Curve::new("dem:liggghts", Stroke::MarkedLine, scores), bound(2.0), bound(-2.0)],
         ),
     ]

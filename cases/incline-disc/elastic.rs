@@ -311,9 +311,10 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "elastic",
         "An elastic disc: deviation from its converged displacement",
-        "Start at rest in equilibrium. `mpm` has springs at the contact of the surfaces. The criterion of the 2000 \
-         paper acts at nodes, .6 to .9 of a cell before the surfaces touch, and the disc rolls only with small cells.",
-        [Axis::log("cells a radius"), Axis::log("|x − x_elastic| / x_rigid")],
+        "The disc starts in static equilibrium. `mpm` has springs at the surfaces. The contact of the 2000 paper \
+         (`mpm:2000`) acts at nodes, .6 to .9 of a cell before the surfaces meet. Its disc does not roll until cells \
+         are small.",
+        [Axis::log("cells per radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,
     )])
 }

@@ -98,10 +98,11 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     }
     Ok(Figure::graph(
         "elastic",
-        "An elastic sphere on a rigid plane",
-        "Start at rest in equilibrium. Converged: −.2 % if it rolls, +1.4 % if it slips. `mpm` has springs at the \
-         contact of the surfaces. The criterion of the 2000 paper acts at nodes before the surfaces touch.",
-        [Axis::log("cells a radius"), Axis::linear("x / x_rigid − 1 at 1 s")],
+        "An elastic sphere on a rigid plane: deviation from a rigid sphere",
+        "The sphere starts in static equilibrium. The converged deviation is −.2 % if it rolls and +1.4 % if it \
+         slips. `mpm` has springs at the surfaces. The contact of the 2000 paper (`mpm:2000`) acts at nodes before \
+         the surfaces meet.",
+        [Axis::log("cells per radius"), Axis::linear("x / x_rigid − 1 at 1 s")],
         curves,
     ))
 }

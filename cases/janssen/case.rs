@@ -287,9 +287,9 @@ fn profile(done: &FinishedRun) -> Option<Figure> {
     let law = |up: f64| middle.weight / area * length * (1.0 - (-(height - up) / length).exp());
     let weighs = |up: f64| middle.weight / area * (height - up);
     let measured = heights.iter().zip(vertical).filter(|(up, _)| **up < height).map(|(&up, &stress)| (up, stress));
-    let caption = "Vertical stress in the descending column, averaged over its cross-section and over time, and \
-                   Janssen's law with the mobilised friction at the side and the stress ratio measured at half height. \
-                   The other line is the weight above.";
+    let caption = "Vertical stress in the descending column, averaged over its cross-section and time (markers). \
+                   Janssen's law (dashes) uses the wall friction and the stress ratio measured at half the height. \
+                   The solid line is the weight of the column above.";
     Some(Figure::graph(
         "profile",
         "Vertical stress over the height",

@@ -101,8 +101,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 32.0, 4e-5), (1.0 / 8.0, 64e-5)]));
     Ok(vec![Figure::graph(
         "convergence",
-        "Error of the displacement against the cell",
-        "Root mean square over the material points at t = .5 s.",
+        "Error of the displacement over the cell length",
+        "Root mean square error over the material points at t = .5 s, with three shape functions.",
         [Axis::log("cell length h (m)"), Axis::log("rms error (m)")],
         curves,
     )])

@@ -132,8 +132,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     curves.push(Curve::new("slope 2", Stroke::Dashed, vec![(1.0 / 16.0, 5e-3), (1.0 / 4.0, 8e-2)]));
     Ok(vec![Figure::graph(
         "convergence",
-        "Error of the displacement against the cell",
-        "Root mean square over the material points at t = .5 s, at the largest rotation.",
+        "Error of the displacement over the cell length",
+        "Root mean square error over the material points at t = .5 s, when the rotation is largest, with three shape \
+         functions.",
         [Axis::log("cell length h (m)"), Axis::log("rms error (m)")],
         curves,
     )])

@@ -13,16 +13,17 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "forces",
             "static-1",
             "Contact forces after compression",
-            "κ = 1, at rest; bars through the contacts with the orientation of the force and a width proportional to it, as \
-             in Fig. 5(b). The walls carry shear at the corner discs although they only move towards each other.",
+            "Static state at κ = 1. Each bar passes through a contact along its force, with a width proportional to \
+             the force, as in Fig. 5(b). The walls carry shear at the corner discs although they only move towards \
+             each other.",
         ),
         (
             "forces-distortion",
             DISTORTION[3],
             "Contact forces in distortion",
-            "κ = 1, φ = 30°, after the walls have turned by .35°: one diagonal carries the load and its contacts slip \
-             at the corners and at the centre. The corner discs of the other diagonal have separated from the walls, \
-             as in Fig. 8(b).",
+            "State at κ = 1 and φ = 30° after the walls have rotated by .35°. One diagonal carries the load, and its \
+             contacts slip at the corners and at the centre. The corner discs of the other diagonal have lost \
+             contact with the walls, as in Fig. 8(b).",
         ),
     ] {
         let done = runner.run(&Run::new(variant, "dem:1979", LEVELS[0].resolution))?;
@@ -31,11 +32,12 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         }
     }
     all.push(damping(runner)?);
-    all.push(speed(runner, "speed-stiff", "Speed of loading, k_n = k_s = 1.35e9", ["fast", "slow"], [0.12, 0.04])?);
+    all.push(speed(runner, "speed-stiff", "Effect of the loading speed, k_n = k_s = 1.35×10⁹ \
+                                           N/m", ["fast", "slow"], [0.12, 0.04])?);
     all.push(speed(
         runner,
         "speed-soft",
-        "Speed of loading, k_n = k_s = 1.5e8",
+        "Effect of the loading speed, k_n = k_s = 1.5×10⁸ N/m",
         ["soft-fast", "soft-slow"],
         [0.36, 0.12],
     )?);
@@ -70,9 +72,9 @@ fn damping(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "damping",
         "Effect of damping",
-        "Force between centre and edge after the walls stop, as in Fig. 6: without damping it oscillates about F_eq, with \
-         contact and global damping it settles there.",
-        [Axis::linear("cycles after the walls stop"), Axis::linear("F_n / F_eq, centre-edge")],
+        "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 6. Without \
+         damping it oscillates about its static value F_eq. With contact and global damping it relaxes to F_eq.",
+        [Axis::linear("cycles after the walls stop"), Axis::linear("force between centre and edge F_n / F_eq (1)")],
         vec![
             Curve::new("1: no damping", Stroke::Line, after_stop(&run("fast")?, 40, 160)),
             Curve::new("2: contact and global damping", Stroke::Line, after_stop(&run("damped-fast")?, 40, 160)),
@@ -90,13 +92,14 @@ fn speed(
     let mut curves = Vec::new();
     for ((variant, speed), stop) in variants.into_iter().zip(speeds).zip([40, 120]) {
         let done = runner.run(&Run::new(variant, "dem", FIGURE_STEP))?;
-        curves.push(Curve::new(format!("wall velocity {speed}"), Stroke::Line, after_stop(&done, stop, 160)));
+        curves.push(Curve::new(format!("walls at {speed} m/s"), Stroke::Line, after_stop(&done, stop, 160)));
     }
     Ok(Figure::graph(
         name,
         title,
-        "As in Fig. 7: faster loading leaves a larger oscillation of the same frequency.",
-        [Axis::linear("cycles after the walls stop"), Axis::linear("F_n / F_eq, centre-edge")],
+        "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 7. Faster \
+         loading leaves a larger oscillation about the static value F_eq, with the same frequency.",
+        [Axis::linear("cycles after the walls stop"), Axis::linear("force between centre and edge F_n / F_eq (1)")],
         curves,
     ))
 }
@@ -111,12 +114,13 @@ fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
     let printed = [0.01, 0.26].map(|f| (f, RESIDUAL_AMPLITUDE.value)).to_vec();
     Ok(Figure::graph(
         "residual",
-        "Residual oscillation against the time step",
-        "Amplitude left after 40 cycles of loading at κ = 1, from the exact answer of the cycle (both modes added). The paper \
-         prints .15 F_eq without its step; the curve crosses it several times.",
-        [Axis::linear("Δt / critical step"), Axis::linear("amplitude / F_eq, centre-edge")],
+        "Residual oscillation over the time step",
+        "Amplitude of the oscillation after 40 cycles of loading at κ = 1, from the exact solution of the recurrence \
+         (sum of both modes). The paper prints .15 F_eq without its time step. The curve crosses this value at \
+         several steps.",
+        [Axis::linear("Δt / critical step"), Axis::linear("amplitude / F_eq between centre and edge (1)")],
         vec![
-            Curve::new("exact answer of the cycle", Stroke::Dashed, points),
+            Curve::new("exact solution of the recurrence", Stroke::Dashed, points),
             Curve::new("printed in the paper", Stroke::Dashed, printed),
         ],
     ))
@@ -136,8 +140,9 @@ fn distortion(runner: &Runner, name: &str, angle: &str, variants: [&'static str;
     Ok(Figure::graph(
         name,
         &format!("Distortion at constant volume, φ = {angle}"),
-        "Normal and shear force between centre and edge while the walls turn about their centres, as in Fig. 9.",
-        [Axis::linear("cycles after the walls begin to turn"), Axis::linear("force (10⁸ N)")],
+        "Normal force F_n and shear force F_s between the centre disc and an edge disc while the walls rotate about \
+         their centres, as in Fig. 9.",
+        [Axis::linear("cycles after the walls begin to rotate"), Axis::linear("force (10⁸ N)")],
         curves,
     ))
 }
@@ -160,10 +165,10 @@ fn convergence(runner: &Runner) -> Result<Figure, RunError> {
     curves.push(Curve::new("slope 2", Stroke::Dashed, square));
     Ok(Figure::graph(
         "convergence",
-        "Deviation from the continuous answer",
-        "Worst displacement error over ten periods of the slow mode, in units of the wall travel, in the limit of small \
-         overlaps: at a finite one geometry adds 5 × 10⁻⁵.",
-        [Axis::log("Δt / critical step"), Axis::log("worst error / wall travel")],
+        "Deviation from the exact solution in continuous time",
+        "Largest displacement error over ten periods of the slow mode, over the displacement of the walls, in the \
+         limit of small overlaps. At a finite overlap, geometry adds 5 × 10⁻⁵.",
+        [Axis::log("Δt / critical step"), Axis::log("largest error / wall displacement")],
         curves,
     ))
 }

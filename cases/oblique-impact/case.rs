@@ -183,7 +183,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "velocity",
         "Velocity along the wall",
-        "4 m/s before the impact. After an elastic impact it is 3 m/s; with damping it decreases less.",
+        "The velocity along the wall is 4 m/s before the impact. It is 3 m/s after an elastic impact. A damped \
+         impact takes less of it.",
         [Axis::linear("time t (s)"), Axis::linear("velocity along the wall (m/s)")],
         curves,
     )])

@@ -52,8 +52,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         figures.push(Figure::forces(
             name,
             title,
-            "As in the paper's Figs 10-13: one bar per contact, along its force, with a width proportional to the \
-             force.",
+            "Each bar is along the force of a contact, and its width is proportional to the force, as in Figs. 10 to \
+             13 of the paper.",
             force_plot(snapshot),
         ));
     }
@@ -64,9 +64,9 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "fringes",
             "Photoelastic fringes at stages A and B",
             &format!(
-                "View through crossed polarisers: cos((σ₁ − σ₂)/c) from the elastic stress of every disc under its \
-                 contact forces, bright without stress. c = {constant:.3e} Pa in both, so that three fringes \
-                 correspond to the stress that a fiftieth of the discs exceeds."
+                "Fringes between crossed polarisers: cos((σ₁ − σ₂)/c) from the elastic stress of each disc under its \
+                 contact forces. Regions without stress are bright. Both stages have c = {constant:.3e} Pa, which \
+                 gives three fringes at the stress that 2 % of the discs exceed."
             ),
             // The paper's lengths have no unit, so there is no scale bar in metres.
             Field { pixel: 0.0, ..pictures(Quantity::Fringes(constant), &shots, PIXELS, None) },
@@ -96,9 +96,10 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     ]);
     figures.push(Figure::graph(
         "path",
-        "Wall forces during the motion",
-        "From discs in contact without force to stage A at a constant ratio of strains, then at equal and opposite \
-         strains until F_V has grown by 4.348 %.",
+        "Ratio of the wall forces over the vertical strain",
+        "Horizontal force F_H over vertical force F_V on the walls. Up to stage A, the ratio of the strains is \
+         constant. Then the strains are equal and opposite until F_V has grown by 4.348 %. `dem` is compared with \
+         external solvers and with the experiment (dashes).",
         [Axis::linear("vertical strain (%)"), Axis::linear("F_H/F_V (1)")],
         curves,
     ));

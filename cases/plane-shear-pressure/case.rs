@@ -289,20 +289,21 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     let [of_friction, of_packing] = curves;
     let x = || Axis::log("inertial number I (1)");
-    let caption = "Means over the last three quarters of a run under the pressed lid, all from the same start.";
+    let caption = "Averages over the last three quarters of each run, under a lid with a given pressure. Our solver \
+                   and LAMMPS have the same initial state.";
     Ok(vec![
         Figure::graph(
             "friction",
             "Friction over the inertial number",
             caption,
-            [x(), Axis::linear("σ_xy/σ_yy (1)")],
+            [x(), Axis::linear("friction σ_xy/σ_yy (1)")],
             of_friction,
         ),
         Figure::graph(
             "packing",
             "Packing fraction over the inertial number",
             caption,
-            [x(), Axis::linear("φ (1)")],
+            [x(), Axis::linear("packing fraction φ (1)")],
             of_packing,
         ),
     ])

@@ -139,23 +139,25 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![
         graph(
             "parting",
-            "Where pointwise comparison ends",
-            "Difference of the kinetic energies of two runs, over their largest value. Left of the horizon runs are \
-             compared at each sample, right of it by means over blocks of time.",
-            Axis::log("difference / largest"),
+            "Divergence of pairs of runs",
+            "Difference of the kinetic energies of two runs, over their largest value. Before the predictability \
+             horizon, runs are compared at each time. After it, they are compared by averages over blocks of time.",
+            Axis::log("difference / largest value (1)"),
             parted.chain([line]).collect(),
         ),
         graph(
             "kinetic-energy",
             "Kinetic energy in plane shear",
-            "Walls at −1 and +1 from t = 0. Both programs, and our solver in the convention of each.",
-            Axis::linear("kinetic energy (lj units)"),
+            "The walls move at −1 and +1 from t = 0 on. LAMMPS and LIGGGHTS (markers) are compared with our solver \
+             with the contact convention of each (lines).",
+            Axis::linear("kinetic energy (LJ units)"),
             course(ENERGY),
         ),
         graph(
             "coordination",
             "Coordination number in plane shear",
-            "Mean number of contacts of a grain.",
+            "Mean number of contacts of a grain. LAMMPS and LIGGGHTS (markers) are compared with our solver with the \
+             contact convention of each (lines).",
             Axis::linear("coordination number (1)"),
             course("packing.coordination"),
         ),

@@ -32,9 +32,9 @@ fn displacement(slabs: &[Slab]) -> Figure {
     Figure::graph(
         "displacement",
         "Displacement across the slab",
-        "Fig. 8 of the paper: displacement of grains averaged over columns, relative to the moving side on the right. \
-         The straight line is uniform shear.",
-        [Axis::linear("x over the width (1)"), Axis::linear("displacement over that of the side (1)")],
+        "Displacement of the grains, averaged over columns, over the displacement of the moving side on the right \
+         (Fig. 8 of the paper), at three shears. The dashed line is uniform shear.",
+        [Axis::linear("x / width (1)"), Axis::linear("displacement / displacement of the side (1)")],
         curves,
     )
 }
@@ -55,15 +55,15 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
         graph(
             "turned",
             "Rotation of grains",
-            "Root mean square over the free grains.",
+            "Root mean square rotation of the grains that move freely.",
             "rotation (degrees)",
             &measures::rotation_deg,
         ),
         graph(
             "voids",
             "Large voids",
-            "Empty squares of 40 µm at any position of a grid of 150².",
-            "squares (1)",
+            "Number of empty squares of 40 µm among the positions of a grid of 150 × 150.",
+            "empty squares (1)",
             &|done, snapshot| measures::large_voids(done, snapshot) as f64,
         ),
     ];
@@ -91,13 +91,14 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     all.push(Figure::graph(
         "stress",
         "Stress on the sides",
-        "Shear force on the moving and on the fixed side, and normal force on the fixed side, per length of the side. \
-         The moving side also carries the inertia of the grains that it accelerates. Force chains form and vanish.",
+        "Shear force on the moving side and on the fixed side, and normal force on the fixed side, over the length \
+         of a side. The moving side also feels the inertia of the grains that it accelerates. Fluctuations come from \
+         force chains that form and break.",
         [Axis::linear("mean shear (1)"), Axis::linear("stress (MPa)")],
         vec![
             Curve::new("shear, moving side", Stroke::Line, course("right.force_y", -1.0)),
-            Curve::new("shear, standing side", Stroke::Line, course("left.force_y", 1.0)),
-            Curve::new("normal, standing side", Stroke::Line, course("left.force_x", -1.0)),
+            Curve::new("shear, fixed side", Stroke::Line, course("left.force_y", 1.0)),
+            Curve::new("normal, fixed side", Stroke::Line, course("left.force_x", -1.0)),
         ],
     ));
     let entries =
@@ -109,8 +110,8 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     };
     all.push(Figure::graph(
         "energy",
-        "Where the work goes",
-        "Work of the moving side and its parts: kinetic energy, contact springs, friction.",
+        "Energy budget",
+        "Work of the moving side, and its parts: kinetic energy, energy in contact springs and frictional work.",
         [Axis::linear("mean shear (1)"), Axis::linear("energy (J/m)")],
         entries.map(curve).into(),
     ));
@@ -135,14 +136,14 @@ fn of_chains(done: &FinishedRun) -> [Figure; 3] {
     [
         Figure::graph(
             "chains",
-            "Force chains form and vanish",
-            "Fraction of the grains with more than the mean load, and fraction of the chain links that persist to the \
-             next snapshot, at most 2.5 % of shear later. Grains on springs.",
-            [Axis::linear("mean shear (1)"), Axis::linear("part (1)")],
+            "Fraction of grains in force chains and lifetime of chain links",
+            "Fraction of the grains that carry more than the mean stress, and fraction of the chain links that still \
+             exist at the next snapshot, at most 2.5 % of shear later.",
+            [Axis::linear("mean shear (1)"), Axis::linear("fraction (1)")],
             vec![
                 Curve::new("stressed grains", Stroke::MarkedLine, points(&|chains| chains.stressed)),
                 Curve::new(
-                    "links that are still there",
+                    "surviving links",
                     Stroke::MarkedLine,
                     surviving.filter(|(_, part)| part.is_finite()).collect(),
                 ),
@@ -151,15 +152,15 @@ fn of_chains(done: &FinishedRun) -> [Figure; 3] {
         Figure::graph(
             "chain-length",
             "Length of force chains",
-            "Mean number of grains of a chain.",
-            [Axis::linear("mean shear (1)"), Axis::linear("grains of a chain (1)")],
+            "Mean number of grains in a force chain.",
+            [Axis::linear("mean shear (1)"), Axis::linear("grains per chain (1)")],
             vec![Curve::new("", Stroke::MarkedLine, points(&|chains| mean(&chains.lengths)))],
         ),
         Figure::graph(
             "chain-direction",
             "Direction of force chains",
-            "Mean direction of compression of the grains of chains from the normal of the sides. Shear of the right side upwards \
-             compresses along −45°.",
+            "Mean direction of compression of the grains in force chains, measured from the normal of the sides. \
+             Uniform shear with the right side moving up compresses along −45°.",
             [Axis::linear("mean shear (1)"), Axis::linear("direction from the normal of the sides (°)")],
             vec![Curve::new("", Stroke::MarkedLine, points(&|chains| chains.direction_deg))],
         ),

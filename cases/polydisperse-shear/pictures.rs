@@ -81,10 +81,10 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     let deformable: Vec<&Slab> = slabs.iter().filter(|(_, done)| has_points(done)).collect();
     let mut figures = vec![Figure::field(
         "rotation",
-        "Grains roll",
-        "Rotation since the start. Grains of the two sides do not rotate. In the band at the moving side neighbours \
-         rotate in opposite directions, like gears; this needs friction. The same packing in every row. Grains pushed \
-         out through a side are not shown.",
+        "Rotation of each grain at three shears",
+        "Rotation since the start. Grains of the two sides do not rotate. In the band at the moving side, neighbours \
+         rotate in opposite directions like gears, because of friction. Grains pushed out through a side are not \
+         shown.",
         pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
     )];
     if !deformable.is_empty() {
@@ -101,8 +101,8 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
         figures.push(Figure::field(
             name,
             &format!("Force chains at 63 and 71 % shear, grains {}", slab.0),
-            "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load, and 8 % of \
-             shear later other grains carry it.",
+            "Difference of the principal stresses, as in Fig. 7 of the paper. Few grains carry the load. After a \
+             further 8 % of shear, other grains carry it.",
             pictures(Quantity::StressDifference, &shots(&[slab], &CHAINS), PIXELS, None),
         ));
     }
@@ -113,7 +113,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
             figures.push(Figure::forces(
                 &format!("forces-{method}-{:.0}", 100.0 * shear),
                 &format!("Contact forces at {:.0} % shear, grains {}", 100.0 * shear, slab.0),
-                "Bars along contact forces, with a width proportional to the force.",
+                "Each bar is along the force of a contact, and its width is proportional to the force.",
                 force_plot(snapshot),
             ));
         }
@@ -132,15 +132,17 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         .collect();
     let figure = |name: &str, title: &str, caption: &str, quantity: &str, range: (f64, f64)| {
         let caption = format!(
-            "{caption} Means over squares of 200 µm at 50 % shear, of material points or of grains and their \
-             contacts; white where there are too few."
+            "{caption} Averages over squares of 200 µm at 50 % shear, over material points or over grains and their \
+             contacts. Squares with too few of them are white."
         );
         Figure::field(name, title, &caption, element_picture::pictures(quantity, &shots, CELL, range))
     };
     vec![
-        figure("coarse-pressure", "Pressure", "Chains of force carry it from side to side.", "pressure", PRESSURES),
-        figure("coarse-shear", "Rate of shear", "Where the slab flows.", "shear_rate", SHEAR_RATES),
-        figure("coarse-packing", "Packing fraction", "Where the slab has opened.", "packing_fraction", (0.7, 0.95)),
+        figure("coarse-pressure", "Pressure", "Force chains carry the pressure from side to \
+                                               side.", "pressure", PRESSURES),
+        figure("coarse-shear", "Rate of shear", "The slab flows where the rate is large.", "shear_rate", SHEAR_RATES),
+        figure("coarse-packing", "Packing fraction", "The slab has dilated where the packing fraction is \
+                                                      small.", "packing_fraction", (0.7, 0.95)),
     ]
 }
 
@@ -156,9 +158,9 @@ fn moving(slabs: &[&Slab]) -> Figure {
         .collect();
     Figure::field(
         "film",
-        "The slab in shear",
-        "Grains coloured by rotation. The right side moves up. The slab is periodic: grains that leave at the top \
-         enter at the bottom.",
+        "Rotation of the grains during shear",
+        "Animation of the grains, coloured by rotation. The right side moves up. Grains that leave at the top enter \
+         at the bottom.",
         film(Quantity::Rotation, &shots, ("mean shear", &clock), FILM_PIXELS, Some(TURNED)),
     )
 }

@@ -91,8 +91,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "deviation",
         "Deviation from the converged elastic disc",
-        "The same contacts as with a rigid plane, but between two deformable bodies.",
-        [Axis::log("cells a radius"), Axis::log("|x − x_elastic| / x_rigid")],
+        "Error of the displacement over the resolution. The contacts are those of a disc on a rigid plane, here \
+         between two deformable bodies.",
+        [Axis::log("cells per radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,
     )])
 }

@@ -175,7 +175,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "velocity",
         "Rolling to rest",
-        "μ_r = .05 on a flat plane: a sphere decelerates at (5/7) μ_r g, a disc at (2/3) μ_r g.",
+        "A sphere decelerates at (5/7) μ_r g and a disc at (2/3) μ_r g on a flat plane, with the rolling friction \
+         μ_r = .05.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
         curves,
     )])

@@ -127,7 +127,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             let values = done.series().column(column).unwrap_or_default().iter().map(|value| value * factor(done));
             Curve::new(*label, *stroke, done.series().time.iter().copied().zip(values).collect())
         };
-        let caption = "An external program and our solver in its convention, from the same start.";
+        let caption = "External solvers (markers) are compared with our solver with their contact convention (line), \
+                       from the same initial state.";
         let axes = [Axis::linear("time t (s)"), Axis::linear(y)];
         Figure::graph(name, title, caption, axes, runs.iter().map(curve).collect())
     };
@@ -135,7 +136,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         figure("floor", "Load on the floor", "force on the floor / weight (1)", "floor.force_z", |done| {
             -1.0 / weight(done)
         }),
-        figure("coordination", "Coordination number", "spheres touched (1)", "packing.coordination", |_| 1.0),
+        figure("coordination", "Coordination number", "contacts per sphere (1)", "packing.coordination", |_| 1.0),
         figure("height", "Height of the centre of mass", "height (m)", "all.gravitational_energy", |done| {
             1.0 / weight(done)
         }),

@@ -193,10 +193,10 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     Ok(vec![Figure::graph(
         "left",
-        "Grains in the silo",
-        "Remaining grains over the time since the plug was removed; for 40,000 grains, with 60,000 added. Large \
-         orifice: mean of LIGGGHTS and MUSEN (derived from repeated runs, Dosta et al. 2024). Small orifice: a line \
-         with the rate of MUSEN from .5 to 2 s.",
+        "Number of grains in the silo",
+        "Number of grains in the silo since the plug was removed. For the large orifice, markers are the mean of \
+         LIGGGHTS and MUSEN (derived from repeated runs of Dosta et al. 2024). For the small orifice, the dashed \
+         line has the rate of MUSEN from .5 to 2 s. The curve of 40,000 spheres is shifted up by 60,000.",
         [Axis::linear("time of flow (s)"), Axis::linear("grains left (thousands)")],
         curves,
     )])

@@ -132,9 +132,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     Ok(vec![Figure::graph(
         "way",
-        "A sphere on a deformable plane at 45°, R/2: displacement minus that of a rigid sphere",
-        "At two cells a radius `mpm` is a few per cent slow; with the 2000 paper's contact the sphere hardly rolls. \
-         The total displacement is 2.5 m.",
+        "A sphere on a deformable plane at 45°: displacement minus that of a rigid sphere",
+        "At two cells per radius, `mpm` is slow by a few per cent. With the contact of the 2000 paper (`mpm:2000`), \
+         the sphere hardly rolls. The final displacement is 2.5 m.",
         [Axis::linear("time t (s)"), Axis::linear("x − x_rigid (m)")],
         curves,
     )])

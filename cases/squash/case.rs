@@ -15,8 +15,9 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 const FORCES: ClaimFigure = ClaimFigure {
     name: "forces",
     title: "Forces at the walls and between the discs",
-    caption: "Each cycle of the solver against the closed solution of the paper's recurrence. The wall force comes \
-              first; the force between the discs follows after the disturbance has crossed them.",
+    caption: "Normal force at contact A (left wall and disc) and at contact B (between the discs), in each cycle. \
+              The solver is compared with the closed solution of the paper's recurrence. The force at the wall grows \
+              first. The disturbance reaches contact B later.",
     axes: ["time t (s); a cycle is Δt", "normal force (N)"],
     logarithmic: false,
 };

@@ -49,9 +49,9 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     }
     Ok(Figure::graph(
         "elastic",
-        "Force at the wall: elastic discs, and rigid ones on springs",
-        "The walls move in by d = .01 R and stop. A spring of k_n = 3F/2d gives the force at rest, with F the force of \
-         elastic discs in closed form. Elastic discs vibrate faster.",
+        "Force at the wall: elastic discs and rigid discs on springs",
+        "The walls move inwards by d = .01 R and stop. The spring k_n = 3F/2d gives the static force F of elastic \
+         discs, which is known in closed form. Elastic discs vibrate faster than rigid discs on springs.",
         [Axis::linear("time t (s)"), Axis::linear("force / F")],
         curves,
     ))

@@ -159,9 +159,10 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     curves.push(Curve::new("exact", Stroke::Dashed, vec![(2.0, 1.0), (4.0, 1.0)]));
     Ok(vec![Figure::graph(
         "force",
-        "Contact force over the exact one",
-        "Nodal contact stops whole cells and is too stiff; springs at the surface are as soft as .4 cells of material.",
-        [Axis::linear("cells a radius"), Axis::linear("force / exact force")],
+        "Contact force over the exact force",
+        "Nodal contact (`mpm:gap`) stops whole cells, so it is too stiff. Springs at the surface (`mpm`) are as soft \
+         as .4 cells of material.",
+        [Axis::linear("cells per radius"), Axis::linear("force / exact force")],
         curves,
     )])
 }

@@ -267,15 +267,16 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![
         Figure::graph(
             "energy",
-            "Total energy through a head-on impact at .01 c",
-            "8 cells a radius. Kinetic, elastic and spring energy together.",
+            "Total energy during a head-on impact at .01 c",
+            "Sum of kinetic, elastic and spring energy with three contact models, at 8 cells per radius.",
             [Axis::linear("time t (s)"), Axis::linear("energy / energy at the start")],
             energies,
         ),
         Figure::graph(
             "velocity",
             "Velocity of the left disc",
-            "Nodal contact acts before the surfaces touch.",
+            "Velocity with three contact models. The nodal contact of the 2000 paper (`mpm:2000`) acts before the \
+             surfaces meet.",
             [Axis::linear("time t (s)"), Axis::linear("velocity v / v₀")],
             speeds,
         ),

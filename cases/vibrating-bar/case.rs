@@ -23,7 +23,7 @@ const DISPERSED: Source =
 const VELOCITY: ClaimFigure = ClaimFigure {
     name: "velocity",
     title: "Mean velocity of the bar",
-    caption: "Two periods; cells along the length in the legend.",
+    caption: "Two periods of the first mode. L/12 to L/50 are cell lengths.",
     axes: ["time t (s)", "mean velocity (m/s)"],
     logarithmic: false,
 };
@@ -31,14 +31,14 @@ const VELOCITY: ClaimFigure = ClaimFigure {
 const VISCOUS_VELOCITY: ClaimFigure = ClaimFigure {
     name: "viscous",
     title: "Mean velocity of a bar of viscous material",
-    caption: "Two periods, in which the bar loses six tenths of its amplitude.",
+    caption: "Two periods of the first mode, during which 60 % of the amplitude is lost. L/25 is the cell length.",
     ..VELOCITY
 };
 
 const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     name: "stretched",
-    title: "Mean velocity of a stretched bar, released at one end",
-    caption: "One period: a front runs to the fixed end and back, twice. Cells along the length in the legend.",
+    title: "Mean velocity of a stretched bar after release at one end",
+    caption: "One period. A wave front travels to the fixed end and back, twice. L/12 to L/50 are cell lengths.",
     ..VELOCITY
 };
 

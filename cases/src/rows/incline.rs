@@ -78,9 +78,9 @@ const RIGID: Source =
 
 const COMPLIANCE: ClaimFigure = ClaimFigure {
     name: "compliance",
-    title: "Error relative to the rigid solution is due to contact compliance",
-    caption: "Sticking grains: ∝ overlap/R. Slipping grains: ∝ √(overlap/R), because the spring must first be \
-              stretched.",
+    title: "Deviation from a rigid grain over the contact overlap",
+    caption: "The deviation of rolling grains is proportional to overlap/R. The deviation of slipping grains is \
+              proportional to √(overlap/R), because the tangential spring must first be stretched.",
     axes: ["static overlap / R", "|x − x_rigid| / x_rigid at 1 s"],
     logarithmic: true,
 };
@@ -405,14 +405,14 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
         Figure::graph(
             "displacement",
             "Displacement down the slope",
-            "dem:lammps at overlap/R = 1e-3 (markers) and the rigid solution (dashes).",
+            "`dem:lammps` at overlap/R = 1e-3 (markers) is compared with the exact solution of a rigid grain (dashes).",
             [Axis::linear("time t (s)"), Axis::linear("displacement x (m)")],
             displacement,
         ),
         Figure::graph(
             "spin",
-            "Spin",
-            "The same runs. A grain that only slides would have no rotation.",
+            "Spin on the slope",
+            "Spin in the runs of the previous figure. A grain that slides without friction has none.",
             [Axis::linear("time t (s)"), Axis::linear("spin Ω (rad/s)")],
             spin,
         ),

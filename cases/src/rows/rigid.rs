@@ -266,10 +266,10 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     });
     Ok(Figure::graph(
         "rigid-substeps",
-        "`rigid`: error relative to the rigid solution",
-        "A rigid-body engine has no compliance, only the error of its time step. Positions of symplectic Euler have an \
-         error of h/t (dashed), with h a quarter of a substep. At larger errors, rotation lifts contact points off. \
-         Steps in which a grain rotates too far have no point.",
+        "rigid: error over the number of substeps",
+        "A rigid-body engine has no contact compliance, so its error comes from the time step. Symplectic Euler has \
+         a position error of h/t (dashed), where h is a quarter of a substep. Larger errors arise when rotation \
+         lifts contact points off the plane. A run whose grain rotates too far in a step has no point.",
         [Axis::log("substeps in 1/60 s"), Axis::log("|x − x_rigid| / x_rigid at 1 s")],
         curves,
     ))

@@ -20,8 +20,9 @@ use grainbench_scene::scene::{Duration, Sampling};
 
 const SPRINGS: ClaimFigure = ClaimFigure {
     name: "set-down",
-    title: "Set down with 1.5 times the static overlap",
-    caption: "A contact that neither opens nor slips shows its springs and dashpots.",
+    title: "Overlap of a grain released at 1.5 times its static overlap",
+    caption: "The contact neither opens nor slips, so its springs and dashpots are a damped oscillator with an exact \
+              solution.",
     axes: ["time t (s)", "overlap δ (m)"],
     logarithmic: false,
 };

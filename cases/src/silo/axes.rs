@@ -39,12 +39,12 @@ fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
         [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
     Some(vec![
         Lines {
-            label: "smallest and middle axis of T, length √|principal value of its deviator|".to_owned(),
+            label: "stress T: minor and intermediate principal axes; length ∝ √|deviator|".to_owned(),
             lines: lines(&[smallest, middle].concat(), scale, WIDTHS[0]),
         },
-        Lines { label: "largest axis of T".to_owned(), lines: lines(&largest, scale, WIDTHS[1]) },
+        Lines { label: "stress T: major principal axis".to_owned(), lines: lines(&largest, scale, WIDTHS[1]) },
         Lines {
-            label: "smallest and largest axis of D, where |D₀| is above .02/τ".to_owned(),
+            label: "rate of deformation D: principal axes, if |D₀| exceeds .02/τ".to_owned(),
             lines: lines(&rates.concat(), RATE, WIDTHS[2]),
         },
     ])
@@ -61,17 +61,17 @@ fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<F
     let top = places.iter().map(|row| row[1]).fold(0.0, f64::max) + 2.5;
     let seen = [[domain.low.x, 0.0], [domain.high.x, top]];
     let apart = ensemble::angles(done, flow, false, "largest").map(|angles| ensemble::mean(&angles));
-    let apart = apart.map_or_else(|_| String::new(), |mean| format!("; largest axes {mean:.1}° apart from 6 τ on"));
+    let apart = apart.map_or_else(|_| String::new(), |mean| format!("; major axes {mean:.1}° apart after 6 τ"));
     let title = format!("t = {time} τ, blocks of 5 d{apart}");
     let sheet = Sheet { title, seen, marked: Some(part(flow)), kinds: kinds.to_vec() };
-    let caption = "Axes of the deviatoric stress of blocks of 5 d by 8 d by 5 d at one moment, projected on the plane, \
-                   and of the rate of deformation if the block flows (figure 4 of the paper). The paper finds both \
-                   within about 12° of one another wherever there is appreciable deformation, smooth stresses, and \
-                   none of the shocks of limit-state plasticity. The black frame is the region of the next figure. The \
-                   paper does not state the position of its region.";
+    let caption = "Principal axes of the stress in blocks of 5 d by 8 d by 5 d at one time, projected on the plane, \
+                   and of the rate of deformation in blocks that flow (figure 4 of the paper). The paper finds an \
+                   angle of at most about 12° between them where the deformation is appreciable, smooth stresses, \
+                   and no shocks of limit-state plasticity. The frame is the part shown in the next figure. The \
+                   paper does not state the position of its own part.";
     Some(Figure::lines(
         "axes",
-        "Axes of stress and of deformation rate",
+        "Principal axes of stress and of rate of deformation",
         caption,
         LinePlot { axes: labels(), to_scale: true, sheets: vec![sheet] },
     ))
@@ -87,8 +87,7 @@ fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Optio
     let mean = forces.iter().map(|row| row[4]).sum::<f64>() / forces.len() as f64;
     let line = |row: &[f64; 5]| ([row[0], row[1]], [row[2], row[3]], row[4] / largest);
     let label = format!(
-        "force between two grains, width proportional to the force; {} forces, mean {mean:.1}, largest {largest:.0} m \
-         g",
+        "contact force, width ∝ force; {} contacts, mean {mean:.1} m g, largest {largest:.0} m g",
         forces.len()
     );
     let seen = part(flow);
@@ -97,14 +96,14 @@ fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Optio
     let of_forces = [of_forces, vec![Lines { label, lines: forces.iter().map(line).collect() }]].concat();
     let sheets = vec![
         Sheet { title: format!("axes, t = {time} τ"), seen, marked: None, kinds },
-        Sheet { title: "single forces, all along the period of 8 d".to_owned(), seen, marked: None, kinds: of_forces },
+        Sheet { title: "contact forces over the whole period of 8 d".to_owned(), seen, marked: None, kinds: of_forces },
     ];
-    let caption = "Left: the framed region of the figure above. Right: its contact forces, drawn from centre to \
-                   centre. Neighbouring forces differ by more than their mean and form chains without visible \
-                   elements; the axes of the blocks are smooth nevertheless (figure 5 of the paper).";
+    let caption = "Left: the part framed in the previous figure. Right: its contact forces, drawn between the \
+                   centres of grains (figure 5 of the paper). Neighbouring forces differ by more than their mean, \
+                   but the axes of the blocks change smoothly.";
     Some(Figure::lines(
         "forces",
-        "Axes of the blocks and the single forces",
+        "Principal axes and single contact forces",
         caption,
         LinePlot { axes: labels(), to_scale: true, sheets },
     ))

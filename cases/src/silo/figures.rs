@@ -75,9 +75,9 @@ fn film(done: &FinishedRun) -> Option<Figure> {
     }
     let field =
         Sheet { grid, units: Units { length: "d", time: "τ" }, clock: "time t (τ)".to_owned(), times, shown }.film()?;
-    let caption = "Speed, sin φ, packing fraction and shear rate of elements of 2.5 d; lengths in d, rates in 1/τ, \
-                   speeds in d/τ. Cells with fewer than eight grains and cells at the surface are blank. The paper \
-                   finds a funnel over the slit, a plug with little shear above it, and sin φ between .2 and .6.";
+    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d. Elements at the surface \
+                   and elements with fewer than eight grains are blank. The paper finds a funnel over the slit, a \
+                   plug with little shear above it, and sin φ between .2 and .6.";
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
@@ -98,9 +98,9 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
     // The fit is a straight line on linear axes, and a curve over the logarithm of |I₀|.
     let line = (0..=40).map(|at| 5e-4 * 24_f64.powf(f64::from(at) / 40.0)).map(|rate| (rate, 0.635 - rate / 0.123));
-    let caption = "Each small point is an element at one moment of the steady flow. The mean packing fraction \
-                   decreases along one curve, which is not a straight line. The paper's fit |I₀| = .123 (.635 − φ) \
-                   holds for slow elements only.";
+    let caption = "Each small circle is an element at one time of the steady flow. The mean packing fraction of bins \
+                   of |I₀| is compared with a prototype. The dashed curve is the paper's fit |I₀| = .123 (.635 − φ), \
+                   which applies to slow elements only.";
     Some(Figure::graph(
         "inertia",
         "Packing fraction over the inertial number",
@@ -132,17 +132,18 @@ fn along_tracers(done: &FinishedRun) -> Option<Figure> {
         last.extend(course.last());
         cloud.extend(course);
     }
-    let caption = "Tracers begin on the right, reach their largest sin φ while they are still dense, and then dilate \
-                   to the left. The paper finds .6 before any dilation; at a tenth of its size it is .5 to .6.";
+    let caption = "Tracers start at a large packing fraction. They reach their largest sin φ before they dilate, and \
+                   then move to the left. The paper finds a largest sin φ of .6 before dilation. At a tenth of its \
+                   size it is .5 to .6.";
     Some(Figure::graph(
         "tracers",
-        "sin φ over the packing fraction along tracers",
+        "sin φ over the packing fraction of tracer elements",
         caption,
         [Axis::linear("packing fraction φ (1)"), Axis::linear("sin φ of friction (1)")],
         vec![
-            Curve::new("at the start", Stroke::Markers, starts),
-            Curve::new("on their way", Stroke::Beside, thinned(cloud, CLOUD)),
-            Curve::new("at the end", Stroke::Markers, last),
+            Curve::new("start", Stroke::Markers, starts),
+            Curve::new("in between", Stroke::Beside, thinned(cloud, CLOUD)),
+            Curve::new("end", Stroke::Markers, last),
         ],
     ))
 }
@@ -153,8 +154,8 @@ fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let means = over_strain(done, &STRAIN).ok()?;
     let means =
         STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
-    let caption = "The packing fraction of labelled boxes of 5 d over their Hencky strain |E|. It decreases to a \
-                   plateau at |E| = .4 in every flow. The paper finds the same collapse.";
+    let caption = "Packing fraction of tracer elements of 5 d over their Hencky strain |E|. In the paper, the \
+                   packing fraction of all flows reaches one plateau at about |E| = .4.";
     Some(Figure::graph(
         "strain",
         "Packing fraction over strain",

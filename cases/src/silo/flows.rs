@@ -35,11 +35,11 @@ fn over_rate(flows: &Flows) -> Figure {
         curves.push(Curve::new(format!("{label}: elements"), Stroke::Beside, thinned(cloud, 250)));
     }
     let line = [0.0, 0.012].map(|rate: f64| (rate, 0.635 - rate / 0.123)).to_vec();
-    curves.push(Curve::new("|I₀| = .123 (.635 − φ), the paper's fit", Stroke::Dashed, line));
-    let caption = "Small points are elements at one moment of the steady flow, large points are means of bins (figure \
-                   6 of the paper, which finds one curve and fits the dashed line). The draining silos lie on one \
-                   curve, which is not a straight line. The pushed bed is looser at the same |I₀| in LAMMPS and in our \
-                   solver, because it has not reached steady shear.";
+    curves.push(Curve::new("fit of the paper", Stroke::Dashed, line));
+    let caption = "Small open points are elements at one time of the steady flow. Large filled points are means of \
+                   bins. Figure 6 of the paper shows one curve and fits the dashed line. The draining silos lie on \
+                   one curve, which is not straight. The pushed bed is looser at the same |I₀|, both in LAMMPS and \
+                   in our solver, because it has not reached steady shear.";
     let axes = [Axis::linear("inertial number |I₀| (1)"), Axis::linear("packing fraction φ (1)")];
     Figure::graph("inertia-of-flows", "Packing fraction over the inertial number, three flows", caption, axes, curves)
 }
@@ -85,12 +85,12 @@ fn along_tracers(flows: &Flows) -> Figure {
         .filter_map(|(label, done)| Some(format!("{:.2} ({label})", ensemble::onset(done).ok()?)))
         .collect();
     let caption = format!(
-        "Each line is the path of an element (figure 7 of the paper). The paths begin on the right. Failing elements \
-         first rise to their largest sin φ while they are dense, and then move to the left. The paper finds about .6 \
-         before any dilation. Here the median of the largest instantaneous sin φ before φ has decreased by .02 is {}.",
+        "Each line is the path of a tracer element (figure 7 of the paper). Paths start at the right. Elements that \
+         fail first reach their largest sin φ and then dilate to the left. The paper finds about .6 before dilation. \
+         Here the median of the largest sin φ, before the packing fraction has dropped by .02, is {}.",
         medians.join(", ")
     );
-    Figure::lines("tracers-of-flows", "sin φ over the packing fraction along tracers, three flows", &caption, plot)
+    Figure::lines("tracers-of-flows", "sin φ over the packing fraction of tracer elements, three flows", &caption, plot)
 }
 
 /// Returns the figure of φ over |E| (figure 8).
@@ -112,8 +112,8 @@ fn over_strain(flows: &Flows) -> Figure {
     let seen = [[strain[0], packing[0]], [strain[1], packing[1]]];
     let plot = traces(flows, ["strain", "packing_fraction"], axes, seen, means.into_iter().collect());
     let caption = format!(
-        "Each line is the path of an element (figure 8 of the paper, which finds a sharp collapse of its simulations). \
-         The paths begin with the packing fraction of their deposits and reach one plateau, with the values {} beyond |E| = .4.",
+        "Each line is the path of a tracer element (figure 8 of the paper, which shows a sharp collapse). Paths \
+         start at the packing fraction of the deposit and reach a plateau. Its values beyond |E| = .4 are {}.",
         plateau.join(", ")
     );
     Figure::lines("strain-of-flows", "Packing fraction over strain, three flows", &caption, plot)
