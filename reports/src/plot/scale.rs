@@ -93,8 +93,12 @@ impl Scale {
     #[must_use]
     pub fn ticks(&self) -> Vec<Tick> {
         if !self.levels.is_empty() {
-            let tick = |&value: &f64| Tick { value, label: Some(significant(value, 3)) };
-            return self.levels.iter().map(tick).collect();
+            let plain: Vec<String> = self.levels.iter().map(|level| significant(*level, 3)).collect();
+            // If one label needs a power of ten, all labels have one, so that they are easy to compare.
+            let is_plain = !plain.iter().any(|label| label.contains('×'));
+            let label = |value: f64, plain: String| if is_plain { plain } else { with_power(value) };
+            let tick = |(&value, plain): (&f64, String)| Tick { value, label: Some(label(value, plain)) };
+            return self.levels.iter().zip(plain).map(tick).collect();
         }
         if self.logarithmic { self.logarithmic_ticks() } else { self.linear_ticks() }
     }
@@ -111,12 +115,19 @@ impl Scale {
     fn linear_ticks(&self) -> Vec<Tick> {
         let rough = (self.high - self.low) / self.room;
         let decade = 10_f64.powf(rough.log10().floor());
-        let multiple = [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .find(|multiple| multiple * decade >= rough * (1.0 - 1e-9))
-            .unwrap_or(10.0);
-        let step = multiple * decade;
-        let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
+        let bounds = |step: f64| ((self.low / step).ceil(), (self.high / step).floor());
+        let fits = |multiple: f64| multiple * decade >= rough * (1.0 - 1e-9);
+        // An axis with fewer numbers cannot be read, so a step that leaves fewer is replaced by a smaller one.
+        let least = self.room.min(3.0);
+        let enough = |multiple: f64| {
+            let (first, last) = bounds(multiple * decade);
+            last - first + 1.0 >= least
+        };
+        const FINER: [f64; 8] = [10.0, 5.0, 4.0, 2.0, 1.0, 0.5, 0.4, 0.2];
+        let widest = [1.0, 2.0, 5.0, 10.0].into_iter().find(|multiple| fits(*multiple)).unwrap_or(10.0);
+        let multiple = FINER.into_iter().find(|multiple| *multiple <= widest && enough(*multiple));
+        let step = multiple.unwrap_or(widest) * decade;
+        let (first, last) = bounds(step);
         let largest = self.low.abs().max(self.high.abs());
         // All labels of an axis have the same exponent, so that they are easy to compare.
         let exponent = if !(1e-2..1e5).contains(&largest) { largest.log10().floor() as i32 } else { 0 };
@@ -145,17 +156,25 @@ impl Scale {
         let decades = self.high - self.low;
         let stride = (decades / self.room).ceil().max(1.0) as i32;
         let whole = self.high.floor() - self.low.ceil() + 1.0;
+        // The number of labels at 1, 2 and 5 within the axis.
+        let is_inside = |place: f64| place >= self.low - 1e-9 && place <= self.high + 1e-9;
+        let usual = (first..=last)
+            .flat_map(|decade| [1.0_f64, 2.0, 5.0].map(|multiple| f64::from(decade) + multiple.log10()))
+            .filter(|place| is_inside(*place))
+            .count();
         let mut ticks = Vec::new();
         for decade in first..=last {
             for multiple in 1..10 {
                 let place = f64::from(decade) + f64::from(multiple).log10();
-                if place < self.low - 1e-9 || place > self.high + 1e-9 {
+                if !is_inside(place) {
                     continue;
                 }
                 let label = match multiple {
                     1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
                     // A short axis has too few powers of ten, so it also gets labels at 2 and 5.
                     2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
+                    // The shortest axes get labels at all multiples.
+                    2..=9 if usual < 2 => Some(format!("{multiple}×{}", power_of_ten(decade))),
                     _ => None,
                 };
                 // Too many ticks would make the grid a grey area.
@@ -167,6 +186,16 @@ impl Scale {
         }
         ticks
     }
+}
+
+/// Returns a positive value as a mantissa and a power of ten. A mantissa of 1 is left out.
+fn with_power(value: f64) -> String {
+    if value <= 0.0 {
+        return significant(value, 3);
+    }
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    let mantissa = significant(value / 10_f64.powi(exponent), 3);
+    if mantissa == "1" { power_of_ten(exponent) } else { format!("{mantissa}×{}", power_of_ten(exponent)) }
 }
 
 impl Ranged for Scale {
@@ -213,6 +242,25 @@ mod tests {
         assert_eq!(labels(&scale), ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"]);
         let short = Scale::fit([2e-3, 8e-3].into_iter(), true, 0.05, 8);
         assert_eq!(labels(&short), ["2×10⁻³", "5×10⁻³"]);
+        let shortest = Scale::fit([2.2e-3, 8.8e-3].into_iter(), true, 0.0, 8);
+        assert_eq!(labels(&shortest), ["3×10⁻³", "4×10⁻³", "5×10⁻³", "6×10⁻³", "7×10⁻³", "8×10⁻³"]);
+    }
+
+    #[test]
+    fn labels_of_levels_are_all_powers_or_none_is() {
+        let fit = |levels: &[f64]| labels(&Scale::fit(levels.iter().copied(), true, 0.05, 8).at_levels(levels));
+        assert_eq!(fit(&[1e-5, 3e-4, 1e-3]), ["10⁻⁵", "3×10⁻⁴", "10⁻³"]);
+        assert_eq!(fit(&[0.025, 0.05, 0.1]), ["0.025", "0.05", "0.1"]);
+    }
+
+    #[test]
+    fn an_axis_has_at_least_three_numbers_if_they_fit() {
+        for (low, high) in [(-1.9, 1.9), (-2.2, 1.9), (0.0, 0.19), (-0.049, 0.08), (3.1, 9.9)] {
+            let scale = Scale::fit([low, high].into_iter(), false, 0.0, 3);
+            assert!((3..=6).contains(&labels(&scale).len()), "{low} {high} {:?}", labels(&scale));
+        }
+        let narrow = Scale::fit([-1.9, 1.9].into_iter(), false, 0.0, 2);
+        assert_eq!(labels(&narrow), ["−1", "0", "1"]);
     }
 
     #[test]
