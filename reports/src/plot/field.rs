@@ -27,8 +27,10 @@ const FOOT: f64 = 46.0;
 const BARS: f64 = 72.0;
 /// Height below a film, for its time axis.
 const CLOCK: f64 = 50.0;
-/// Distance between the panels of a film in its image (pixels). The bar for its time has the same height.
+/// Largest distance between the panels of a film in its image (pixels). The bar for its time has the same height.
 const SEAM: usize = 8;
+/// Smallest width of the image of a film over that distance, so that coarse pixels do not make a thick bar.
+const SEAMS: usize = 64;
 /// Duration of a frame, and of the last frame (0.1 s).
 const PACE: u16 = 1;
 const REST: u16 = 12;
@@ -46,23 +48,28 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
     let each_its_own = field.panels.iter().any(|panel| panel.own.is_some());
     let room = WIDTH - 2.0 * MARGIN - if each_its_own { 0.0 } else { BAR };
-    let widest = (room - GAP * (across - 1) as f64) / across as f64;
+    // In a film, the distance between panels is scaled with the image.
+    let seam = seam(size, count) as f64;
+    let widest = if is_film {
+        room / (f64::from(size.0) * across as f64 + seam * (across - 1) as f64) * f64::from(size.0)
+    } else {
+        (room - GAP * (across - 1) as f64) / across as f64
+    };
     let scale =
         (widest / f64::from(size.0)).min(TALLEST.max(TALLEST_ROW * rows as f64) / rows as f64 / f64::from(size.1));
     let panel = (f64::from(size.0) * scale, f64::from(size.1) * scale);
-    // In a film, the distance between panels is scaled with the image.
-    let gap = if is_film { SEAM as f64 * scale } else { GAP };
+    let gap = if is_film { seam * scale } else { GAP };
     let row = head + panel.1 + if rows > 1 { GAP } else { 0.0 };
     let corner = |at: usize| (MARGIN + (panel.0 + gap) * (at % across) as f64, TOP + row * (at / across) as f64 + head);
     let bottom = TOP + row * rows as f64;
     let full = panel.0 * across as f64 + gap * (across - 1) as f64;
     let images = if is_film {
-        let strip = 2.0 * SEAM as f64 * scale;
+        let strip = 2.0 * seam * scale;
         vec![(corner(0), (full, panel.1 + strip), still(field)?)]
     } else {
         stills(field)?.into_iter().enumerate().map(|(at, still)| (corner(at), panel, still)).collect()
     };
-    let foot = bottom + if is_film { 2.0 * SEAM as f64 * scale } else { 0.0 };
+    let foot = bottom + if is_film { 2.0 * seam * scale } else { 0.0 };
     let bars = foot + if is_film { CLOCK } else { 0.0 };
     let height = bars + if each_its_own { BARS } else { 0.0 } + FOOT;
     Ok(html! {
@@ -101,6 +108,11 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     .into_string())
 }
 
+/// Returns the distance between the panels of a film (pixels).
+fn seam((width, _): (u32, u32), count: usize) -> usize {
+    (width as usize * count / SEAMS).clamp(1, SEAM)
+}
+
 /// Frames of a film. The panels are side by side, with a bar for the time below them.
 pub(crate) struct Frames {
     /// Number of pixels across.
@@ -115,12 +127,13 @@ pub(crate) struct Frames {
 pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     let (width, height) = check(field)?;
     let (wide, high) = (width as usize, height as usize);
-    let full = wide * field.panels.len() + SEAM * (field.panels.len() - 1);
+    let seam = seam((width, height), field.panels.len());
+    let full = wide * field.panels.len() + seam * (field.panels.len() - 1);
     let levels = (0..field.times.len())
         .map(|frame| {
-            let mut levels = vec![VOID; full * (high + 2 * SEAM)];
+            let mut levels = vec![VOID; full * (high + 2 * seam)];
             for (at, panel) in field.panels.iter().enumerate() {
-                let left = at * (wide + SEAM);
+                let left = at * (wide + seam);
                 for (row, line) in panel.frames[frame].levels.chunks(wide).enumerate() {
                     levels[row * full + left..row * full + left + wide].copy_from_slice(line);
                 }
@@ -128,13 +141,13 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
             // The level of the rim is too dark on black.
             let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
             let done = (position(&field.times, frame) * full as f64).round() as usize;
-            for row in high + SEAM..high + 2 * SEAM {
+            for row in high + seam..high + 2 * seam {
                 levels[row * full..row * full + done.min(full)].fill(ink);
             }
             levels
         })
         .collect();
-    Ok(Frames { width: full as u32, height: height + 2 * SEAM as u32, levels })
+    Ok(Frames { width: full as u32, height: height + 2 * seam as u32, levels })
 }
 
 /// Returns the film of a field as an animated PNG.
@@ -400,17 +413,32 @@ mod tests {
             png::Decoder::new(io::Cursor::new(&bytes)).read_info().unwrap_or_else(|error| unreachable!("{error}"));
         let control = reader.info().animation_control.map(|control| (control.num_frames, control.num_plays));
         assert_eq!(control, Some((3, 0)));
-        assert_eq!(reader.info().size(), (88, 46));
+        assert_eq!(reader.info().size(), (81, 32));
         let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
         for frame in 0..3 {
             assert!(reader.next_frame(&mut pixels).is_ok());
-            assert_eq!((pixels[0], pixels[44], pixels[87]), (1 + frame, VOID, 101 + frame));
+            assert_eq!((pixels[0], pixels[40], pixels[80]), (1 + frame, VOID, 101 + frame));
             // The bar for the time is at 0, one half and 1.
-            let run = pixels[40 * 88..41 * 88].iter().filter(|&&level| level == HIGH).count();
-            assert_eq!(run, 44 * usize::from(frame));
+            let run = pixels[31 * 81..32 * 81].iter().filter(|&&level| level == HIGH).count();
+            assert_eq!(run, [0, 41, 81][usize::from(frame)]);
         }
         let svg = draw("film", &field).unwrap_or_default();
         assert!(svg.matches("data:image/png;base64,").count() == 1 && svg.contains("time t (s)"));
+        assert_eq!([(16, 1), (80, 2), (400, 4)].map(|(width, count)| seam((width, 9), count)), [1, 2, 8]);
+    }
+
+    #[test]
+    fn the_panels_of_a_film_stay_within_the_drawing() {
+        let mut field = field(2, 4);
+        for panel in &mut field.panels {
+            panel.own = Some(((0.0, 1.0), "1".to_owned()));
+        }
+        let svg = draw("film", &field).unwrap_or_default();
+        let after =
+            |name: &str, text: &str| text.split(&format!(" {name}=\"")).nth(1)?.split('"').next()?.parse::<f64>().ok();
+        let rects = svg.split("<rect").skip(1).filter_map(|rect| rect.split('>').next());
+        let ends: Vec<f64> = rects.filter_map(|rect| Some(after("x", rect)? + after("width", rect)?)).collect();
+        assert!(ends.len() > 4 && ends.iter().all(|end| *end <= WIDTH - MARGIN + 0.01), "{ends:?}");
     }
 
     #[test]
