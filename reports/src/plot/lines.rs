@@ -11,8 +11,9 @@ use super::{FONTS, WIDTH, wrap};
 const LEFT: f64 = 62.0;
 /// Width to the right of a sheet.
 const RIGHT: f64 = 14.0;
-/// Height above the sheets, for the title of the drawing and the titles of the sheets.
-const TOP: f64 = 68.0;
+/// Height above the sheets, for the title of the drawing, and for each line of the titles of the sheets.
+const TOP: f64 = 50.0;
+const TITLE_LINE: f64 = 16.0;
 /// Height below a sheet, for its numbers and its label.
 const FOOT: f64 = 54.0;
 /// Height of a line of the legend.
@@ -24,9 +25,13 @@ const FREE: f64 = 420.0;
 const WIDEST: f64 = 5.0;
 /// Number of line widths. Lines of equal width share a path.
 const WIDTHS: usize = 12;
-/// Blue, purple, orange and black. They differ in brightness and are drawn with different widths, so they are distinct
-/// without colour vision.
+/// Blue, purple, orange and black.
 const COLOURS: [&str; 4] = ["#0072b2", "#8b2f8f", "#e08214", "#222"];
+/// Dashes of each colour on sheets whose axes have different scales. On sheets with one scale, the kinds of lines have
+/// different widths. In both cases they are distinct without colour vision.
+const DASHES: [Option<&str>; 4] = [None, Some("6 4"), Some("1 3"), None];
+/// Opacity of thin lines on sheets whose axes have different scales, because many lines cross there.
+const THIN: f64 = 0.6;
 
 /// Draws lines as a complete SVG document. Lines that are not finite are left out and counted.
 #[must_use]
@@ -40,13 +45,19 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
     let one = widest.min(TALLEST / up);
     let scale = if plot.to_scale { [one, one] } else { [widest, FREE / up] };
     let drawn = across * scale[0] + count * (LEFT + RIGHT);
-    let bottom = TOP + up * scale[1];
+    // The title of a single sheet may be wider than the sheet.
+    let title_lines = |sheet: &Sheet| {
+        let room = if plot.sheets.len() == 1 { WIDTH - 2.0 * LEFT } else { (size(sheet)[0] * scale[0]).max(120.0) };
+        wrap(&sheet.title, 14.0, room)
+    };
+    let most = plot.sheets.iter().map(|sheet| title_lines(sheet).len()).max().unwrap_or(1);
+    let bottom = TOP + TITLE_LINE * most as f64 + up * scale[1];
     let mut left = 0.5 * (WIDTH - drawn);
     let mut missing = 0;
     let mut sheets = Vec::new();
     for sheet in &plot.sheets {
-        let view = View { scale, left: left + LEFT, bottom, seen: sheet.seen };
-        sheets.push(draw_sheet(sheet, &view, &plot.axes, &mut missing));
+        let view = View { scale, left: left + LEFT, bottom, seen: sheet.seen, to_scale: plot.to_scale };
+        sheets.push(draw_sheet(sheet, &title_lines(sheet), &view, &plot.axes, &mut missing));
         left += LEFT + size(sheet)[0] * scale[0] + RIGHT;
     }
     let kinds = legend(&plot.sheets);
@@ -54,7 +65,7 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
         kinds.into_iter().map(|(place, label)| (place, wrap(&label, 15.0, WIDTH - LEFT - 56.0))).collect();
     let (mut y, mut keys) = (bottom + FOOT + 6.0, Vec::new());
     for (place, lines) in &rows {
-        keys.push(key(*place, lines, y));
+        keys.push(key(*place, lines, y, dash(plot.to_scale, *place)));
         y += LINE * lines.len() as f64;
     }
     let height = y + if missing > 0 { LINE } else { 4.0 };
@@ -90,9 +101,15 @@ struct View {
     left: f64,
     bottom: f64,
     seen: [[f64; 2]; 2],
+    to_scale: bool,
 }
 
 impl View {
+    /// Returns the dashes of a kind of lines.
+    fn dash(&self, place: usize) -> Option<&'static str> {
+        dash(self.to_scale, place)
+    }
+
     fn at(&self, point: [f64; 2]) -> [f64; 2] {
         let low = self.seen[0];
         [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
@@ -105,7 +122,7 @@ impl View {
     }
 }
 
-fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &mut usize) -> Markup {
+fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[String; 2], missing: &mut usize) -> Markup {
     let [x, y, width, height] = view.rectangle(sheet.seen);
     let marked = sheet.marked.map(|part| view.rectangle(part));
     let [low, high] = sheet.seen;
@@ -114,20 +131,19 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
     let ticks = |axis: usize| Scale::fit([low[axis], high[axis]].into_iter(), false, 0.0, room(axis)).ticks();
     let foot = view.bottom;
     html! {
-        @let lines = wrap(&sheet.title, 14.0, ((high[0] - low[0]) * view.scale[0]).max(120.0));
-        @for (number, line) in lines.iter().rev().enumerate() {
-            text x=(px(middle[0])) y=(px(view.at(high)[1] - 9.0 - 16.0 * number as f64)) text-anchor="middle" font-size="14"
-                fill="#222" { (line) }
+        @for (number, line) in title.iter().rev().enumerate() {
+            @let y = view.at(high)[1] - 9.0 - TITLE_LINE * number as f64;
+            text x=(px(middle[0])) y=(px(y)) text-anchor="middle" font-size="14" fill="#222" { (line) }
         }
         // A nested SVG element clips the lines at the edges of the sheet.
         svg x=(x) y=(y) width=(width) height=(height) viewBox=(format!("{x} {y} {width} {height}")) {
             g fill="none" stroke-linecap="round" {
-                @for (place, kind) in sheet.kinds.iter().enumerate() { (kind_of_lines(kind, place, view, missing)) }
+                @for (place, kind) in sheet.kinds.iter().enumerate() { (draw_lines(kind, place, view, missing)) }
             }
         }
         rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#222" {}
         @if let Some([x, y, width, height]) = marked {
-            rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#000" stroke-width="2.5" {}
+            rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#222" stroke-width="2.5" {}
         }
         g font-size="13" fill="#222" {
             @for tick in ticks(0) {
@@ -150,8 +166,9 @@ fn draw_sheet(sheet: &Sheet, view: &View, [across, up]: &[String; 2], missing: &
     }
 }
 
-fn kind_of_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> Markup {
+fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> Markup {
     let mut paths = vec![String::new(); WIDTHS + 1];
+    let mut before: Option<([f64; 2], usize)> = None;
     for (from, to, width) in &kind.lines {
         let is_finite = |point: &[f64; 2]| point.iter().all(|along| along.is_finite());
         if !(is_finite(from) && is_finite(to) && width.is_finite()) {
@@ -160,12 +177,18 @@ fn kind_of_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -
         }
         let ([x, y], [to_x, to_y]) = (view.at(*from), view.at(*to));
         let class = (width.clamp(0.0, 1.0) * WIDTHS as f64).round() as usize;
-        paths[class].push_str(&format!("M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}"));
+        // A line that continues the previous line joins its path, so that dashes run on.
+        if before != Some((*from, class)) {
+            paths[class].push_str(&format!("M{x:.1} {y:.1}"));
+        }
+        paths[class].push_str(&format!("L{to_x:.1} {to_y:.1}"));
+        before = Some((*to, class));
     }
     let colour = COLOURS[place % COLOURS.len()];
     html! {
         @for (class, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
-            path d=(path) stroke=(colour) stroke-width=(px(0.3 + WIDEST * class as f64 / WIDTHS as f64)) {}
+            path d=(path) stroke=(colour) stroke-width=(px(0.3 + WIDEST * class as f64 / WIDTHS as f64))
+                stroke-dasharray=[view.dash(place)] stroke-opacity=[(!view.to_scale && 2 * class < WIDTHS).then_some(THIN)] {}
         }
     }
 }
@@ -180,10 +203,14 @@ fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
     (0..most).filter_map(label).collect()
 }
 
-fn key(place: usize, lines: &[String], y: f64) -> Markup {
+fn dash(to_scale: bool, place: usize) -> Option<&'static str> {
+    if to_scale { None } else { DASHES[place % DASHES.len()] }
+}
+
+fn key(place: usize, lines: &[String], y: f64, dash: Option<&'static str>) -> Markup {
     html! {
         line x1=(px(LEFT)) y1=(px(y)) x2=(px(LEFT + 34.0)) y2=(px(y)) stroke=(COLOURS[place % COLOURS.len()])
-            stroke-width="3" stroke-linecap="round" {}
+            stroke-width="3" stroke-linecap="round" stroke-dasharray=[dash] {}
         @for (number, line) in lines.iter().enumerate() {
             text x=(px(LEFT + 46.0)) y=(px(y + 5.0 + LINE * number as f64)) font-size="15" fill="#222" { (line) }
         }
