@@ -6,7 +6,7 @@ use super::{LABEL, Panel, TICK, px};
 use crate::plot::text_width;
 
 /// Draws the grid, the axes, their ticks and labels. Without `x_label`, the lower axis has no labels.
-pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&String>) -> Markup {
+pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&str>) -> Markup {
     let frame = panel.frame;
     let (x_ticks, y_ticks) = (panel.x().ticks(), panel.y().ticks());
     let mut free_from = f64::NEG_INFINITY;
@@ -63,7 +63,9 @@ pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&String>) -> Ma
             @if let Some(x_label) = x_label {
                 g text-anchor="middle" {
                     @for (at, label) in &labels { text x=(px(*at)) y=(px(frame.bottom + 21.0)) { (label) } }
-                    text x=(px(0.5 * (frame.left + frame.right))) y=(px(frame.bottom + 46.0)) font-size=(LABEL) { (x_label) }
+                    text x=(px(0.5 * (frame.left + frame.right))) y=(px(frame.bottom + 46.0)) font-size=(LABEL) {
+                        (x_label)
+                    }
                 }
             }
         }

@@ -76,12 +76,18 @@ fn crosses(places: impl Iterator<Item = Place>, look: &CurveStyle) -> Markup {
     html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }
 }
 
-/// Draws markers: filled for measured points, hollow if they only distinguish lines.
+/// Draws markers: filled for measured points, hollow if they only distinguish lines. Outlines of crowded points are not
+/// filled.
 fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, radius: f64) -> Markup {
     let corners = look.marker.corners();
     if corners.is_empty() {
-        return dots(places, look, filled, radius);
+        return if filled && look.open { rings(places, look, radius) } else { dots(places, look, filled, radius) };
     }
+    let inside = match (filled, look.open) {
+        (true, true) => "none",
+        (true, false) => look.colour,
+        (false, _) => "#fff",
+    };
     let outline: String = places
         .map(|(x, y)| {
             let places: Vec<Place> =
@@ -92,9 +98,18 @@ fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, r
         .collect();
     html! {
         @if !outline.is_empty() {
-            path d=(outline) fill=(if filled { look.colour } else { "#fff" }) stroke=(look.colour) stroke-width="1.6" {}
+            path d=(outline) fill=(inside) stroke=(look.colour) stroke-width="1.6" {}
         }
     }
+}
+
+/// Draws the outlines of round markers.
+fn rings(places: impl Iterator<Item = Place>, look: &CurveStyle, radius: f64) -> Markup {
+    let arc = |way: f64| format!("a{radius} {radius} 0 1 0 {way} 0");
+    let rings: String = places
+        .map(|(x, y)| format!("M{} {}{}{}", px(x - radius), px(y), arc(2.0 * radius), arc(-2.0 * radius)))
+        .collect();
+    html! { path d=(rings) fill="none" stroke=(look.colour) stroke-width="1.6" {} }
 }
 
 /// Draws round markers as lines of zero length with round ends, which need the fewest characters.

@@ -14,6 +14,12 @@ pub(super) struct Difference {
     pub(super) curves: Vec<(usize, Vec<(f64, f64)>)>,
 }
 
+/// Returns the label of the axis, with the unit of the other axis.
+pub(super) fn label(y: &str) -> String {
+    let unit = y.rfind(" (").filter(|_| y.ends_with(')')).map_or("", |at| &y[at..]);
+    format!("difference{unit}")
+}
+
 /// Returns the differences of the lines from the exact curves, on linear axes and if all lines coincide with them.
 pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     if graph.x.logarithmic || graph.y.logarithmic {

@@ -34,6 +34,8 @@ struct CurveStyle {
     colour: &'static str,
     marker: Marker,
     dash: Option<(u32, u32)>,
+    /// True if markers are outlines, so that they do not hide curves behind them.
+    open: bool,
 }
 
 /// Position of the axes in the drawing.
@@ -113,7 +115,8 @@ impl Form {
 /// Draws the samples of the curves with labels, for a legend beside the drawing.
 #[must_use]
 pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
-    let labelled = graph.curves.iter().zip(looks(&graph.curves)).filter(|(curve, _)| !curve.label.is_empty());
+    let (x, y) = scales(graph);
+    let labelled = graph.curves.iter().zip(looks(&graph.curves, &x, &y)).filter(|(curve, _)| !curve.label.is_empty());
     let sample = |(curve, look): (&'_ Curve, CurveStyle)| {
         html! {
             svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
@@ -133,19 +136,9 @@ pub fn draw(title: &str, graph: &Graph) -> String {
 /// Draws a graph in another form.
 #[must_use]
 pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
-    let looks = looks(&graph.curves);
+    let (x, y) = scales(graph);
+    let looks = looks(&graph.curves, &x, &y);
     let notes = notes(graph);
-    let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
-    let (log_x, log_y) = (graph.x.logarithmic, graph.y.logarithmic);
-    let seen = |point: &&(f64, f64)| {
-        let on = |value: f64, logarithmic: bool| value.is_finite() && (value > 0.0 || !logarithmic);
-        on(point.0, log_x) && on(point.1, log_y)
-    };
-    let only_lines = graph.curves.iter().all(|curve| matches!(curve.stroke, Stroke::Line | Stroke::Dashed));
-    let x_margin = if only_lines && !log_x { 0.0 } else { 0.05 };
-    let x =
-        Scale::fit(points().filter(seen).map(|point| point.0), log_x, x_margin, 7).at_levels(&levels(&graph.curves));
-    let y = Scale::fit(points().filter(seen).map(|point| point.1), log_y, 0.06, 6);
     let difference = difference::from_graph(graph, &y);
     let height = form.height + if difference.is_some() { BELOW } else { 0.0 };
 
@@ -173,12 +166,12 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let body = html! {
         rect width=(form.width) height=(height) fill="#fff" {}
         text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (title) }
-        (axes::draw(&panel, &graph.y.label, below.is_none().then_some(&graph.x.label)))
-        @for (curve, look) in graph.curves.iter().zip(&looks) {
+        (axes::draw(&panel, &graph.y.label, below.is_none().then_some(graph.x.label.as_str())))
+        @for (curve, look) in in_order(&graph.curves, &looks) {
             (curves::draw(curve.stroke, look, &panel.pieces(&curve.points)))
         }
         @if let Some((panel, difference)) = &below {
-            (axes::draw(panel, "difference", Some(&graph.x.label)))
+            (axes::draw(panel, &difference::label(&graph.y.label), Some(&graph.x.label)))
             @for (at, points) in &difference.curves { (curves::draw(Stroke::Line, &looks[*at], &panel.pieces(points))) }
         }
         (legend::draw(graph, &looks, &legend, &panel))
@@ -213,13 +206,72 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
+/// Returns both scales of a graph.
+fn scales(graph: &Graph) -> (Scale, Scale) {
+    let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
+    let (log_x, log_y) = (graph.x.logarithmic, graph.y.logarithmic);
+    let seen = |point: &&(f64, f64)| {
+        let on = |value: f64, logarithmic: bool| value.is_finite() && (value > 0.0 || !logarithmic);
+        on(point.0, log_x) && on(point.1, log_y)
+    };
+    let only_lines = graph.curves.iter().all(|curve| matches!(curve.stroke, Stroke::Line | Stroke::Dashed));
+    let x_margin = if only_lines && !log_x { 0.0 } else { 0.05 };
+    let x = Scale::fit(points().filter(seen).map(|point| point.0), log_x, x_margin, 7);
+    let y = Scale::fit(points().filter(seen).map(|point| point.1), log_y, 0.06, 6);
+    (x.at_levels(&levels(&graph.curves)), y)
+}
+
+/// Returns the curves in the order in which they are drawn. Clouds of points are behind lines, and markers are in front.
+fn in_order<'a>(curves: &'a [Curve], looks: &'a [CurveStyle]) -> Vec<(&'a Curve, &'a CurveStyle)> {
+    let mut order: Vec<_> = curves.iter().zip(looks).collect();
+    order.sort_by_key(|(curve, _)| match curve.stroke {
+        Stroke::Bars => 0,
+        Stroke::Beside => 1,
+        Stroke::Line | Stroke::MarkedLine => 2,
+        Stroke::Dashed => 3,
+        Stroke::Markers => 4,
+        Stroke::Failed => 5,
+    });
+    order
+}
+
+/// Returns true if the markers of any curve would hide each other, or those of another curve. Beside clouds of points, which
+/// are outlines, markers must be filled.
+fn is_any_crowded(curves: &[Curve], x: &Scale, y: &Scale) -> bool {
+    let is_free = curves.iter().all(|curve| curve.stroke != Stroke::Beside);
+    is_free && (0..curves.len()).any(|at| curves[at].stroke == Stroke::Markers && is_crowded(curves, at, x, y))
+}
+
+/// Returns true if the markers of a curve would hide each other, or those of another curve.
+fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
+    // Approximate size of the axes (drawing units), and distances at which markers overlap.
+    const SIZE: (f64, f64) = (620.0, 410.0);
+    const BESIDE: f64 = 11.0;
+    const UPON: f64 = 4.0;
+    const MANY: usize = 12;
+    let places = |curve: &Curve| -> Vec<Place> {
+        let shown = curve.points.iter().filter(|point| x.shows(point.0) && y.shows(point.1));
+        shown.map(|point| (SIZE.0 * x.position(point.0), SIZE.1 * y.position(point.1))).collect()
+    };
+    let is_near = |a: &Place, b: &Place, distance: f64| (a.0 - b.0).hypot(a.1 - b.1) < distance;
+    let is_most = |count: usize, of: usize| of > 0 && 2 * count > of;
+    let here = places(&curves[at]);
+    let close = here.windows(2).filter(|pair| is_near(&pair[0], &pair[1], BESIDE)).count();
+    let others = curves.iter().enumerate().filter(|(other, curve)| *other != at && curve.stroke == Stroke::Markers);
+    (here.len() >= MANY && is_most(close, here.len()))
+        || others
+            .map(|(_, curve)| places(curve))
+            .any(|there| is_most(here.iter().filter(|a| there.iter().any(|b| is_near(a, b, UPON))).count(), here.len()))
+}
+
 /// Returns the style of each curve. Computed curves have the colours of their solvers, dashed curves cycle through shades.
-fn looks(curves: &[Curve]) -> Vec<CurveStyle> {
+fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
     let mut coloured = palette::places(&labels).into_iter();
+    let is_open = is_any_crowded(curves, x, y);
     let mut dashed = 0;
-    let mut before = CurveStyle { colour: palette::colour(0), marker: palette::marker(0), dash: None };
+    let mut before = CurveStyle { colour: palette::colour(0), marker: palette::marker(0), dash: None, open: false };
     curves
         .iter()
         .map(|curve| {
@@ -235,10 +287,12 @@ fn looks(curves: &[Curve]) -> Vec<CurveStyle> {
                     colour: palette::shade(here),
                     marker: palette::marker(here),
                     dash: Some(palette::dash(here)),
+                    open: false,
                 }
             } else {
                 let here = coloured.next().unwrap_or_default();
-                before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None };
+                let open = is_open && curve.stroke == Stroke::Markers;
+                before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None, open };
                 before
             }
         })
@@ -316,6 +370,22 @@ mod tests {
     }
 
     #[test]
+    fn markers_that_would_hide_each_other_are_outlines() {
+        let points = |count: u32, by: f64| -> Vec<(f64, f64)> {
+            (0..count).map(|at| f64::from(at) / f64::from(count)).map(|x| (x, x * x + by)).collect()
+        };
+        let is_open = |all: &[Vec<(f64, f64)>]| {
+            let curve = |points: &Vec<(f64, f64)>| Curve::new("", Stroke::Markers, points.clone());
+            let curves: Vec<Curve> = all.iter().map(curve).collect();
+            let (x, y) = scales(&Graph { x: Axis::linear("x"), y: Axis::linear("y"), curves: curves.clone() });
+            is_any_crowded(&curves, &x, &y)
+        };
+        assert!(!is_open(&[points(9, 0.0), points(9, 0.5)]));
+        assert!(is_open(&[points(9, 0.0), points(9, 1e-3)]), "on the other curve");
+        assert!(is_open(&[points(200, 0.0)]), "on each other");
+    }
+
+    #[test]
     fn what_lies_on_the_exact_curve_is_shown_by_its_difference() {
         let exact: Vec<(f64, f64)> = (0..100).map(|at| (f64::from(at), f64::from(at))).collect();
         let off = |by: f64| -> Vec<(f64, f64)> { exact.iter().map(|(x, y)| (*x, y + by)).collect() };
@@ -324,6 +394,6 @@ mod tests {
                 vec![Curve::new("dem", Stroke::Line, off(by)), Curve::new("exact", Stroke::Dashed, exact.clone())];
             draw("both", &Graph { x: Axis::linear("t (s)"), y: Axis::linear("x (m)"), curves })
         };
-        assert!(drawn(1e-3).contains("difference") && !drawn(20.0).contains("difference"));
+        assert!(drawn(1e-3).contains("difference (m)") && !drawn(20.0).contains("difference"));
     }
 }
