@@ -7,7 +7,7 @@ use maud::{Markup, PreEscaped, html};
 use rayon::prelude::*;
 
 use super::budget::{Part, Piece, Rank};
-use super::{slug, unique};
+use super::{prose, slug, unique};
 use crate::plot::{self, DrawError};
 use crate::report::Section;
 
@@ -102,7 +102,7 @@ fn framed(figure: &Figure, name: &str, id: &str, shown: &Markup) -> Markup {
         figure id=(id) {
             (shown)
             figcaption {
-                (figure.caption)
+                (prose::inline(&figure.caption))
                 span.act {
                     " "
                     @match &figure.drawing {

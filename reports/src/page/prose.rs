@@ -3,12 +3,24 @@
 use maud::{Markup, PreEscaped};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 
+use crate::plot::text;
+
 /// Renders Markdown with tables. Its headings get a lower level than those of the page.
 pub(crate) fn render(markdown: &str) -> Markup {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES).map(tame);
     let mut text = String::new();
     html::push_html(&mut text, events);
     PreEscaped(text)
+}
+
+/// Renders a caption: text between backticks is code, and symbols have subscripts. Other Markdown is kept as text, because
+/// captions contain formulas.
+pub(crate) fn inline(caption: &str) -> Markup {
+    maud::html! {
+        @for (at, part) in caption.split('`').enumerate() {
+            @if at % 2 == 1 { code { (part) } } @else { (text::html(part)) }
+        }
+    }
 }
 
 fn tame(event: Event<'_>) -> Event<'_> {
@@ -44,6 +56,12 @@ const fn lower(level: HeadingLevel) -> HeadingLevel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn captions_have_code_and_subscripts() {
+        let text = inline("`mpm` at 2*k_n < E*").into_string();
+        assert_eq!(text, "<code>mpm</code> at 2*k<sub>n</sub> &lt; E*");
+    }
 
     #[test]
     fn keeps_formulas_and_tames_the_rest() {

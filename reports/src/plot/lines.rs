@@ -5,7 +5,7 @@ use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
 
 use super::scale::Scale;
-use super::{FONTS, WIDTH, wrap};
+use super::{FONTS, WIDTH, text, wrap};
 
 /// Width to the left of a sheet, for its numbers and its label.
 const LEFT: f64 = 62.0;
@@ -74,7 +74,7 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
             aria-label=(title) font-family=(FONTS) {
             title { (title) }
             rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
-            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
+            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (text::svg(title)) }
             @for sheet in &sheets { (sheet) }
             @for key in &keys { (key) }
             @if missing > 0 {

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{LABEL, Panel, TICK, px};
-use crate::plot::text_width;
+use crate::plot::{text, text_width};
 
 /// Draws the grid, the axes, their ticks and labels. Without `x_label`, the lower axis has no labels.
 pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&str>) -> Markup {
@@ -64,13 +64,13 @@ pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&str>) -> Marku
                 g text-anchor="middle" {
                     @for (at, label) in &labels { text x=(px(*at)) y=(px(frame.bottom + 21.0)) { (label) } }
                     text x=(px(0.5 * (frame.left + frame.right))) y=(px(frame.bottom + 46.0)) font-size=(LABEL) {
-                        (x_label)
+                        (text::svg(x_label))
                     }
                 }
             }
         }
         text transform=(format!("translate(20 {}) rotate(-90)", px(middle))) text-anchor="middle" font-size=(LABEL) fill="#222" {
-            (y_label)
+            (text::svg(y_label))
         }
     }
 }

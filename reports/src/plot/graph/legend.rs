@@ -4,7 +4,7 @@ use grainbench_harness::figure::{Curve, Graph, Stroke};
 use maud::{Markup, html};
 
 use super::{CurveStyle, LEGEND_LINE, LEGEND_SAMPLE, Panel, TICK, curves, px};
-use crate::plot::wrap;
+use crate::plot::{text, wrap};
 
 /// Returns the labels broken into lines; empty if all labels are empty.
 pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
@@ -31,7 +31,9 @@ pub(super) fn draw(graph: &Graph, looks: &[CurveStyle], legend: &[Vec<String>], 
                 @let (from, to) = ((left, top + 3.0), (left + LEGEND_SAMPLE - 4.0, top + 3.0));
                 (curves::sample(graph.curves[at].stroke, &looks[at], from, to))
                 @for (line, part) in legend[at].iter().enumerate() {
-                    text x=(px(left + LEGEND_SAMPLE + 4.0)) y=(px(top + 3.0 + 0.35 * TICK + LEGEND_LINE * line as f64)) { (part) }
+                    text x=(px(left + LEGEND_SAMPLE + 4.0)) y=(px(top + 3.0 + 0.35 * TICK + LEGEND_LINE * line as f64)) {
+                        (text::svg(part))
+                    }
                 }
             }
         }

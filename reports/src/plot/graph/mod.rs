@@ -13,7 +13,7 @@ use plotters::coord::cartesian::Cartesian2d;
 
 use super::palette::{self, Marker};
 use super::scale::Scale;
-use super::{FONTS, WIDTH, text_width};
+use super::{FONTS, WIDTH, text, text_width};
 
 const HEIGHT: f64 = 520.0;
 /// Additional height for a panel of differences.
@@ -165,7 +165,7 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     });
     let body = html! {
         rect width=(form.width) height=(height) fill="#fff" {}
-        text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (title) }
+        text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (text::svg(title)) }
         (axes::draw(&panel, &graph.y.label, below.is_none().then_some(graph.x.label.as_str())))
         @for (curve, look) in in_order(&graph.curves, &looks) {
             (curves::draw(curve.stroke, look, &panel.pieces(&curve.points)))
