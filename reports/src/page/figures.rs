@@ -17,11 +17,12 @@ const HEAVY: usize = 30_000;
 const SEEN: usize = 2;
 
 /// Returns the CSS class of a drawing. On a narrow screen, graphs scroll because their text would be too small; other
-/// drawings shrink.
+/// drawings shrink. Images of fields keep their colours on a dark page.
 const fn class(drawing: &Drawing) -> &'static str {
     match drawing {
         Drawing::Graph(_) => "plot graph",
-        Drawing::Forces(_) | Drawing::Field(_) | Drawing::Lines(_) => "plot",
+        Drawing::Forces(_) | Drawing::Lines(_) => "plot",
+        Drawing::Field(_) => "plot field",
     }
 }
 
