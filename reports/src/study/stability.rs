@@ -155,10 +155,10 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         "Largest stable step of the method with a grid"
     };
     let caption = if exact {
-        "Found by bisection on the growth of a random perturbation of every degree of freedom; dashed, joined by straight \
-         lines, the exact limits."
+        "The largest stable step is found by bisection on the growth of a random perturbation of all degrees of \
+         freedom. Dashed lines join the exact limits."
     } else {
-        "Courant number up to which a vibrating bar keeps its energy to a tenth over two periods."
+        "Largest Courant number at which the energy of a vibrating bar changes by less than a tenth over two periods."
     };
     let x = if exact { Axis::linear(&knob) } else { Axis::log(&knob) };
     let y = if unit.starts_with('√') { format!("Δt / {unit}") } else { format!("Δt / ({unit})") };
@@ -184,8 +184,8 @@ fn against_exact(limits: &[Limit]) -> Option<Figure> {
         Figure::graph(
             "found-exact",
             "Largest stable steps against the exact limits",
-            "Every assembly with an exact limit, in units of √(m/k); below the line a solver breaks earlier than central \
-             differences do.",
+            "Largest stable time step of each solver over the exact limit of central differences, for all assemblies \
+             with such a limit. A solver below the line becomes unstable earlier than central differences.",
             [Axis::linear("exact limit / √(m/k)"), Axis::linear("largest stable step / √(m/k)")],
             curves,
         )
