@@ -109,8 +109,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let line = |from: f64, to: f64, value: fn(f64) -> f64| [from, to].map(|x| (x, value(x))).to_vec();
     plane.push(Curve::new("slides throughout", Stroke::Dashed, line(7.0, 13.4, |before| before - 7.0)));
     balls.push(Curve::new("slides throughout", Stroke::Dashed, line(2.1, 6.0, |before| (before - 2.1) / 0.5)));
-    let caption =
-        "Slip velocity s of the surfaces after the impact over the value before it, both divided by the normal \
+    let caption = "Slip velocity s of the surfaces after the impact over the value before it, both divided by the normal \
          velocity v_n. The dashed line holds if the surfaces slide during the whole impact. If they stick, the \
          tangential spring oscillates. No closed form is known there, and only momentum is checked.";
     Ok(vec![

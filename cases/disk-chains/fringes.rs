@@ -115,13 +115,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     let clock: Vec<f64> = (1..=FILM).map(|frame| 0.25 * f64::from(frame)).collect();
     let frames: Vec<&Snapshot> = clock.iter().filter_map(|&time| at(&line, time)).collect();
-    let moving = film(
-        quantity,
-        &[Shot { title: String::new(), frames }],
-        ("time t c/d (1)", &clock),
-        FILM_PIXELS,
-        None,
-    );
+    let moving =
+        film(quantity, &[Shot { title: String::new(), frames }], ("time t c/d (1)", &clock), FILM_PIXELS, None);
     figures.push(Figure::field(
         "fringes-film",
         "Fringes along the line of four discs",

@@ -88,7 +88,8 @@ pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figur
     }
     let scores = scores(done, published).unwrap_or_default();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];
-    let bound = |at: f64| Curve::new(format!("{at:+}").replace('-', "−"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
+    let bound =
+        |at: f64| Curve::new(format!("{at:+}").replace('-', "−"), Stroke::Dashed, ends.map(|end| (end, at)).to_vec());
     vec![
         Figure::graph(
             "heights",

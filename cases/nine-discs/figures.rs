@@ -32,8 +32,14 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         }
     }
     all.push(damping(runner)?);
-    all.push(speed(runner, "speed-stiff", "Effect of the loading speed, k_n = k_s = 1.35×10⁹ \
-                                           N/m", ["fast", "slow"], [0.12, 0.04])?);
+    all.push(speed(
+        runner,
+        "speed-stiff",
+        "Effect of the loading speed, k_n = k_s = 1.35×10⁹ \
+                                           N/m",
+        ["fast", "slow"],
+        [0.12, 0.04],
+    )?);
     all.push(speed(
         runner,
         "speed-soft",

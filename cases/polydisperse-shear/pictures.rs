@@ -138,11 +138,23 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         Figure::field(name, title, &caption, element_picture::pictures(quantity, &shots, CELL, range))
     };
     vec![
-        figure("coarse-pressure", "Pressure", "Force chains carry the pressure from side to \
-                                               side.", "pressure", PRESSURES),
+        figure(
+            "coarse-pressure",
+            "Pressure",
+            "Force chains carry the pressure from side to \
+                                               side.",
+            "pressure",
+            PRESSURES,
+        ),
         figure("coarse-shear", "Rate of shear", "The slab flows where the rate is large.", "shear_rate", SHEAR_RATES),
-        figure("coarse-packing", "Packing fraction", "The slab has dilated where the packing fraction is \
-                                                      small.", "packing_fraction", (0.7, 0.95)),
+        figure(
+            "coarse-packing",
+            "Packing fraction",
+            "The slab has dilated where the packing fraction is \
+                                                      small.",
+            "packing_fraction",
+            (0.7, 0.95),
+        ),
     ]
 }
 

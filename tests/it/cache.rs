@@ -154,7 +154,7 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
         let ended = child.wait_with_output().unwrap();
         let message = String::from_utf8(ended.stderr).unwrap();
         // Before its handler is installed, a signal ends the process as any program.
-        let is_announced = message.contains("the next run goes on from the runs that were");
+        let is_announced = message.contains("the next run continues with the finished runs");
         assert!(ended.status.code() != Some(1) || is_announced, "{message}");
         let now = if here.join("cache").exists() { entries(here).len() } else { 0 };
         assert!(now >= last, "finished runs are lost: {now} after {last}");

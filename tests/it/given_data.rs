@@ -51,7 +51,7 @@ fn what_is_no_start_is_refused() {
     refused("data: ");
     let answer = grainbench(path, &["run", "squash", "--data", "."]);
     assert_eq!(answer.code, Some(2));
-    assert!(answer.err.contains("--data: expected rows that begin with data of others"), "{}", answer.err);
+    assert!(answer.err.contains("--data: expected claims that start from third-party data"), "{}", answer.err);
 }
 
 /// The stored result belongs to the published start and is not used for another start.

@@ -375,7 +375,10 @@ fn an_interrupted_run_leaves_what_is_finished() {
     let ended = child.wait_with_output().unwrap();
     let message = String::from_utf8(ended.stderr).unwrap();
     assert_eq!(ended.status.code(), Some(1), "{message}");
-    assert!(message.contains("interrupted: ") && message.contains("the report holds what was finished"), "{message}");
+    assert!(
+        message.contains("interrupted: ") && message.contains("the report contains the finished checks"),
+        "{message}"
+    );
     let results = std::fs::read_to_string(directory.path().join("out/results.json")).unwrap();
     let results: serde_json::Value = serde_json::from_str(&results).unwrap();
     let options = results["provenance"]["options"].to_string();

@@ -150,7 +150,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
         crate::common::files(&out)
     );
     let again = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
-    assert!(again.out.contains("24 of 24 points were measured before"), "{}", again.out);
+    assert!(again.out.contains("24 of 24 points are from an earlier measurement"), "{}", again.out);
 }
 
 /// Sets the times of each finished point: those of a quiet machine times a factor.
@@ -179,7 +179,7 @@ fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
     fs::write(folder.path().join("old.json"), &old).unwrap();
     let against = || cost(&["--against", "old.json"]);
     let answer = against();
-    assert!(answer.code == Some(0) && answer.out.contains("counts are the same to the last"), "{}", answer.out);
+    assert!(answer.code == Some(0) && answer.out.contains("all counts are equal"), "{}", answer.out);
     // A machine slower by 5 % is not reported; a kernel slower by 25 % is.
     retime(&out, 1.05);
     assert_eq!(against().code, Some(0));
