@@ -165,7 +165,7 @@ fn on_springs() -> Vec<Claim> {
         chains_go_on(runs(), ", grains on springs", staying()),
         chains_of_the_paper(runs(), ", grains on springs", staying()),
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
-            .runs([springs::to("slow", 0.25, 0), springs::to("seed-1", 0.25, 0)])
+            .runs([springs::to("slow", 0.25, 0).slow(), springs::to("seed-1", 0.25, 0).slow()])
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::new(bands(done)?, slower, slower)))
             .within(judged(
                 0.4,
