@@ -449,6 +449,31 @@ fn a_joint_of_two_segments_is_one_wall() {
     }
 }
 
+/// A small sphere hits one with ten times its radius from each side of the axes: v′ = v (m − M)/(m + M), M/m = 1000. Other
+/// small spheres move the cells of the search, so that the large sphere reaches beyond the cells within its own radius. A
+/// contact that is found late begins with an overlap, whose energy is many times the initial one.
+#[test]
+fn a_large_grain_finds_small_ones_at_its_poles() {
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let (mut place, mut speed) = ([0.0; 3], [0.0; 3]);
+            (place[axis], speed[axis]) = (1.18 * side, -0.5 * side);
+            let mut text = format!(
+                "dimension = 3\nduration = 0.4\n[grains.large]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 0.0]\n\
+                 [grains.small]\nmaterial = 'm'\nradius = 0.1\nposition = {place:?}\nvelocity = {speed:?}\n\
+                 [probes]\nsmall = {{ grain = 'small' }}\n"
+            );
+            for other in 0..20 {
+                let at = -3.0 + 0.3 * f64::from(other);
+                text += &format!("[grains.n{other}]\nmaterial = 'm'\nradius = 0.1\nposition = [{at}, -3.0, -3.0]\n");
+            }
+            let found = side * last(&run(&text), ["small.vx", "small.vy", "small.vz"][axis]);
+            // The contact begins and ends within a step, with an overlap up to v Δt: twice (ω Δt)² of the energy, ω Δt = .04.
+            assert!((found / (0.5 * 999.0 / 1001.0) - 1.0).abs() < 3.2e-3, "axis {axis}, side {side}: {found} m/s");
+        }
+    }
+}
+
 /// A disc at the ridge of two segments, at the end of a segment below a plane, and at the common edge of two rectangles
 /// has one contact. A disc in a valley has two.
 #[test]

@@ -303,6 +303,15 @@ fn finite_walls_are_hit_on_both_sides_and_missed_beside() {
             assert!((flat(text, -1.0, 3.0, x) + 3.0).abs() < 1e-9);
         }
         assert_eq!(flat(text, 1.0, -3.0, 2.6), -3.0);
+        // A wall that turns slowly about a centre far from the origin is where its file has it.
+        let turning = text
+            .replace("[-2.0, 0.0], [2.0, 0.0]", "[4.0, 0.0], [8.0, 0.0]")
+            .replace("corner = [-2.0, -2.0, 0.0]", "corner = [4.0, -2.0, 0.0]");
+        let is_plane = turning.contains("segment");
+        let [spin, centre] = if is_plane { ["1e-9", "[6.0, 0.0]"] } else { ["[1e-9, 0.0, 0.0]", "[6.0, 0.0, 0.0]"] };
+        let turning = format!("{turning}motion = [{{ spin = {spin}, centre = {centre} }}]\n");
+        assert!((flat(&turning, 1.0, -3.0, 6.0) - 3.0).abs() < 1e-6, "{turning}");
+        assert_eq!(flat(&turning, 1.0, -3.0, 0.0), -3.0, "{turning}");
     }
 }
 
