@@ -106,7 +106,7 @@ fn card(
                             "worst "
                             @match row.error {
                                 // A ratio to a tolerance for rounding says little, so the error itself is shown.
-                                Some(error) if times > 1e3 => { "off " (number::significant(error.abs(), 2)) ", " }
+                                Some(error) if times > 1e3 => { "off " (number::significant(100.0 * error.abs(), 2)) " %, " }
                                 _ if times.is_finite() => { (number::significant(times, 2)) "× allowed, " }
                                 _ => {}
                             }
