@@ -90,10 +90,8 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
         }
         let mut rows = Vec::new();
         for claim in &claims {
-            let verdict = runner.judge(claim);
-            if runner.tries_control(claim, &verdict) {
-                judgement.controls.push(runner.control(claim));
-            }
+            let (verdict, control) = runner.judge_and_control(claim, true);
+            judgement.controls.extend(control);
             rows.push(Some(verdict));
         }
         mistake::explain(case, &solvers, &claims, &mut rows);

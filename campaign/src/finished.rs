@@ -4,6 +4,7 @@ use crate::fault::Fault;
 use crate::log::{self, ENDING, Line, State, Worker};
 use crate::plan::RESULTS;
 use crate::task::Id;
+use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,17 @@ pub struct Entry {
     pub worker: usize,
     /// Result as JSON; empty unless results were requested.
     pub json: Box<str>,
+}
+
+/// Result of a task, read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TaskResult<T> {
+    /// No result yet.
+    Nothing,
+    /// Result.
+    Out(T),
+    /// Message of a crash of our program.
+    Crash(String),
 }
 
 /// All finished tasks of a plan.
@@ -58,6 +70,20 @@ impl FinishedTasks {
             finished.add(&bytes, with_results);
         }
         Ok(finished)
+    }
+
+    /// Reads the result of a task.
+    #[must_use]
+    pub fn result<T: DeserializeOwned>(&self, id: Id) -> TaskResult<T> {
+        let Some(entry) = self.entries.get(&id) else { return TaskResult::Nothing };
+        if entry.state == State::Crashed {
+            let words = serde_json::from_str(&entry.json);
+            return TaskResult::Crash(words.unwrap_or_else(|_| "our program failed".to_owned()));
+        }
+        match serde_json::from_str(&entry.json) {
+            Ok(result) => TaskResult::Out(result),
+            Err(error) => TaskResult::Crash(format!("its result cannot be read: {error}")),
+        }
     }
 
     fn add(&mut self, bytes: &[u8], with_results: bool) {

@@ -204,10 +204,17 @@ impl Runner {
         }
     }
 
+    /// Judges a claim, and its control if it is asked for and can be run.
+    #[must_use]
+    pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<Control>) {
+        let row = self.judge(claim);
+        let control = (with_control && self.tries_control(claim, &row)).then(|| self.control(claim));
+        (row, control)
+    }
+
     /// Returns true if the control of a judged claim is to be run: all its runs are available. An external solver also skips
     /// it in two cases: the claim is unsupported, or the solver cannot run the wrong physics.
-    #[must_use]
-    pub fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
+    fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
         self.is_available(claim) && self.has_control(claim, verdict)
     }
 

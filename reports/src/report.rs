@@ -31,6 +31,13 @@ pub struct Report {
 }
 
 impl Report {
+    /// Returns a report of some sections, without stored results of other solvers.
+    #[must_use]
+    pub fn new(provenance: Provenance, sections: Vec<Section>) -> Self {
+        let measured = Measurements::default();
+        Self { provenance, sections, judged: Vec::new(), shown: Vec::new(), measured, red_because: Vec::new() }
+    }
+
     /// Returns a report with only the results that are shown, and their controls.
     #[must_use]
     pub fn view(&self) -> Cow<'_, Self> {
@@ -71,7 +78,7 @@ pub struct Provenance {
 }
 
 /// Results of one case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Section {
     /// Name of the case, such as `nine-discs`.
     pub name: String,

@@ -1,9 +1,9 @@
 //! `grainbench check`: checks the output of any program against a case or scene.
 
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::pattern;
 use super::provenance::provenance;
-use super::run::{add_reasons, exit_code, is_judged};
+use super::publish::{Output, add_reasons, is_judged, publish};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
@@ -11,9 +11,7 @@ use grainbench::check::{DeclaredScene, Options, Power, check as judge, is_of_pow
 use grainbench::harness::verdict::{self, Severity, Verdict};
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
-use grainbench::reports::measured::Measurements;
-use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, Section, line, write_report};
+use grainbench::reports::{Report, Section, line};
 use grainbench::scene::scene::Scene;
 use std::fs;
 use std::io;
@@ -97,27 +95,15 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         (None, None) => Vec::new(),
     };
     check_writable(&arguments.out)?;
-    let mut report = Report {
-        provenance: provenance(words, start.elapsed().as_secs_f64()),
-        sections,
-        judged: Vec::new(),
-        shown: Vec::new(),
-        measured: Measurements::default(),
-        red_because: Vec::new(),
-    };
+    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), sections);
     // A complete run can still have wrong content, so each output needs at least one result about a quantity.
     let is_told = report.sections.iter().all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
         rows.any(|row| is_judged(row) && !is_of_power(row))
     });
     add_reasons(&mut report, !is_told, arguments.strict);
-    write_report(&arguments.out, &report).map_err(Fault::writing)?;
-    if arguments.json {
-        print(&results_json(&report).map_err(Fault::input)?)?;
-    } else {
-        print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
-    }
-    Ok(exit_code(&report, arguments.strict))
+    let Arguments { out, json, strict, .. } = arguments;
+    publish(&report, &Output { text: Some(rows(&report)), ..Output::new(out, *json, *strict) })
 }
 
 /// Checks the named output. Returns its section, and its name for the page.
@@ -255,12 +241,8 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
         name: "files".to_owned(),
         title: format!("Files of {} that were not judged", folder.display()),
         claim: "Each file and each folder below the directory is judged, or ignored by its name.".to_owned(),
-        derivation: String::new(),
-        weak: String::new(),
-        figures: Vec::new(),
         verdicts: files.iter().map(row).collect(),
-        controls: Vec::new(),
-        runs: Vec::new(),
+        ..Section::default()
     }
 }
 

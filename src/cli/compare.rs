@@ -1,9 +1,9 @@
 //! `grainbench compare`: compares two outputs.
 
 use super::check::rows;
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
-use super::run::{add_reasons, exit_code, is_judged};
+use super::publish::{Output, add_reasons, is_judged, publish};
 use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
@@ -14,9 +14,7 @@ use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::ReadError;
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
 use grainbench::reference::observer::Names;
-use grainbench::reports::measured::Measurements;
-use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, Section, number, write_report};
+use grainbench::reports::{Report, Section, number};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -73,25 +71,12 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];
-    let mut report = Report {
-        provenance: provenance(words, start.elapsed().as_secs_f64()),
-        sections: vec![section],
-        judged: Vec::new(),
-        shown: Vec::new(),
-        measured: Measurements::default(),
-        red_because: Vec::new(),
-    };
+    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
     let is_mute = !columns.any(|row| is_judged(row) && !is_label(row));
     add_reasons(&mut report, is_mute, arguments.strict);
-    write_report(&arguments.out, &report).map_err(Fault::writing)?;
-    if arguments.json {
-        print(&results_json(&report).map_err(Fault::input)?)?;
-    } else {
-        let counts = counts(&comparison);
-        print(&format!("{}{counts}\n{}\n", rows(&report), arguments.out.join("index.html").display()))?;
-    }
-    Ok(exit_code(&report, arguments.strict))
+    let text = Some(format!("{}{}\n", rows(&report), counts(&comparison)));
+    publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
 }
 
 /// Columns that name and describe grains and do not change in a run. Their agreement alone does not count as a

@@ -2,19 +2,17 @@
 
 use super::cache;
 use super::cores::{at_once, share};
-use super::exit::{Fault, Outcome, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
-use super::run::{add_reasons, exit_code, says_nothing};
+use super::publish::{Output, add_reasons, publish, says_nothing};
 use super::solver;
 use grainbench::cases::solvers;
 use grainbench::harness::conformance;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{Control, Verdict};
-use grainbench::reports::measured::Measurements;
-use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, Section, summary_table, write_report};
+use grainbench::reports::{Report, Section};
 use grainbench::scene::solver::Solver;
 use grainbench::scene::terms::Terms;
-use grainbench::studies::run_cache::RunCache;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -40,70 +38,54 @@ pub(crate) struct Arguments {
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     check_writable(&arguments.out)?;
-    let section = section(&arguments.solver, None)?;
-    let section = section.ok_or_else(|| {
+    let owing = owing(&arguments.solver)?;
+    if owing.is_empty() {
         let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
         let expected = "the path of a manifest (`SOLVER.toml`) or a built-in solver";
-        Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str))
-    })?;
+        return Err(Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str)));
+    }
+    let judged: Vec<_> = owing.iter().map(|_| OnceLock::new()).collect();
+    let kept = cache::solvers(None);
+    let do_task = |place: usize| {
+        judged[place].get_or_init(|| judge(&owing[place], &kept));
+    };
+    share(owing.len(), at_once(1), || true, do_task);
+    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
+    let section = section_of(verdicts.concat(), controls.concat());
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());
-    let mut report = Report {
-        provenance: provenance(words, start.elapsed().as_secs_f64()),
-        sections: vec![section],
-        judged: Vec::new(),
-        shown: Vec::new(),
-        measured: Measurements::default(),
-        red_because: Vec::new(),
-    };
+    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let is_mute = says_nothing(&report);
     add_reasons(&mut report, is_mute, arguments.strict);
-    write_report(&arguments.out, &report).map_err(Fault::writing)?;
-    if arguments.json {
-        print(&results_json(&report).map_err(Fault::input)?)?;
-    } else {
-        print(&format!("{}\n{}\n", summary_table(&report), arguments.out.join("index.html").display()))?;
-    }
-    Ok(exit_code(&report, arguments.strict))
+    publish(&report, &Output::new(&arguments.out, arguments.json, arguments.strict))
 }
 
 /// Solver with the terms of its conformance.
-pub(crate) type SolverWithTerms = (Arc<dyn Solver>, Terms);
+pub(crate) struct ConformingSolver {
+    pub(crate) solver: Arc<dyn Solver>,
+    terms: Terms,
+    /// True if it is built in. An external solver may have the name of a built-in one.
+    is_ours: bool,
+}
 
 /// Returns the named solvers and external solvers with their terms; all our solvers if none is named.
-pub(crate) fn owing(named: &[String]) -> Result<Vec<SolverWithTerms>, Fault> {
+pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
-    let mut solvers: Vec<SolverWithTerms> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
+    let mut solvers: Vec<ConformingSolver> =
+        ours.map(|(solver, terms)| ConformingSolver { solver: Arc::from(solver), terms, is_ours: true }).collect();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
-        let outside = solver::outside(path)?;
-        let terms = outside.terms();
-        solvers.push((outside, terms));
+        let solver = solver::outside(path)?;
+        let terms = solver.terms();
+        solvers.push(ConformingSolver { solver, terms, is_ours: false });
     }
     Ok(solvers)
 }
 
-/// Tests the conformance of the named solvers; of all our solvers if none is named. Finished runs of our solvers come
-/// from the cache if there is one. Returns `None` if no solver matches.
-pub(crate) fn section(named: &[String], cache: Option<&Arc<RunCache>>) -> Result<Option<Section>, Fault> {
-    let solvers = owing(named)?;
-    let ours = solvers.len() - named.iter().filter(|name| solver::is_manifest(name)).count();
-    let judged: Vec<_> = solvers.iter().map(|_| OnceLock::new()).collect();
-    let kept = cache::solvers(cache);
-    share(
-        solvers.len(),
-        at_once(1),
-        || true,
-        |number| {
-            let (solver, terms) = &solvers[number];
-            // An external solver may have the name of one of our solvers.
-            let of_cache = if number < ours { kept.find(&solver.name()) } else { None };
-            let of_cache = of_cache.as_ref().unwrap_or(solver);
-            judged[number].get_or_init(|| conformance::judge_kept(&**solver, &**of_cache, terms));
-        },
-    );
-    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
-    Ok((!solvers.is_empty()).then(|| section_of(verdicts.concat(), controls.concat())))
+/// Tests the conformance of a solver. Finished runs of our solvers may come from a cache.
+pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<Control>) {
+    let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
+    conformance::judge_kept(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
 }
 
 /// Returns the section of some conformance results.
@@ -121,9 +103,8 @@ pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Sect
             "A solver can satisfy all properties and still be wrong: it may conserve momentum, be symmetric and have \
                the wrong stiffness. Grid methods run in the plane, with two cells per radius."
                 .to_owned(),
-        figures: Vec::new(),
         verdicts,
         controls,
-        runs: Vec::new(),
+        ..Section::default()
     }
 }

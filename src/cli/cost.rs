@@ -2,17 +2,18 @@
 
 use super::campaign;
 use super::campaign::plan::{PlanOptions, plan};
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::keep::keep_study;
 use super::progress::Progress;
 use super::provenance::provenance;
+use super::publish::{Output, publish_study};
 use super::strangers::NamedSolvers;
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::TargetQuantity;
 use grainbench::reports::study::point::Point;
-use grainbench::reports::study::{Study, cost as drawn, points_of, study_json, write_study};
+use grainbench::reports::study::{Study, cost as drawn, points_of, write_study};
 use grainbench::studies::ProgressObserver;
 use grainbench::studies::cost::against::{compare, shared};
 use grainbench::studies::cost::run::{Meter, PointSelection};
@@ -20,7 +21,6 @@ use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Arguments of the command.
@@ -111,18 +111,13 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     if let (Some(old), Some(path)) = (&old, &arguments.against) {
         set_against(&mut study, old, path);
     }
-    write_study(&arguments.out, &study).map_err(Fault::writing)?;
     if arguments.update_stored {
         keep_study("cost", &study)?;
     }
     let reused = follower.end();
-    if arguments.json {
-        print(&study_json(&study).map_err(Fault::input)?)?;
-    } else {
-        print(&text(&study, &arguments.out))?;
-        print(&format!("{reused} of {pieces} points are from an earlier measurement\n"))?;
-    }
-    Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    let text = text(&study) + &format!("{reused} of {pieces} points are from an earlier measurement\n");
+    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
+    publish_study(&study, output, is_red(&study))
 }
 
 /// Returns true if a study measures no error, or if a change since an earlier session is for the worse.
@@ -179,7 +174,7 @@ pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
 
 /// Returns the summary of a cost study as text: one line per target quantity and error target, then the changes since
 /// an earlier session.
-pub(crate) fn text(study: &Study, out: &Path) -> String {
+pub(crate) fn text(study: &Study) -> String {
     let mut text = String::new();
     for diagram in &study.diagrams {
         text.push_str(&format!("{}/{} · {}\n", diagram.case, diagram.variant, diagram.quantity));
@@ -198,7 +193,7 @@ pub(crate) fn text(study: &Study, out: &Path) -> String {
             text.push_str(&format!("  {}: {}\n", change.what, change.how));
         }
     }
-    text + &format!("{}\n", out.join("index.html").display())
+    text
 }
 
 /// Progress of a study, with the number of reused results.

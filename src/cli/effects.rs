@@ -1,9 +1,10 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
 use super::cost::{Follower, sources};
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::keep::keep_study;
 use super::provenance::provenance;
+use super::publish::{Output, publish_study};
 use super::solver;
 use super::step::Step;
 use super::subject::{self, Variant};
@@ -11,7 +12,7 @@ use super::value::positive;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::reports::study::effects::EffectResult;
-use grainbench::reports::study::{Study, study_json, write_study};
+use grainbench::reports::study::{Study, write_study};
 use grainbench::scene::effect::Effect;
 use grainbench::scene::solver::{Method, Resolution};
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
@@ -19,7 +20,6 @@ use grainbench::studies::effects::scene::StudyInput;
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::{ProgressObserver, identity};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -162,7 +162,6 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     }
     follower.end();
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
-    write_study(&arguments.out, &study).map_err(Fault::writing)?;
     tell(&study, arguments, "")
 }
 
@@ -171,21 +170,17 @@ pub(crate) fn is_red(study: &Study) -> bool {
     study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
 }
 
-/// Prints the results. The outcome is red if an absent effect with a neutral value changes a result.
+/// Writes and prints the results. The outcome is red if an absent effect with a neutral value changes a result.
 fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
-    if arguments.json {
-        print(&study_json(study).map_err(Fault::input)?)?;
-    } else {
-        let mut text = String::new();
-        for entry in &study.ledger {
-            let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
-            let scene = [entry.case.as_str(), &entry.variant].join("/");
-            let scene = scene.trim_end_matches('/');
-            text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
-        }
-        print(&format!("{text}{end}{}\n", arguments.out.join("index.html").display()))?;
+    let mut text = String::new();
+    for entry in &study.ledger {
+        let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
+        let scene = [entry.case.as_str(), &entry.variant].join("/");
+        let scene = scene.trim_end_matches('/');
+        text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
     }
-    Ok(if is_red(study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    let output = Output { text: Some(text + end), ..Output::new(&arguments.out, arguments.json, false) };
+    publish_study(study, output, is_red(study))
 }
 
 /// Returns the effects studies of the named cases, with their effects.

@@ -6,7 +6,7 @@ use super::import::{Import, import};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
-use super::run::exit_code;
+use super::publish::{Output, publish};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
 use grainbench::cases::uncertainty::{self, StoredEstimates};
@@ -14,9 +14,7 @@ use grainbench::cases::{Case, runner};
 use grainbench::harness::run::Set;
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::stored::{folder, make};
-use grainbench::reports::measured::Measurements;
-use grainbench::reports::results::results_json;
-use grainbench::reports::{Report, Section, StagedDir, write_file, write_report};
+use grainbench::reports::{Report, Section, StagedDir, write_file};
 use grainbench::scene::solver::RunError;
 use grainbench::verify::verify as compare;
 use std::path::PathBuf;
@@ -210,25 +208,10 @@ fn verify(arguments: &Verify) -> Outcome {
              up to the predictability horizon, and by means over blocks afterwards."
                 .to_owned(),
         weak: "An error of a program that already existed when the run was stored is not detected.".to_owned(),
-        figures: Vec::new(),
         verdicts,
-        controls: Vec::new(),
-        runs: Vec::new(),
+        ..Section::default()
     };
     let words = [vec!["reference verify".to_owned()], arguments.ids.clone()].concat();
-    let report = Report {
-        provenance: provenance(words, start.elapsed().as_secs_f64()),
-        sections: vec![section],
-        judged: Vec::new(),
-        shown: Vec::new(),
-        measured: Measurements::default(),
-        red_because: Vec::new(),
-    };
-    write_report(&arguments.out, &report).map_err(Fault::writing)?;
-    if arguments.json {
-        print(&results_json(&report).map_err(Fault::input)?)?;
-    } else {
-        print(&format!("{}{}\n", rows(&report), arguments.out.join("index.html").display()))?;
-    }
-    Ok(exit_code(&report, false))
+    let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
+    publish(&report, &Output { text: Some(rows(&report)), ..Output::new(&arguments.out, arguments.json, false) })
 }

@@ -5,7 +5,7 @@ use super::campaign::status::status;
 use super::cost;
 use super::effects;
 use super::exit::{Fault, Outcome, RED, print};
-use super::run;
+use super::publish::exit_code;
 use super::stability;
 use super::value::{positive, whole};
 use grainbench::campaign::plan::Plan;
@@ -114,7 +114,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
     write_report(&arguments.dir, &report).map_err(Fault::writing)?;
     print(&format!("{}\n{page}", summary_table(&report)))?;
-    Ok(run::exit_code(&report, false))
+    Ok(exit_code(&report, false))
 }
 
 /// Returns true if the study ended red: it is unfinished, or its own command ends red with these results.

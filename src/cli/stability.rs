@@ -3,16 +3,17 @@
 use super::campaign;
 use super::campaign::plan::{PlanOptions, plan};
 use super::cost::{Follower, sources};
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, check_writable};
 use super::keep::keep_study;
 use super::provenance::provenance;
+use super::publish::{Output, publish_study};
 use super::strangers::NamedSolvers;
 use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::reports::number;
 use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
-use grainbench::reports::study::{Study, study_json, write_study};
+use grainbench::reports::study::{Study, write_study};
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
@@ -20,7 +21,6 @@ use grainbench::studies::stability::limit;
 use grainbench::studies::{ProgressObserver, identity};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Case in which the limit of the method with a grid is measured.
@@ -99,14 +99,9 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
         keep_study("stability", &study)?;
     }
     let reused = follower.end();
-    if arguments.json {
-        print(&study_json(&study).map_err(Fault::input)?)?;
-    } else {
-        let end =
-            format!("{reused} of {} were done before\n{}\n", pieces.len(), arguments.out.join("index.html").display());
-        print(&(text(&study) + &end))?;
-    }
-    Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    let text = text(&study) + &format!("{reused} of {} were done before\n", pieces.len());
+    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
+    publish_study(&study, output, is_red(&study))
 }
 
 /// Returns true if no solver gave a limit and no hard case holds. A run that fails measures nothing.

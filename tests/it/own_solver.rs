@@ -7,7 +7,10 @@ use grainbench::dem::solver::Dem;
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::control::WrongPhysics;
+use grainbench::harness::mistake;
 use grainbench::harness::run::Set;
+use grainbench::harness::runner::Runner;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::Outcome;
 use grainbench::own::JudgementError;
 use grainbench::scene::record::Record;
@@ -18,6 +21,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::Arc;
 
 /// The conventions differ in everything that a scene leaves open. Each convention passes the solver-independent claims,
 /// and their controls fail for it. Cases that take long are included with `GRAINBENCH_LONG=1`.
@@ -87,27 +91,52 @@ fn a_case_that_is_not_there_or_not_fair_says_so() {
     assert_eq!(grainbench::judge(solver(), &["squash"]), Err(JudgementError::NothingFair("squash".to_owned())));
 }
 
+/// Solver with a change of every scene.
+struct Changed(Box<dyn Solver>, fn(&mut Scene));
+
+impl Solver for Changed {
+    fn name(&self) -> String {
+        "changed".to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+        let mut scene = scene.clone();
+        (self.1)(&mut scene);
+        self.0.run(&scene, resolution, watch)
+    }
+}
+
 /// A solver that ignores the scene may give the right result, but not for the wrong scene of a control.
 #[test]
 fn a_solver_that_ignores_the_scene_is_found_out() {
-    use grainbench::scene::{record::Record, scene::Scene, solver::*};
-    struct SceneIgnoringSolver(Box<dyn Solver>);
-    impl Solver for SceneIgnoringSolver {
-        fn name(&self) -> String {
-            "deaf".to_owned()
-        }
-        fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-            let mut scene = scene.clone();
-            let factor = scene.grain_shape.inertia_factor();
-            scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius.powi(2));
-            self.0.run(&scene, resolution, watch)
-        }
-    }
-    let judgement =
-        grainbench::judge(SceneIgnoringSolver(solvers::by_name("dem").unwrap()), &["incline-disc"]).unwrap();
+    let ignoring = Changed(solvers::by_name("dem").unwrap(), |scene| {
+        let factor = scene.grain_shape.inertia_factor();
+        scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius.powi(2));
+    });
+    let judgement = grainbench::judge(ignoring, &["incline-disc"]).unwrap();
     assert!(judgement.verdicts.iter().all(|row| row.outcome.word() == "pass"));
     let failures = judgement.failures();
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
+}
+
+/// If our own solver fails, its error with the wrong scene of a control is the same, and explains nothing.
+#[test]
+fn a_control_does_not_explain_a_defect_of_our_own_solver() {
+    struct Spoiled;
+    impl Solvers for Spoiled {
+        fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
+            Some(Arc::new(Changed(solvers::by_name(name)?, |scene| scene.gravity.x *= 0.0)))
+        }
+    }
+    let case = CASES.iter().find(|case| case.name == "energy-sums").unwrap();
+    let claims: Vec<Claim> = (case.claims)().into_iter().filter(|claim| claim.runs[0].variant == "thrown").collect();
+    let spoiled: Arc<dyn Solvers> = Arc::new(Spoiled);
+    let runner = Runner::new(case, Arc::clone(&spoiled));
+    let mut rows: Vec<_> = claims.iter().map(|claim| Some(runner.judge(claim))).collect();
+    mistake::explain(case, &spoiled, &claims, &mut rows);
+    let row = rows[0].take().unwrap();
+    assert_eq!(row.outcome, Outcome::Fail, "{row:?}");
+    assert!(row.detail.is_none_or(|detail| !detail.contains("as if")));
 }
 
 /// The example as an external author has it, in a separate crate that depends only on grainbench. It passes as it is

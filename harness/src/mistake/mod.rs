@@ -1,7 +1,8 @@
 //! Known mistakes of solvers, and the search for the one that explains failed results.
 //!
-//! A mistake explains a failed result if our own solvers give the same error with it. The candidates are wrong scenes,
-//! such as another gravity or inertia, the claim's negative control, and wrong methods in [`small_dem`].
+//! A mistake explains a failed result if our own solvers give the same error with it, and pass without it. The candidates
+//! are wrong scenes, such as another gravity or inertia, the claim's negative control, and wrong methods in
+//! [`small_dem`].
 
 pub mod small_dem;
 
@@ -149,12 +150,21 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
     let can: Vec<[bool; 2]> = judged.iter().map(|judged| limits(&plain, judged.claim)).collect();
-    // Errors without a mistake. A mistake that changes no error explains nothing.
-    let by_scene: Vec<Option<f64>> =
-        judged.iter().zip(&can).map(|(judged, can)| can[0].then(|| plain.judge(judged.claim).error)?).collect();
+    // Errors without a mistake. A mistake that changes no error explains nothing, and neither does a solver that fails
+    // without it.
+    let is_tried = |judged: &ClaimResult<'_>, can: &[bool; 2]| {
+        can[0] || judged.row.outcome == Outcome::Fail && is_own(judged.claim)
+    };
+    let by_scene: Vec<Option<f64>> = judged
+        .iter()
+        .zip(&can)
+        .map(|(judged, can)| is_tried(judged, can).then(|| plain.judge(judged.claim).error)?)
+        .collect();
     let by_method: Vec<Option<f64>> =
         judged.iter().zip(&can).map(|(judged, can)| can[1].then(|| method_error(&right, judged))?).collect();
-    let is_right = |place: usize| by_method[place].is_some_and(|error| error.abs() <= judged[place].row.allowed);
+    let is_right =
+        |error: Option<f64>, place: usize| error.is_some_and(|error| error.abs() <= judged[place].row.allowed);
+    let passes = |place: usize| is_right(by_scene[place], place) || !is_tried(&judged[place], &can[place]);
     let changed = |error: Option<f64>, without: Option<f64>| {
         error.filter(|error| without.is_none_or(|without| (error - without).abs() > UNCHANGED * without.abs()))
     };
@@ -164,11 +174,13 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
             Mistake::Scene(_) | Mistake::Control(_) => Runner::new(case, Arc::clone(solvers)),
         };
         let candidate_error = |(place, judged): (usize, &ClaimResult<'_>)| match mistake {
-            Mistake::Method(_) if is_right(place) => changed(method_error(&runner, judged), by_method[place]),
-            Mistake::Scene(control) if can[place][0] => {
+            Mistake::Method(_) if is_right(by_method[place], place) => {
+                changed(method_error(&runner, judged), by_method[place])
+            }
+            Mistake::Scene(control) if can[place][0] && passes(place) => {
                 changed(scene_error(&runner, judged.claim, control.clone()), by_scene[place])
             }
-            Mistake::Control(name) if judged.claim.control.name == *name && is_own(judged.claim) => {
+            Mistake::Control(name) if judged.claim.control.name == *name && is_own(judged.claim) && passes(place) => {
                 scene_error(&runner, judged.claim, Control { resolution: None, ..judged.claim.control.clone() })
             }
             _ => None,

@@ -2,12 +2,13 @@
 
 use super::collect::ReportOptions;
 use super::plan::Arguments;
-use super::study::{Study, TaskResult, came};
+use super::study::Study;
 use crate::cli::cost::{self, ROUNDS};
-use crate::cli::exit::{Fault, Outcome, RED, print};
+use crate::cli::exit::{Fault, Outcome};
 use crate::cli::provenance::provenance;
+use crate::cli::publish::{Output, publish_study};
 use crate::cli::strangers::NamedSolvers;
-use grainbench::campaign::finished::FinishedTasks;
+use grainbench::campaign::finished::{FinishedTasks, TaskResult};
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::share::share;
@@ -16,13 +17,12 @@ use grainbench::campaign::work::ResultSink;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::TargetQuantity;
 use grainbench::reports::study::point::{Point, PointStatus};
-use grainbench::reports::study::{Study as Report, points_of, study_json, write_study};
+use grainbench::reports::study::{Study as Report, points_of};
 use grainbench::studies::cost::run::{Meter, PointSelection};
 use grainbench::studies::cost::{load, step};
 use grainbench::studies::result_cache::ResultCache;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -229,11 +229,11 @@ impl Study for CostStudy {
         let mut study = Report::new(provenance(words, how.seconds));
         if self.prices {
             let [(prices, ..), (loads, ..)] = self.beside(&plan.head.program);
-            study.model = match came(finished, prices) {
+            study.model = match finished.result(prices) {
                 TaskResult::Out(model) => Some(model),
                 TaskResult::Nothing | TaskResult::Crash(_) => None,
             };
-            study.loads = match came(finished, loads) {
+            study.loads = match finished.result(loads) {
                 TaskResult::Out(loads) => loads,
                 TaskResult::Nothing | TaskResult::Crash(_) => Vec::new(),
             };
@@ -246,12 +246,8 @@ impl Study for CostStudy {
         if let (Some(old), Some(path)) = (&old, how.against) {
             cost::set_against(&mut study, old, path);
         }
-        write_study(how.out, &study).map_err(Fault::writing)?;
-        if how.json {
-            print(&study_json(&study).map_err(Fault::input)?)?;
-        } else {
-            print(&cost::text(&study, how.out))?;
-        }
-        Ok(if cost::is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+        let text = cost::text(&study);
+        let output = Output { text: Some(text), ..Output::new(how.out, how.json, false) };
+        publish_study(&study, output, cost::is_red(&study))
     }
 }

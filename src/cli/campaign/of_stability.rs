@@ -4,8 +4,9 @@ use super::collect::ReportOptions;
 use super::plan::Arguments;
 use super::study::Study;
 use crate::cli::cost::Follower;
-use crate::cli::exit::{Fault, Outcome, RED, print};
+use crate::cli::exit::{Fault, Outcome};
 use crate::cli::provenance::provenance;
+use crate::cli::publish::{Output, publish_study};
 use crate::cli::stability::{self, WorkItem};
 use crate::cli::strangers::NamedSolvers;
 use grainbench::campaign::finished::FinishedTasks;
@@ -14,14 +15,13 @@ use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::share::share;
 use grainbench::campaign::task::{Id, Task};
 use grainbench::campaign::work::ResultSink;
-use grainbench::reports::study::{Study as Report, study_json, write_study};
+use grainbench::reports::study::Study as Report;
 use grainbench::studies::identity;
 use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
 use grainbench::studies::stability::limit;
 use std::collections::{BTreeMap, HashMap};
-use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Expected duration of a stability limit with contact springs (s).
@@ -173,12 +173,8 @@ impl Study for StabilityStudy {
             Ok(())
         })?;
         study.sources = stability::sources_of(&study);
-        write_study(how.out, &study).map_err(Fault::writing)?;
-        if how.json {
-            print(&study_json(&study).map_err(Fault::input)?)?;
-        } else {
-            print(&format!("{}{}\n", stability::text(&study), how.out.join("index.html").display()))?;
-        }
-        Ok(if stability::is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+        let text = stability::text(&study);
+        let output = Output { text: Some(text), ..Output::new(how.out, how.json, false) };
+        publish_study(&study, output, stability::is_red(&study))
     }
 }

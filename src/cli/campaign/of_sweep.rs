@@ -2,13 +2,13 @@
 
 use super::collect::ReportOptions;
 use super::plan::Arguments;
-use super::study::{Study, TaskResult, came};
+use super::study::Study;
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
-use grainbench::campaign::finished::FinishedTasks;
+use grainbench::campaign::finished::{FinishedTasks, TaskResult};
 use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
 use grainbench::campaign::share::share;
@@ -107,7 +107,7 @@ impl Study for SweepStudy {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
         let left = |place: usize| -> Option<PointOutput> {
-            match came(finished, plan.tasks.get(place)?.id) {
+            match finished.result(plan.tasks.get(place)?.id) {
                 TaskResult::Nothing => None,
                 TaskResult::Out(left) => Some(left),
                 TaskResult::Crash(detail) => {

@@ -8,11 +8,9 @@ use super::of_sweep::SweepStudy;
 use super::plan::Arguments;
 use crate::cli::exit::{Fault, Outcome};
 use grainbench::campaign::finished::FinishedTasks;
-use grainbench::campaign::log::State;
 use grainbench::campaign::plan::{Kind, Plan};
-use grainbench::campaign::task::{Id, Task};
+use grainbench::campaign::task::Task;
 use grainbench::campaign::work::ResultSink;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -42,28 +40,4 @@ pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Box<dyn Study>, Fa
         "stability" => Box::new(StabilityStudy::new(arguments)?),
         file => Box::new(SweepStudy::new(file, arguments)?),
     })
-}
-
-/// Result of a task.
-pub(crate) enum TaskResult<T> {
-    /// No result yet.
-    Nothing,
-    /// Result.
-    Out(T),
-    /// Message of a crash of our program.
-    Crash(String),
-}
-
-/// Reads the result of a task.
-pub(crate) fn came<T: DeserializeOwned>(finished: &FinishedTasks, id: Id) -> TaskResult<T> {
-    let Some(entry) = finished.entries.get(&id) else { return TaskResult::Nothing };
-    if entry.state == State::Crashed {
-        return TaskResult::Crash(
-            serde_json::from_str(&entry.json).unwrap_or_else(|_| "our program failed".to_owned()),
-        );
-    }
-    match serde_json::from_str(&entry.json) {
-        Ok(result) => TaskResult::Out(result),
-        Err(error) => TaskResult::Crash(format!("its result cannot be read: {error}")),
-    }
 }

@@ -1,0 +1,152 @@
+//! Claims of a run: the options that select them, and the report of their results.
+
+pub(crate) mod tasks;
+
+use super::cores::MOST_THREADS;
+use super::earlier::EarlierReport;
+use super::exit::Fault;
+use super::filter::Filters;
+use super::select::CaseSelection;
+use super::value::whole;
+use grainbench::harness::claim::Claim;
+use grainbench::reports::measured::Measurements;
+use grainbench::reports::{Provenance, Report, Section};
+use std::path::PathBuf;
+
+/// Options of `run`.
+#[derive(clap::Args)]
+pub(crate) struct ClaimOptions {
+    /// Select the claims of this solver; repeatable. A manifest runs the solver-independent claims with this program.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    pub(crate) solver: Vec<String>,
+    /// Select resolution levels: `default`, `all`, or names such as `dt=.1`.
+    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
+    pub(crate) levels: Vec<String>,
+    /// Select rows by quantity, source (substring or pattern), evidence or outcome; filters of one key are alternatives. A filter
+    /// by outcome still runs all claims, and all of them determine the exit code.
+    #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
+    pub(crate) filter: Vec<String>,
+    /// Repeat only the failed claims and controls of the report in `--out`, and the omitted parts of an interrupted
+    /// run; with `--resume`, the failed tasks of the plan.
+    #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
+    pub(crate) retry_failed: bool,
+    /// Print the rows and controls whose outcome differs from this earlier report.
+    #[arg(long, value_name = "DIR|results.json", conflicts_with_all = ["plan", "resume"])]
+    pub(crate) against: Option<PathBuf>,
+    /// Directory for the report.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
+    pub(crate) out: PathBuf,
+    /// Print the results as JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write `rows.parquet` in addition to `rows.csv`.
+    #[arg(long, conflicts_with_all = ["plan", "resume"])]
+    pub(crate) parquet: bool,
+    /// Run `lammps` and `liggghts` even if a stored run exists.
+    #[arg(long)]
+    pub(crate) live: bool,
+    /// Directory with your copy of third-party data, as for `reference import`; without it the claims that need the data are
+    /// `not-available`.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "resume"])]
+    pub(crate) data: Option<PathBuf>,
+    /// Treat amber results as red, including programs that are not installed.
+    #[arg(long, conflicts_with_all = ["plan", "resume"])]
+    pub(crate) strict: bool,
+    /// Ignore the cache of finished runs.
+    #[arg(long)]
+    pub(crate) no_cache: bool,
+    /// Skip the negative controls.
+    #[arg(long)]
+    pub(crate) no_controls: bool,
+    /// Store the results of an external solver in `judged.json` next to its manifest; needs all cases and all controls.
+    #[arg(long, requires = "solver", conflicts_with = "no_controls")]
+    pub(crate) update_stored: bool,
+    /// Expect the outcomes stored next to the manifest: only a different outcome is red.
+    #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored", "plan"])]
+    pub(crate) expect_stored: bool,
+    /// Threads of each run; the results have the same bits for any number.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        value_parser = whole(1, MOST_THREADS),
+        conflicts_with_all = ["plan", "resume"]
+    )]
+    pub(crate) threads: u16,
+    /// Number of simultaneous runs or tasks; as many as the cores allow by default, and one if a plan measures times.
+    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with_all = ["plan", "on"])]
+    pub(crate) jobs: Option<u16>,
+    /// Print only the counts and the failed rows.
+    #[arg(short, long, conflicts_with_all = ["verbose", "plan", "resume"])]
+    pub(crate) quiet: bool,
+    /// Print each row to standard error as soon as it is judged.
+    #[arg(short, long, conflicts_with_all = ["plan", "resume"])]
+    pub(crate) verbose: bool,
+}
+
+/// Returns a report. If it covers the whole registry, it includes the stored results of external solvers and stored
+/// measurements.
+pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: bool) -> Result<Report, Fault> {
+    let (judged, measured) = if is_whole {
+        (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
+    } else {
+        (Vec::new(), Measurements::default())
+    };
+    Ok(Report { judged, measured, ..Report::new(provenance, sections) })
+}
+
+/// Removes claims that the filters exclude. With `--retry-failed`, it also removes claims that were not red in the
+/// report in `--out`.
+pub(crate) fn narrow(
+    selected: &mut Vec<CaseSelection>,
+    options: &ClaimOptions,
+    filters: &Filters,
+) -> Result<(), Fault> {
+    let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
+    for of_case in &mut *selected {
+        let case = of_case.case.name;
+        let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
+        let solver =
+            |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
+        let controls = !options.no_controls;
+        let is_meant = |claim: &Claim| {
+            let repeats = |before: &EarlierReport| {
+                let solver = solver(claim);
+                before.was_red(case, &solver, claim) || before.was_left_out(case, &solver, claim, controls)
+            };
+            before.as_ref().is_none_or(repeats)
+        };
+        let asked = of_case.claims.len();
+        of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
+        of_case.is_part = of_case.claims.len() < asked;
+    }
+    selected.retain(|of_case| !of_case.claims.is_empty());
+    if selected.is_empty() {
+        let what = if options.retry_failed { "that failed there" } else { "that the filters mean" };
+        return Err(Fault::input(format!("expected at least one claim {what}, found none")));
+    }
+    Ok(())
+}
+
+/// Returns the options that differ from the default, in words.
+pub(crate) fn words(cases: &[String], options: &ClaimOptions) -> Vec<String> {
+    let mut words = cases.to_vec();
+    words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
+    if !options.levels.is_empty() {
+        words.push(format!("--levels {}", options.levels.join(",")));
+    }
+    if options.live {
+        words.push("--live".to_owned());
+    }
+    if options.no_controls {
+        words.push("--no-controls".to_owned());
+    }
+    if options.data.is_some() {
+        words.push("--data".to_owned());
+    }
+    words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
+    if options.retry_failed {
+        words.push("--retry-failed".to_owned());
+    }
+    words
+}

@@ -1,0 +1,341 @@
+//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` does the tasks in memory,
+//! and a plan does them on many machines. Both make the report from the same results.
+
+use super::ClaimOptions;
+use crate::cli::conform::{self, ConformingSolver};
+use crate::cli::select::CaseSelection;
+use crate::cli::{cache, exit};
+use grainbench::campaign::finished::TaskResult;
+use grainbench::campaign::log::State;
+use grainbench::harness::course;
+use grainbench::harness::figure::Figure;
+use grainbench::harness::mistake;
+use grainbench::harness::run::{FinishedRun, Run, Set};
+use grainbench::harness::runner::Runner;
+use grainbench::harness::solvers::Solvers;
+use grainbench::harness::verdict::{self, Control, Verdict};
+use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::{RunCost, Section};
+use grainbench::scene::solver::RunError;
+use grainbench::studies::run_cache::RunCache;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashSet};
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+/// Claims of cases and conformance properties of solvers.
+pub(crate) struct ClaimTasks {
+    pub(crate) selected: Vec<CaseSelection>,
+    /// Solvers whose conformance is tested.
+    pub(crate) conforming: Vec<ConformingSolver>,
+    /// True if the negative controls run.
+    pub(crate) controls: bool,
+    /// True if programs run even if a stored run exists.
+    pub(crate) live: bool,
+    /// True if all resolution levels run.
+    pub(crate) thorough: bool,
+    data: Option<PathBuf>,
+    threads: usize,
+}
+
+/// Task, with the index of the case, of the claim within the case, or of the solver.
+#[derive(Clone, Copy)]
+pub(crate) enum ClaimTask {
+    /// A claim and its control.
+    Claim(usize, usize),
+    /// Figures of a case.
+    Figures(usize),
+    /// Conformance properties of a solver.
+    Conformance(usize),
+}
+
+/// Result of a task: part of a section, and the keys that order its runs.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Part {
+    keys: Vec<String>,
+    pub(crate) section: Section,
+    /// Error if the figures could not be drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    without: Option<String>,
+}
+
+impl ClaimTasks {
+    /// Returns the tasks of selected claims. The conformance of the solvers belongs to the whole registry at its default
+    /// levels or at all levels.
+    pub(crate) fn new(
+        selected: Vec<CaseSelection>,
+        options: &ClaimOptions,
+        is_whole: bool,
+    ) -> Result<Self, exit::Fault> {
+        let thorough = options.levels.iter().any(|level| level == "all");
+        let conforms = is_whole && (options.levels.is_empty() || thorough);
+        Ok(Self {
+            selected,
+            conforming: if conforms { conform::owing(&options.solver)? } else { Vec::new() },
+            controls: !options.no_controls,
+            live: options.live,
+            thorough,
+            data: options.data.clone(),
+            threads: usize::from(options.threads),
+        })
+    }
+
+    /// Returns all tasks in the order of the report.
+    pub(crate) fn all(&self) -> Vec<ClaimTask> {
+        let of_case = |(case, selected): (usize, &CaseSelection)| {
+            let claims = (0..selected.claims.len()).map(move |claim| ClaimTask::Claim(case, claim));
+            claims.chain([ClaimTask::Figures(case)])
+        };
+        let of_cases = self.selected.iter().enumerate().flat_map(of_case);
+        of_cases.chain((0..self.conforming.len()).map(ClaimTask::Conformance)).collect()
+    }
+
+    /// Returns a key by which tasks are sorted before they are done in memory. Claims that need a new run come before
+    /// claims that only need earlier runs. All cases progress evenly, so two threads are seldom at one case, where they
+    /// would wait for the same scene or run. Figures come last, because they use finished runs.
+    pub(crate) fn turns(&self) -> Vec<f64> {
+        let mut turns = Vec::new();
+        for selected in &self.selected {
+            let mut asked = HashSet::new();
+            for (place, claim) in selected.claims.iter().enumerate() {
+                let known = asked.len();
+                asked.extend(claim.runs.iter().map(Run::key));
+                let turn = place as f64 / selected.claims.len() as f64;
+                turns.push(if asked.len() > known { turn } else { 1.0 + turn });
+            }
+            turns.push(3.0);
+        }
+        turns.extend(self.conforming.iter().map(|_| 2.0));
+        turns
+    }
+
+    /// Returns true if an external solver is judged.
+    pub(crate) fn has_stranger(&self) -> bool {
+        self.selected.iter().any(|selected| selected.stranger.is_some())
+    }
+
+    /// Returns the name of the case or solver of a task.
+    pub(crate) fn name(&self, task: ClaimTask) -> String {
+        match task {
+            ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => self.selected[case].case.name.to_owned(),
+            ClaimTask::Conformance(solver) => self.conforming[solver].solver.name(),
+        }
+    }
+
+    /// Returns the runner of a case.
+    pub(crate) fn runner(&self, case: usize, solvers: Arc<dyn Solvers>) -> Runner {
+        let selected = &self.selected[case];
+        let runner = Runner::new(selected.case, solvers).live(self.live).thorough(self.thorough);
+        let runner = runner.controlled(self.controls).with_data(self.data.as_deref());
+        // With all levels, runs with stored results are repeated too.
+        let runner = if self.thorough { runner.afresh(Set::Paper) } else { runner };
+        let runner = match &selected.stranger {
+            Some(stranger) => runner.with_solver(Arc::<ExternalProgram>::clone(stranger)),
+            None => runner,
+        };
+        runner.threads(self.threads)
+    }
+
+    /// Returns the sections of a report from the results of its tasks.
+    pub(crate) fn sections(
+        &self,
+        results: impl IntoIterator<Item = (ClaimTask, TaskResult<Part>)>,
+        solvers: &Arc<dyn Solvers>,
+    ) -> Vec<Section> {
+        let mut cases: Vec<CaseResults> = self.selected.iter().map(CaseResults::new).collect();
+        let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
+        for (task, result) in results {
+            let part = match (result, task) {
+                (TaskResult::Out(part), _) => part,
+                (TaskResult::Nothing, _) => continue,
+                (TaskResult::Crash(detail), ClaimTask::Claim(case, claim)) => {
+                    let runner = self.runner(case, Arc::clone(solvers));
+                    let row = runner.crashed(&self.selected[case].claims[claim], detail);
+                    cases[case].verdicts[claim] = Some(row);
+                    continue;
+                }
+                (TaskResult::Crash(detail), _) => {
+                    exit::say("warning", &format!("figures or conformance properties are omitted: {detail}"));
+                    continue;
+                }
+            };
+            let Part { keys, section, without } = part;
+            let case = match task {
+                ClaimTask::Conformance(_) => {
+                    verdicts.extend(section.verdicts);
+                    controls.extend(section.controls);
+                    continue;
+                }
+                ClaimTask::Figures(case) => case,
+                ClaimTask::Claim(case, claim) => {
+                    cases[case].verdicts[claim] = section.verdicts.into_iter().next();
+                    cases[case].controls.extend(section.controls);
+                    case
+                }
+            };
+            if let Some(error) = without {
+                let name = self.selected[case].case.name;
+                exit::say("warning", &format!("{name}: its figures are omitted: {error}"));
+            }
+            cases[case].figures.extend(section.figures);
+            cases[case].runs.extend(keys.into_iter().zip(section.runs));
+        }
+        let finished = self.selected.iter().zip(cases).map(|(selected, results)| results.section(selected, solvers));
+        let mut sections: Vec<Section> = finished.collect();
+        if !verdicts.is_empty() {
+            sections.push(conform::section_of(verdicts, controls));
+        }
+        sections
+    }
+}
+
+/// Results of one case, in the order of its claims.
+struct CaseResults {
+    verdicts: Vec<Option<Verdict>>,
+    controls: Vec<Control>,
+    figures: Vec<Figure>,
+    runs: BTreeMap<String, RunCost>,
+}
+
+impl CaseResults {
+    fn new(selected: &CaseSelection) -> Self {
+        let verdicts = selected.claims.iter().map(|_| None).collect();
+        Self { verdicts, controls: Vec::new(), figures: Vec::new(), runs: BTreeMap::new() }
+    }
+
+    /// Returns the section of the case. Failed results name the mistake that explains them.
+    fn section(mut self, selected: &CaseSelection, solvers: &Arc<dyn Solvers>) -> Section {
+        mistake::explain(selected.case, solvers, &selected.claims, &mut self.verdicts);
+        Section {
+            figures: self.figures,
+            verdicts: self.verdicts.into_iter().flatten().collect(),
+            controls: self.controls,
+            runs: self.runs.into_values().collect(),
+            ..blank(selected)
+        }
+    }
+}
+
+/// Runners of all cases, which share finished runs.
+pub(crate) struct Desk<'a> {
+    tasks: &'a ClaimTasks,
+    solvers: Arc<dyn Solvers>,
+    runners: Vec<OnceLock<Runner>>,
+}
+
+impl<'a> Desk<'a> {
+    pub(crate) fn new(tasks: &'a ClaimTasks, cache: Option<&Arc<RunCache>>) -> Self {
+        let runners = tasks.selected.iter().map(|_| OnceLock::new()).collect();
+        Self { tasks, solvers: cache::solvers(cache), runners }
+    }
+
+    pub(crate) const fn solvers(&self) -> &Arc<dyn Solvers> {
+        &self.solvers
+    }
+
+    fn runner(&self, case: usize) -> &Runner {
+        self.runners[case].get_or_init(|| self.tasks.runner(case, Arc::clone(&self.solvers)))
+    }
+
+    /// Does a task.
+    pub(crate) fn perform(&self, task: ClaimTask) -> (State, Part) {
+        match task {
+            ClaimTask::Claim(case, claim) => self.claim(case, claim),
+            ClaimTask::Figures(case) => self.figures(case),
+            ClaimTask::Conformance(solver) => {
+                let (verdicts, controls) = conform::judge(&self.tasks.conforming[solver], &self.solvers);
+                let section = Section { title: String::new(), ..conform::section_of(verdicts, controls) };
+                (State::Done, in_short(Part { keys: Vec::new(), section, without: None }))
+            }
+        }
+    }
+
+    /// Judges a claim and its control.
+    fn claim(&self, case: usize, claim: usize) -> (State, Part) {
+        let (selected, runner) = (&self.tasks.selected[case], self.runner(case));
+        let claim = &selected.claims[claim];
+        let (verdict, control) = runner.judge_and_control(claim, self.tasks.controls);
+        // A solver that is missing now may be available in a later attempt.
+        let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
+        let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
+        part.section.verdicts.push(verdict);
+        part.section.controls.extend(control);
+        let keys: HashSet<String> = claim.runs.iter().map(Run::key).collect();
+        part.add_runs(runner, |key| keys.contains(key));
+        (if is_failed { State::Failed } else { State::Done }, in_short(part))
+    }
+
+    fn figures(&self, case: usize) -> (State, Part) {
+        let (selected, runner) = (&self.tasks.selected[case], self.runner(case));
+        let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
+        match draw(selected, runner) {
+            Ok(figures) => part.section.figures = figures,
+            Err(error) => part.without = Some(error.to_string()),
+        }
+        part.add_runs(runner, |_| true);
+        (if part.without.is_some() { State::Failed } else { State::Done }, in_short(part))
+    }
+}
+
+impl Part {
+    /// Adds the cost of finished runs.
+    fn add_runs(&mut self, runner: &Runner, is_meant: impl Fn(&str) -> bool) {
+        for (run, done) in runner.done() {
+            let key = run.key();
+            if is_meant(&key) {
+                self.keys.push(key);
+                self.section.runs.push(cost(&run, &done));
+            }
+        }
+    }
+}
+
+/// Removes the texts that the report takes from the case.
+fn in_short(part: Part) -> Part {
+    let nothing = String::new;
+    let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
+    Part { section, ..part }
+}
+
+/// Draws the figures of a case for the selected claims.
+///
+/// # Errors
+/// When a run of a figure fails.
+fn draw(selected: &CaseSelection, runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    if selected.stranger.is_some() || selected.is_part {
+        // The case's own figures may need runs that none of these claims uses.
+        return course::figures(runner, &selected.claims);
+    }
+    course::of_case(selected.case, runner, &selected.claims)
+}
+
+/// Returns the section of a case without results.
+fn blank(selected: &CaseSelection) -> Section {
+    let case = selected.case;
+    Section {
+        name: case.name.to_owned(),
+        title: match &selected.stranger {
+            Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
+            None => case.title.to_owned(),
+        },
+        claim: case.claim.to_owned(),
+        derivation: case.derivation.to_owned(),
+        weak: case.weakness.to_owned(),
+        ..Section::default()
+    }
+}
+
+fn cost(run: &Run, done: &FinishedRun) -> RunCost {
+    let (provenance, cost) = (&done.record.provenance, &done.record.cost);
+    RunCost {
+        variant: run.scene_words(),
+        solver: provenance.solver.clone(),
+        resolution: run.resolution.to_string(),
+        steps: cost.steps,
+        particle_steps: cost.particle_steps,
+        contact_evaluations: cost.contact_evaluations,
+        wall_seconds: cost.wall_seconds,
+        time_step: provenance.time_step,
+        fraction_of_critical: provenance.critical_time_step.map(|critical| provenance.time_step / critical),
+    }
+}
