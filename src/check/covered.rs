@@ -1,6 +1,7 @@
 //! Part of a run that the output covers. Claims about the whole run need output to its end.
 
-use super::{Candidate, at};
+use super::start::at;
+use super::subject::Candidate;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::{Bound, ExpectedValue, Measurement};
 use grainbench_harness::tolerance::ToleranceOrigin;

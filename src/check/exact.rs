@@ -1,7 +1,8 @@
 //! Comparison of output with the exact solutions of a case.
 
 use super::covered::Coverage;
-use super::{Candidate, judged};
+use super::judgement::judged;
+use super::subject::Candidate;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::FinishedRun;
 use grainbench_harness::verdict::{Outcome, Verdict};

@@ -5,8 +5,10 @@ mod covered;
 mod exact;
 mod figures;
 mod horizon;
+mod judgement;
 mod ours;
 mod power;
+mod start;
 mod stored;
 mod subject;
 
@@ -17,21 +19,20 @@ use covered::Coverage;
 use exact::exact;
 use figures::figures;
 use grainbench_cases::solvers::Registry;
-use grainbench_harness::compare::peers::{ColumnComparison, DecisiveSample, Peer, Sample, WIDE};
+use grainbench_harness::compare::peers::Peer;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::expect::Measurement;
 use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::{Origin, OutputError, Outputs, steps_in_words};
-use grainbench_reports::{Section, number};
+use grainbench_reference::outputs::{OutputError, Outputs, steps_in_words};
+use grainbench_reports::Section;
 use grainbench_scene::error::SceneError;
-use grainbench_scene::nalgebra::Vector3;
-use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
+use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Resolution;
 use ours::{Plan, ours};
 use power::CheckInputs;
+use start::{distance, misplaced};
 use std::sync::Arc;
 use subject::Candidate;
 use thiserror::Error;
@@ -97,12 +98,6 @@ pub struct Options {
     pub power: Power,
 }
 
-/// Accepted deviation from the start beyond the printed digits: in radii for positions, and as a fraction of the fastest
-/// rim for speeds.
-const START: f64 = 1e-9;
-/// Names of the axes.
-const AXES: [&str; 3] = ["x", "y", "z"];
-
 /// Checks output against a case or a scene of the user. For a case without a named variant, the first sample selects
 /// the variant.
 ///
@@ -165,114 +160,6 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         expected: "a variant with a scene".to_owned(),
         found: "none".to_owned(),
     }))
-}
-
-/// Quantity of a grain in the first sample.
-struct Start {
-    name: String,
-    unit: &'static str,
-    /// Value in the scene.
-    expected: f64,
-    /// Difference of the sample from the scene. Along a periodic axis it does not count whole periods.
-    off: f64,
-    /// Uncertainty of the sample due to its printed digits.
-    open: f64,
-    /// Scale of the quantity.
-    scale: f64,
-}
-
-impl Start {
-    /// Returns true if the sample differs from the scene by more than its printed digits and a rounding.
-    fn is_off(&self) -> bool {
-        self.off.abs() > self.open + START * self.scale
-    }
-}
-
-/// Returns the coordinates of probed grains in the first sample.
-fn probed<'o>(scene: &'o Scene, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
-    observed.series.columns.iter().enumerate().filter_map(|(at, column)| {
-        let (probe, quantity) = column.name.rsplit_once('.')?;
-        let probe = scene.probes.iter().find(|other| other.name == probe)?;
-        let axis = AXES.iter().position(|axis| *axis == quantity)?;
-        let ProbeTarget::Grain(grain) = probe.target else { return None };
-        let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
-        let (found, open) = (*observed.series.values[at].first()?, *observed.uncertainty[at].first()?);
-        let off = to_nearest_image(scene, axis, found - expected);
-        Some(Start { name: column.name.clone(), unit: "m", expected, off, open, scale: radius })
-    })
-}
-
-/// Returns positions, velocities and spins of all grains in the first snapshot, if the files have them. `step` is the
-/// time step (s). Components out of the plane of the scene are left out.
-fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
-    let axes = if scene.dimension == Dimension::Two { (0..2, 2..3) } else { (0..3, 0..3) };
-    let rim = scene.grains.iter().map(|grain| grain.velocity.norm() + grain.radius * grain.spin.norm());
-    let fastest = rim.fold(0.0, f64::max);
-    // Some programs store velocities half a step before or after the positions.
-    let fall = scene.gravity.norm() * step.unwrap_or_default();
-    let groups = scene.driven_group_of_grains();
-    let printed = observed.snapshots.first().map_or(&[][..], |first| &first.grains);
-    let shifted = observed.shifted_start.as_ref().map_or(printed, |first| &first.grains);
-    printed.iter().zip(shifted).flat_map(move |(found, shifted)| {
-        let place = found.id as usize - 1;
-        let grain = &scene.grains[place];
-        let start = move |name: &str, unit, axis: usize, [expected, found, shifted]: [Vector3<f64>; 3], scale| {
-            let name = format!("{name}{} of grain {}", AXES[axis], place + 1);
-            let (expected, off) = (expected[axis], found[axis] - expected[axis]);
-            Start { name, unit, expected, off, open: (shifted[axis] - found[axis]).abs(), scale }
-        };
-        let (linear, turning) = axes.clone();
-        let places = linear.clone().map(move |axis| {
-            let start = start("", "m", axis, [grain.position, found.position, shifted.position], grain.radius);
-            Start { off: to_nearest_image(scene, axis, start.off), ..start }
-        });
-        let speeds = linear.map(move |axis| {
-            let start = start("v", "m/s", axis, [grain.velocity, found.velocity, shifted.velocity], fastest);
-            Start { open: start.open + fall, ..start }
-        });
-        let spins = turning.map(move |axis| {
-            start("omega", "rad/s", axis, [grain.spin, found.spin, shifted.spin], fastest / grain.radius)
-        });
-        // Programs differ in the velocity that they print for a grain with prescribed motion.
-        let is_free = groups[place].is_none();
-        places.chain(speeds.chain(spins).filter(move |_| is_free))
-    })
-}
-
-/// Returns a difference of coordinates (m) without whole periods of its axis.
-fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
-    match scene.domain.filter(|domain| domain.periodic[axis]) {
-        Some(domain) => off - (off / (domain.high - domain.low)[axis]).round() * (domain.high - domain.low)[axis],
-        None => off,
-    }
-}
-
-/// Returns the largest distance of a coordinate from the start of a scene, in grain radii.
-fn distance(scene: &Scene, observed: &DumpRecord) -> f64 {
-    let starts = probed(scene, observed).chain(of_snapshot(scene, None, observed)).filter(|start| start.unit == "m");
-    starts.map(|start| start.off.abs() / start.scale).fold(0.0, f64::max)
-}
-
-/// Returns the expected and the found value of the first grain that does not start as in the scene.
-fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord) -> Option<(String, String)> {
-    let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
-    let mut is_placed = false;
-    for start in probed(scene, observed).chain(of_snapshot(scene, outputs.time_step(), observed)) {
-        if start.is_off() {
-            let late = late.map(|late| format!(" in {late}")).unwrap_or_default();
-            let Start { name, unit, expected, off, .. } = start;
-            return Some((format!("{name} = {expected:?} {unit}"), format!("{:?} {unit}{late}", expected + off)));
-        }
-        is_placed = true;
-    }
-    // A first sample counts as time 0 only if it shows the start of the scene.
-    late.filter(|_| !is_placed).map(|late| ("at time 0".to_owned(), late))
-}
-
-/// Returns step and time of a first sample, in words.
-fn at(origin: Origin) -> String {
-    let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
-    format!("step {}{time}", origin.step)
 }
 
 /// Rejects time steps at or above the critical one, because our own solvers would be unstable.
@@ -407,77 +294,4 @@ fn rows_of_ours(made: &CheckInputs<'_>, power: Power, row: &dyn Fn(String, &str)
 fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, outcome: Outcome, reason: String) -> Verdict {
     let row = Verdict { because: "none was made".to_owned(), ..row("comparison with our solvers".to_owned(), "1") };
     row.left(outcome, reason)
-}
-
-/// Evaluates a measured value, with the tolerance widened by the uncertainty of the printed digits. A tolerance above a
-/// twentieth of the scale never gives a green result.
-fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measurement) -> Verdict {
-    widened(row, open, outputs).judged(found).unless_wider_than(WIDE)
-}
-
-/// Allowed error of a column, without the uncertainty of its digits.
-struct ErrorAllowance {
-    /// Constant part, as a fraction of the scale.
-    floor: f64,
-    /// Factor for the change from halving the time step.
-    times: f64,
-    /// Name of the runs that differ from each other, in words.
-    conventions: &'static str,
-}
-
-/// Largest fraction of samples that may allow too large an error if the other samples decide the result of a column.
-const FEW: f64 = 0.1;
-
-/// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.
-fn judged_in_time(
-    row: Verdict,
-    compared: &ColumnComparison<'_>,
-    beside: &ErrorAllowance,
-    outputs: &Outputs,
-) -> Verdict {
-    let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
-    let Some(decisive) = compared.decisive(|sample| allowed(sample) + compared.open) else {
-        return row.left(Outcome::NoReference, "there is no sample");
-    };
-    let DecisiveSample { sample, wide, first_outside, .. } = decisive;
-    let times = if beside.times == 1.0 { String::new() } else { format!(", times {}", beside.times) };
-    let because = format!(
-        "tolerance near t = {} s: {} differ by {}, halving the step changes {}{times}, plus {}",
-        number::significant(sample.time, 6),
-        beside.conventions,
-        number::fraction(sample.between),
-        number::fraction(sample.halved),
-        number::fraction(beside.floor)
-    );
-    let row = widened(Verdict { allowed: allowed(&sample), because, ..row }, compared.open, outputs);
-    let row = row.judged(&compared.measured(&sample));
-    let count = compared.samples.len();
-    match (row.outcome, first_outside) {
-        (Outcome::Fail, Some(time)) => {
-            let how = if row.error.is_none() { "not a number (NaN) from" } else { "first outside at" };
-            Verdict { detail: Some(format!("{how} t = {time:.6} s")), ..row }
-        }
-        (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
-            let most = 100.0 * WIDE;
-            let reason = format!("inconclusive: {wide} of {count} samples allow an error above {most} % of the scale");
-            row.left(Outcome::NoReference, reason)
-        }
-        (Outcome::Pass, _) if wide > 0 => {
-            let because = format!("{}; {wide} of {count} samples with too large a tolerance are skipped", row.because);
-            Verdict { because, ..row }
-        }
-        _ => row,
-    }
-}
-
-/// Widens the tolerance by the uncertainty of the printed digits.
-fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
-    row.allowed += open;
-    // A widening below a thousandth of the tolerance is not reported.
-    if open > 1e-3 * row.allowed {
-        let digits = outputs.significant_digits();
-        let words = format!("; plus {} for the printed digits, at most {digits}", number::fraction(open));
-        row.because.push_str(&words);
-    }
-    row
 }

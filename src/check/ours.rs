@@ -1,7 +1,7 @@
 //! Comparison of output with our solvers on the same scene.
 
-use super::ErrorAllowance;
 use super::covered::Coverage;
+use super::judgement::{ErrorAllowance, judged_in_time};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::compare::peers::{ColumnComparison, Peer, against};
@@ -157,5 +157,5 @@ fn column(
         ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };
     let beside = ErrorAllowance { floor: FLOOR, times, conventions: "conventions" };
-    covered.all(compared.samples.len(), super::judged_in_time(row, compared, &beside, outputs))
+    covered.all(compared.samples.len(), judged_in_time(row, compared, &beside, outputs))
 }

@@ -1,8 +1,9 @@
 //! Comparison of output with stored runs of LAMMPS and LIGGGHTS of the same scene.
 
 use super::covered::Coverage;
+use super::judgement::{ErrorAllowance, judged_in_time};
 use super::ours::is_compared;
-use super::{Candidate, ErrorAllowance, judged_in_time};
+use super::subject::Candidate;
 use grainbench_cases::stored;
 use grainbench_harness::case::Case;
 use grainbench_harness::compare::peers::{Peer, against};

@@ -1,7 +1,6 @@
 //! `grainbench cost`: measures error against computing time.
 
-use super::campaign;
-use super::campaign::plan::{PlanOptions, plan};
+use super::campaign::arguments::{self, PlanOptions};
 use super::exit::{Fault, Outcome, check_writable};
 use super::keep::keep_study;
 use super::progress::Progress;
@@ -61,16 +60,21 @@ pub(crate) struct Arguments {
     plan: PlanOptions,
 }
 
+impl Arguments {
+    /// Returns the arguments of a plan; none if no plan is requested.
+    pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
+        let planned = self.plan.arguments("cost", &self.cases, &self.solver)?;
+        let levels = if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() };
+        let &Self { prices, counts, json, .. } = self;
+        Some(arguments::Arguments { levels, prices, counts, json, ..planned })
+    }
+}
+
 /// Rounds of the measurement of a step.
 pub(crate) const ROUNDS: u32 = 5;
 
 /// Measures the points and writes the report. The report is updated after each target quantity.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
-    if let Some(planned) = arguments.plan.arguments("cost", &arguments.cases, &arguments.solver) {
-        let levels = if arguments.levels == "all" { vec![arguments.levels.clone()] } else { Vec::new() };
-        let &Arguments { prices, counts, json, .. } = arguments;
-        return plan(&campaign::plan::Arguments { levels, prices, counts, json, ..planned });
-    }
     let subjects = subjects(&arguments.cases)?;
     let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
     let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;

@@ -1,6 +1,7 @@
 //! `grainbench list`: lists the cases.
 
 use super::exit::{Outcome, print, print_json};
+use super::names;
 use super::select;
 use grainbench::cases::registry::CASES;
 use grainbench::harness::case::Case;
@@ -86,16 +87,16 @@ fn list_rows(arguments: &Arguments) -> Outcome {
 
 fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {
     let claims = (case.claims)();
-    let levels = select::levels(case, &claims);
+    let levels = names::levels(case, &claims);
     Ok(Entry {
         name: case.name,
         title: case.title,
         claim: case.claim,
-        variants: select::variants(case, &claims)?,
+        variants: names::variants(case, &claims)?,
         gates: claims.len(),
         default_level: case.default_level.name,
         levels,
-        solvers: select::solvers(&claims),
+        solvers: names::solvers(&claims),
     })
 }
 

@@ -22,6 +22,7 @@ mod interrupt;
 mod keep;
 mod kept_runs;
 mod list;
+mod names;
 mod pattern;
 mod progress;
 mod provenance;
@@ -83,7 +84,7 @@ enum Command {
     Effects(effects::Arguments),
     /// Old spelling of `--plan DIR`.
     #[command(hide = true)]
-    Plan(campaign::plan::Arguments),
+    Plan(campaign::arguments::Arguments),
     /// Old spelling of `run --resume DIR`.
     #[command(hide = true)]
     Work(campaign::work::Arguments),
@@ -146,6 +147,14 @@ fn grouped() -> clap::Command {
     command.help_template(template)
 }
 
+/// Writes a plan if one is requested; otherwise does the work.
+fn planned_or(planned: Option<campaign::arguments::Arguments>, work: impl FnOnce() -> exit::Outcome) -> exit::Outcome {
+    match planned {
+        Some(arguments) => campaign::plan::plan(&arguments),
+        None => work(),
+    }
+}
+
 /// Parses the command line, runs the command and returns its exit code.
 pub(crate) fn main() -> ExitCode {
     let matches = grouped().get_matches_from(spelling::present(std::env::args_os()));
@@ -161,8 +170,8 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fields(arguments) => fields::fields(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Cost(arguments) => cost::cost(&arguments),
-        Command::Stability(arguments) => stability::stability(&arguments),
+        Command::Cost(arguments) => planned_or(arguments.planned(), || cost::cost(&arguments)),
+        Command::Stability(arguments) => planned_or(arguments.planned(), || stability::stability(&arguments)),
         Command::Effects(arguments) => effects::effects(&arguments),
         Command::Plan(arguments) => {
             spelling::say_command("plan", "run|cost|stability … --plan DIR` or `simulate SWEEP.toml --plan DIR");

@@ -1,6 +1,7 @@
 //! Patterns with `*`, `?` and `[…]`, as in a shell.
 
 use super::exit::Fault;
+use super::names::variants;
 use glob::{MatchOptions, Pattern};
 use grainbench::cases::registry::CASES;
 
@@ -34,7 +35,7 @@ pub(crate) fn expanded(names: &[String]) -> Result<Vec<String>, Fault> {
                 all.extend(pattern.matches_with(case.name, IN_PARTS).then(|| case.name.to_owned()));
                 continue;
             }
-            let variants = super::select::variants(case, &(case.claims)())?;
+            let variants = variants(case, &(case.claims)())?;
             let full = variants.iter().map(|variant| format!("{}/{variant}", case.name));
             all.extend(full.filter(|full| pattern.matches_with(full, IN_PARTS)));
         }

@@ -2,7 +2,7 @@
 
 use super::cache;
 use super::campaign;
-use super::campaign::plan::PlanOptions;
+use super::campaign::arguments::PlanOptions;
 use super::campaign::work::WorkOptions;
 use super::claims::tasks::{ClaimTasks, Desk, Part};
 use super::claims::{ClaimOptions, narrow, report, words};
@@ -58,7 +58,7 @@ pub(crate) fn command(arguments: &Arguments) -> Outcome {
     }
     work.refuse_without_plan()?;
     match plan.arguments("run", cases, &options.solver) {
-        Some(planned) => campaign::plan::plan(&campaign::plan::Arguments {
+        Some(planned) => campaign::plan::plan(&campaign::arguments::Arguments {
             levels: options.levels.clone(),
             filter: options.filter.clone(),
             no_controls: options.no_controls,

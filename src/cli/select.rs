@@ -1,11 +1,12 @@
 //! Claims that the command line selects.
 
 use super::exit::Fault;
+use super::names::{level_of, levels, push_new, row, solvers};
 use super::pattern;
 use super::solver;
 use super::subject::Variant;
 use grainbench::cases::registry::CASES;
-use grainbench::harness::case::{Case, PLAIN};
+use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
 use grainbench::reference::outside::ExternalProgram;
@@ -97,11 +98,6 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     Ok(selected)
 }
 
-/// Returns the run whose variant and solver identify the result of a claim.
-fn row(claim: &Claim) -> Option<&Run> {
-    claim.runs.first()
-}
-
 fn refuse_unknown_solvers(selected: &[CaseSelection], names: &[String]) -> Result<(), Fault> {
     let ours = grainbench::cases::solvers::names();
     let mut known: Vec<&str> = ours.iter().map(String::as_str).collect();
@@ -152,48 +148,5 @@ fn unified(name: &str) -> String {
     match name.split_once('=') {
         Some((knob, value)) if value.starts_with('.') => format!("{knob}=0{value}"),
         _ => name.to_owned(),
-    }
-}
-
-/// Returns the level name of a run: the name in the case, or the resolution in words.
-pub(crate) fn level_of(case: &Case, run: &Run) -> String {
-    let level = case.levels.iter().find(|level| level.resolution == run.resolution);
-    level.map_or_else(|| run.resolution.to_string(), |level| level.name.to_owned())
-}
-
-/// Returns the level names of a case: its own levels, and then further ones of its claims.
-pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
-    let mut names: Vec<String> = case.levels.iter().map(|level| level.name.to_owned()).collect();
-    for run in claims.iter().flat_map(|claim| &claim.runs) {
-        push_new(&mut names, level_of(case, run));
-    }
-    names
-}
-
-/// Returns the variants of a case. The plain scene is included if a claim uses it.
-pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
-    let mut names = case.variants()?;
-    if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
-        push_new(&mut names, PLAIN.to_owned());
-    }
-    Ok(names)
-}
-
-/// Returns the solvers that identify results of claims, and then the programs that they are compared with, each once.
-pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
-    let mut names = Vec::new();
-    for run in claims.iter().filter_map(row) {
-        push_new(&mut names, run.solver);
-    }
-    let programs = claims.iter().flat_map(|claim| &claim.runs);
-    for run in programs.filter(|run| grainbench::cases::solvers::is_program(run.solver)) {
-        push_new(&mut names, run.solver);
-    }
-    names
-}
-
-fn push_new<T: PartialEq>(list: &mut Vec<T>, item: T) {
-    if !list.contains(&item) {
-        list.push(item);
     }
 }

@@ -280,8 +280,13 @@ fn sweep(arguments: &Arguments) -> Outcome {
     let out = arguments.plan.as_ref().unwrap_or(&arguments.out).clone();
     let what = arguments.scene.display().to_string();
     let &Arguments { shards, json, .. } = arguments;
-    let planned =
-        campaign::plan::Arguments { what, shards, out: out.clone(), json, ..campaign::plan::Arguments::default() };
+    let planned = campaign::arguments::Arguments {
+        what,
+        shards,
+        out: out.clone(),
+        json,
+        ..campaign::arguments::Arguments::default()
+    };
     if arguments.plan.is_some() {
         return campaign::plan::plan(&planned);
     }

@@ -1,7 +1,6 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
-use super::campaign;
-use super::campaign::plan::{PlanOptions, plan};
+use super::campaign::arguments::{self, PlanOptions};
 use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, check_writable};
 use super::keep::keep_study;
@@ -55,6 +54,14 @@ pub(crate) struct Arguments {
     plan: PlanOptions,
 }
 
+impl Arguments {
+    /// Returns the arguments of a plan; none if no plan is requested.
+    pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
+        let planned = self.plan.arguments("stability", &self.cases, &self.solver)?;
+        Some(arguments::Arguments { json: self.json, ..planned })
+    }
+}
+
 /// Work item: a limit or a hard case with its solver.
 pub(crate) enum WorkItem<'a> {
     Assembly(&'a Assembly, &'a str),
@@ -64,9 +71,6 @@ pub(crate) enum WorkItem<'a> {
 
 /// Finds the limits, runs the hard cases and writes the report. The report is updated from time to time.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
-    if let Some(planned) = arguments.plan.arguments("stability", &arguments.cases, &arguments.solver) {
-        return plan(&campaign::plan::Arguments { json: arguments.json, ..planned });
-    }
     let assemblies = assembly::all()?;
     let hard = hard::all();
     let (solvers, named) = NamedSolvers::read(&arguments.solver)?;

@@ -1,7 +1,7 @@
 //! Scene of a command: from a case or from a file.
 
 use super::exit::{self, Fault};
-use super::select;
+use super::names::variants;
 use grainbench::cases::folder;
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::harness::case::{Case, PLAIN};
@@ -40,7 +40,7 @@ impl<'a> Variant<'a> {
             .find(|case| case.name == name)
             .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
         if let Some(variant) = variant {
-            let known = select::variants(case, &(case.claims)())?;
+            let known = variants(case, &(case.claims)())?;
             if variant != PLAIN && !known.iter().any(|name| name == variant) {
                 let what = format!("a variant of {}", case.name);
                 return Err(Fault::unknown(&what, variant, known.iter().map(String::as_str)));

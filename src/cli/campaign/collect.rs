@@ -1,7 +1,8 @@
 //! `report` of a plan: the report of the finished tasks, as if one machine had run all of them.
 
-use super::plan::Arguments as Planned;
-use super::{enter, study};
+use super::arguments::Arguments as Planned;
+use super::study::ReportOptions;
+use super::{enter, kinds};
 use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
 use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::plan::Plan;
@@ -55,23 +56,6 @@ impl CollectOptions {
     }
 }
 
-/// Options of a report.
-pub(crate) struct ReportOptions<'a> {
-    /// Directory of the report.
-    pub(crate) out: &'a Path,
-    pub(crate) strict: bool,
-    pub(crate) parquet: bool,
-    pub(crate) json: bool,
-    /// Results of the last earlier report.
-    pub(crate) against: Option<&'a Path>,
-    /// Number of finished tasks in words, if some are missing.
-    pub(crate) unfinished: Option<String>,
-    /// Words to add to the options of the study.
-    pub(crate) words: Vec<String>,
-    /// Total duration of all tasks (s).
-    pub(crate) seconds: f64,
-}
-
 /// Writes the report of a plan.
 pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
@@ -87,7 +71,7 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let plan = enter(plan)?;
     plan.check_program()?;
     check_writable(&out)?;
-    let study = study::from_arguments(&Planned::read(&plan)?)?;
+    let study = kinds::from_arguments(&Planned::read(&plan)?)?;
     let finished = FinishedTasks::read(&plan.path, true)?;
     let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
     let done = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));

@@ -1,6 +1,8 @@
 //! Many runs from one plan, on this machine or through a batch system: `--plan DIR`, `run --resume DIR` and `report DIR`.
 
+pub(crate) mod arguments;
 pub(crate) mod collect;
+mod kinds;
 mod of_cost;
 mod of_run;
 mod of_stability;

@@ -1,8 +1,7 @@
 //! Plan of a cost study: one task per point, and one each for the parts of a step and for large scenes.
 
-use super::collect::ReportOptions;
-use super::plan::Arguments;
-use super::study::Study;
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study};
 use crate::cli::cost::{self, ROUNDS};
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::provenance::provenance;

@@ -1,9 +1,8 @@
 //! Plan of claims: one task per claim with its control, one for the figures of a case, and one for the conformance of
 //! each solver.
 
-use super::collect::ReportOptions;
-use super::plan::Arguments;
-use super::study::Study;
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study};
 use crate::cli::cache;
 use crate::cli::claims::tasks::{ClaimTask, ClaimTasks, Desk};
 use crate::cli::claims::{self, ClaimOptions};

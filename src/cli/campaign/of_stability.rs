@@ -1,8 +1,7 @@
 //! Plan of a stability study: one task per limit or hard case.
 
-use super::collect::ReportOptions;
-use super::plan::Arguments;
-use super::study::Study;
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study};
 use crate::cli::cost::Follower;
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::provenance::provenance;

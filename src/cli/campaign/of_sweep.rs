@@ -1,8 +1,7 @@
 //! Plan of a sweep.
 
-use super::collect::ReportOptions;
-use super::plan::Arguments;
-use super::study::Study;
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;

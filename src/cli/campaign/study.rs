@@ -1,17 +1,12 @@
 //! Kinds of plans: each lists its tasks, runs them, and makes the report.
 
-use super::collect::ReportOptions;
-use super::of_cost::CostStudy;
-use super::of_run::ClaimStudy;
-use super::of_stability::StabilityStudy;
-use super::of_sweep::SweepStudy;
-use super::plan::Arguments;
 use crate::cli::exit::{Fault, Outcome};
 use grainbench::campaign::finished::FinishedTasks;
 use grainbench::campaign::plan::{Kind, Plan};
 use grainbench::campaign::task::Task;
 use grainbench::campaign::work::ResultSink;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Kind of plan.
@@ -32,12 +27,19 @@ pub(crate) trait Study: Sync {
     fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
 }
 
-/// Returns the study that the arguments ask for.
-pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
-    Ok(match arguments.what.as_str() {
-        "run" => Box::new(ClaimStudy::new(arguments)?),
-        "cost" => Box::new(CostStudy::new(arguments)?),
-        "stability" => Box::new(StabilityStudy::new(arguments)?),
-        file => Box::new(SweepStudy::new(file, arguments)?),
-    })
+/// Options of a report.
+pub(crate) struct ReportOptions<'a> {
+    /// Directory of the report.
+    pub(crate) out: &'a Path,
+    pub(crate) strict: bool,
+    pub(crate) parquet: bool,
+    pub(crate) json: bool,
+    /// Results of the last earlier report.
+    pub(crate) against: Option<&'a Path>,
+    /// Number of finished tasks in words, if some are missing.
+    pub(crate) unfinished: Option<String>,
+    /// Words to add to the options of the study.
+    pub(crate) words: Vec<String>,
+    /// Total duration of all tasks (s).
+    pub(crate) seconds: f64,
 }

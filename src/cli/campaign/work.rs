@@ -1,7 +1,7 @@
 //! `run --resume DIR`: does the tasks of a plan or of a shard, here or through a batch system.
 
-use super::plan::Arguments as Planned;
-use super::{enter, study};
+use super::arguments::Arguments as Planned;
+use super::{enter, kinds};
 use crate::cli::cores::{MOST_THREADS, cores};
 use crate::cli::exit::{self, Fault, Outcome, RED, print};
 use crate::cli::interrupt::Interrupt;
@@ -81,7 +81,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     if options.on.is_some() {
         return submit(&plan, options);
     }
-    let study = study::from_arguments(&Planned::read(&plan)?)?;
+    let study = kinds::from_arguments(&Planned::read(&plan)?)?;
     let jobs = match (jobs, plan.head.timed) {
         (Some(2..), true) => {
             return Err(Fault::input("--jobs: expected 1, for times are measured, found more"));

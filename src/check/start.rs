@@ -1,0 +1,120 @@
+//! Start of the output of another program: the first sample against the scene.
+
+use grainbench_reference::observer::DumpRecord;
+use grainbench_reference::outputs::{Origin, Outputs};
+use grainbench_scene::nalgebra::Vector3;
+use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
+
+/// Accepted deviation from the start beyond the printed digits: in radii for positions, and as a fraction of the fastest
+/// rim for speeds.
+const START: f64 = 1e-9;
+/// Names of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Quantity of a grain in the first sample.
+struct Start {
+    name: String,
+    unit: &'static str,
+    /// Value in the scene.
+    expected: f64,
+    /// Difference of the sample from the scene. Along a periodic axis it does not count whole periods.
+    off: f64,
+    /// Uncertainty of the sample due to its printed digits.
+    open: f64,
+    /// Scale of the quantity.
+    scale: f64,
+}
+
+impl Start {
+    /// Returns true if the sample differs from the scene by more than its printed digits and a rounding.
+    fn is_off(&self) -> bool {
+        self.off.abs() > self.open + START * self.scale
+    }
+}
+
+/// Returns the coordinates of probed grains in the first sample.
+fn probed<'o>(scene: &'o Scene, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
+    observed.series.columns.iter().enumerate().filter_map(|(at, column)| {
+        let (probe, quantity) = column.name.rsplit_once('.')?;
+        let probe = scene.probes.iter().find(|other| other.name == probe)?;
+        let axis = AXES.iter().position(|axis| *axis == quantity)?;
+        let ProbeTarget::Grain(grain) = probe.target else { return None };
+        let (expected, radius) = (scene.grains[grain].position[axis], scene.grains[grain].radius);
+        let (found, open) = (*observed.series.values[at].first()?, *observed.uncertainty[at].first()?);
+        let off = to_nearest_image(scene, axis, found - expected);
+        Some(Start { name: column.name.clone(), unit: "m", expected, off, open, scale: radius })
+    })
+}
+
+/// Returns positions, velocities and spins of all grains in the first snapshot, if the files have them. `step` is the
+/// time step (s). Components out of the plane of the scene are left out.
+fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
+    let axes = if scene.dimension == Dimension::Two { (0..2, 2..3) } else { (0..3, 0..3) };
+    let rim = scene.grains.iter().map(|grain| grain.velocity.norm() + grain.radius * grain.spin.norm());
+    let fastest = rim.fold(0.0, f64::max);
+    // Some programs store velocities half a step before or after the positions.
+    let fall = scene.gravity.norm() * step.unwrap_or_default();
+    let groups = scene.driven_group_of_grains();
+    let printed = observed.snapshots.first().map_or(&[][..], |first| &first.grains);
+    let shifted = observed.shifted_start.as_ref().map_or(printed, |first| &first.grains);
+    printed.iter().zip(shifted).flat_map(move |(found, shifted)| {
+        let place = found.id as usize - 1;
+        let grain = &scene.grains[place];
+        let start = move |name: &str, unit, axis: usize, [expected, found, shifted]: [Vector3<f64>; 3], scale| {
+            let name = format!("{name}{} of grain {}", AXES[axis], place + 1);
+            let (expected, off) = (expected[axis], found[axis] - expected[axis]);
+            Start { name, unit, expected, off, open: (shifted[axis] - found[axis]).abs(), scale }
+        };
+        let (linear, turning) = axes.clone();
+        let places = linear.clone().map(move |axis| {
+            let start = start("", "m", axis, [grain.position, found.position, shifted.position], grain.radius);
+            Start { off: to_nearest_image(scene, axis, start.off), ..start }
+        });
+        let speeds = linear.map(move |axis| {
+            let start = start("v", "m/s", axis, [grain.velocity, found.velocity, shifted.velocity], fastest);
+            Start { open: start.open + fall, ..start }
+        });
+        let spins = turning.map(move |axis| {
+            start("omega", "rad/s", axis, [grain.spin, found.spin, shifted.spin], fastest / grain.radius)
+        });
+        // Programs differ in the velocity that they print for a grain with prescribed motion.
+        let is_free = groups[place].is_none();
+        places.chain(speeds.chain(spins).filter(move |_| is_free))
+    })
+}
+
+/// Returns a difference of coordinates (m) without whole periods of its axis.
+fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
+    match scene.domain.filter(|domain| domain.periodic[axis]) {
+        Some(domain) => off - (off / (domain.high - domain.low)[axis]).round() * (domain.high - domain.low)[axis],
+        None => off,
+    }
+}
+
+/// Returns the largest distance of a coordinate from the start of a scene, in grain radii.
+pub(super) fn distance(scene: &Scene, observed: &DumpRecord) -> f64 {
+    let starts = probed(scene, observed).chain(of_snapshot(scene, None, observed)).filter(|start| start.unit == "m");
+    starts.map(|start| start.off.abs() / start.scale).fold(0.0, f64::max)
+}
+
+/// Returns the expected and the found value of the first grain that does not start as in the scene.
+pub(super) fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord) -> Option<(String, String)> {
+    let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
+    let mut is_placed = false;
+    for start in probed(scene, observed).chain(of_snapshot(scene, outputs.time_step(), observed)) {
+        if start.is_off() {
+            let late = late.map(|late| format!(" in {late}")).unwrap_or_default();
+            let Start { name, unit, expected, off, .. } = start;
+            return Some((format!("{name} = {expected:?} {unit}"), format!("{:?} {unit}{late}", expected + off)));
+        }
+        is_placed = true;
+    }
+    // A first sample counts as time 0 only if it shows the start of the scene.
+    late.filter(|_| !is_placed).map(|late| ("at time 0".to_owned(), late))
+}
+
+/// Returns step and time of a first sample, in words.
+pub(super) fn at(origin: Origin) -> String {
+    let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
+    format!("step {}{time}", origin.step)
+}

@@ -1,0 +1,54 @@
+//! Names that the command line accepts: variants, levels and solvers of claims.
+
+use super::exit::Fault;
+use grainbench::harness::case::{Case, PLAIN};
+use grainbench::harness::claim::Claim;
+use grainbench::harness::run::Run;
+
+/// Returns the run whose variant and solver identify the result of a claim.
+pub(crate) fn row(claim: &Claim) -> Option<&Run> {
+    claim.runs.first()
+}
+
+/// Returns the level name of a run: the name in the case, or the resolution in words.
+pub(crate) fn level_of(case: &Case, run: &Run) -> String {
+    let level = case.levels.iter().find(|level| level.resolution == run.resolution);
+    level.map_or_else(|| run.resolution.to_string(), |level| level.name.to_owned())
+}
+
+/// Returns the level names of a case: its own levels, and then further ones of its claims.
+pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
+    let mut names: Vec<String> = case.levels.iter().map(|level| level.name.to_owned()).collect();
+    for run in claims.iter().flat_map(|claim| &claim.runs) {
+        push_new(&mut names, level_of(case, run));
+    }
+    names
+}
+
+/// Returns the variants of a case. The plain scene is included if a claim uses it.
+pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
+    let mut names = case.variants()?;
+    if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
+        push_new(&mut names, PLAIN.to_owned());
+    }
+    Ok(names)
+}
+
+/// Returns the solvers that identify results of claims, and then the programs that they are compared with, each once.
+pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for run in claims.iter().filter_map(row) {
+        push_new(&mut names, run.solver);
+    }
+    let programs = claims.iter().flat_map(|claim| &claim.runs);
+    for run in programs.filter(|run| grainbench::cases::solvers::is_program(run.solver)) {
+        push_new(&mut names, run.solver);
+    }
+    names
+}
+
+pub(crate) fn push_new<T: PartialEq>(list: &mut Vec<T>, item: T) {
+    if !list.contains(&item) {
+        list.push(item);
+    }
+}
