@@ -45,8 +45,7 @@ const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 static PUBLISHED: Data = Data {
     name: "published",
     needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` file of 38,000 grains; \
-            `grainbench run drum-mixing --data DIR` takes it from the folder that `grainbench reference import dosta-2024 DIR` \
-            reads",
+            `grainbench run drum-mixing --data DIR` takes it from the folder DIR",
     scene: published,
 };
 

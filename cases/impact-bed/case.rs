@@ -25,8 +25,8 @@ const LEVELS: &[Level] = &[
 /// Derivation, followed by the description of the published data.
 const DERIVATION: &str = {
     const OWN: &str = include_str!("derivation.md");
-    const SAID: &str = grainbench_reference::round_robin::SAID;
-    static BOTH: [u8; OWN.len() + 1 + SAID.len()] = published::joined(OWN, SAID);
+    const PUBLISHED: &str = grainbench_reference::round_robin::CONSISTENCY;
+    static BOTH: [u8; OWN.len() + 1 + PUBLISHED.len()] = published::joined(OWN, PUBLISHED);
     match std::str::from_utf8(&BOTH) {
         Ok(both) => both,
         Err(_) => OWN,

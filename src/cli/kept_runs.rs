@@ -34,8 +34,7 @@ pub(crate) struct KeepArguments {
     /// Select runs whose name contains these letters; the command prints the names.
     #[arg(long, value_name = "LETTERS")]
     run: Option<String>,
-    /// Directory with your copy of third-party data, as for `reference import`; without it the runs that need the data
-    /// are skipped.
+    /// Directory with your copy of third-party data; without it the runs that need the data are skipped.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Threads of each run.

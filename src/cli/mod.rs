@@ -17,7 +17,6 @@ mod exit;
 mod fields;
 mod filter;
 mod github;
-mod import;
 mod interrupt;
 mod keep;
 mod kept_runs;

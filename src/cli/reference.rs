@@ -2,7 +2,6 @@
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
-use super::import::{Import, import};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
@@ -32,8 +31,6 @@ pub(crate) enum Command {
     Keep(KeepArguments),
     /// Estimate discretization errors from three levels of resolution, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
-    /// Derive and plot numbers from your copy of third-party data.
-    Import(Import),
 }
 
 /// Arguments of `uncertainty`.
@@ -79,7 +76,6 @@ pub(crate) fn reference(command: &Command) -> Outcome {
         Command::Verify(arguments) => verify(arguments),
         Command::Keep(arguments) => keep(arguments),
         Command::Uncertainty(arguments) => uncertainty(arguments),
-        Command::Import(arguments) => import(arguments),
     }
 }
 

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 21] = [
+const COMMANDS: [&[&str]; 20] = [
     &["list"],
     &["run", "squash"],
     &["simulate", "scene.toml", "--solver", "dem"],
@@ -23,7 +23,6 @@ const COMMANDS: [&[&str]; 21] = [
     &["reference", "verify"],
     &["reference", "keep", "squash"],
     &["reference", "uncertainty", "squash"],
-    &["reference", "import", "dosta-2024", "a-directory"],
     &["conform", "dem"],
     &["scene", "collision"],
     &["report", "a-directory"],

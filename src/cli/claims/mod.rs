@@ -45,8 +45,7 @@ pub(crate) struct ClaimOptions {
     /// Run `lammps` and `liggghts` even if a stored run exists.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Directory with your copy of third-party data, as for `reference import`; without it the claims that need the data are
-    /// `not-available`.
+    /// Directory with your copy of third-party data; without it the claims that need the data are `not-available`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "resume"])]
     pub(crate) data: Option<PathBuf>,
     /// Treat amber results as red, including programs that are not installed.
