@@ -11,6 +11,7 @@ use crate::observer::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
 use crate::read::ids::Ids;
+use crate::read::numbers::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
@@ -152,8 +153,7 @@ impl GrainDump {
     }
 
     fn missing(file: &str, snapshot: &DumpSnapshot, what: &str) -> ReadError {
-        let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
-        ReadError::at(file, snapshot.first_line.saturating_sub(1), what, quoted(&have.join(" ")))
+        ReadError::at(file, snapshot.first_line.saturating_sub(1), what, quoted_names(&snapshot.columns))
     }
 
     fn columns(&self) -> Result<Columns, ReadError> {
@@ -162,10 +162,7 @@ impl GrainDump {
         let missing = |what: &str| Self::missing(file, rows, what);
         let coordinate = |axis: usize| {
             let name = ["x", "y", "z"][axis];
-            let found = match beside.names.in_file(name) {
-                theirs if theirs == name => rows.coordinate(axis),
-                theirs => rows.coordinate_named(theirs, axis),
-            };
+            let found = beside.names.coordinate(rows, axis);
             found.ok_or_else(|| missing(&format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")))
         };
         let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));

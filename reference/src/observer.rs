@@ -11,6 +11,7 @@ use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
 use crate::read::ids::Ids;
+use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
@@ -31,6 +32,15 @@ impl Names {
     pub fn in_file<'n>(&'n self, name: &'n str) -> &'n str {
         self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
     }
+
+    /// Returns the coordinate along an axis, from the named column or from the columns of LAMMPS.
+    pub(crate) fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<Coordinate> {
+        let name = ["x", "y", "z"][axis];
+        match self.in_file(name) {
+            theirs if theirs == name => snapshot.coordinate(axis),
+            theirs => snapshot.coordinate_named(theirs, axis),
+        }
+    }
 }
 
 /// Quantities of a scene that a dump contains.
@@ -47,18 +57,6 @@ pub struct DumpRecord {
     pub snapshots: Vec<Snapshot>,
 }
 
-/// Steps at which snapshots are still due, in order.
-pub(crate) struct SnapshotSchedule<'s>(pub(crate) &'s [u64]);
-
-impl SnapshotSchedule<'_> {
-    /// Returns true if a snapshot is due at a sample. Snapshots are taken at the first samples from their steps on.
-    pub(crate) fn is_at(&mut self, step: u64) -> bool {
-        let past = self.0.partition_point(|&due| due <= step);
-        self.0 = &self.0[past..];
-        past > 0
-    }
-}
-
 /// Builds a record from the snapshots of a dump, one after the other.
 pub struct Observer<'s> {
     scene: &'s Scene,
@@ -70,6 +68,8 @@ pub struct Observer<'s> {
     known: KnownQuantities,
     /// Forces between grains, if there is a dump of contacts.
     pairs: PairForces,
+    /// Steps at which snapshots are still due, in order.
+    due: &'s [u64],
     snapshots: Vec<Snapshot>,
     shifted_start: Option<Snapshot>,
     /// First coordinate z (m) of each grain of a scene in the plane.
@@ -114,9 +114,10 @@ enum Shift {
 }
 
 impl<'s> Observer<'s> {
-    /// Returns an observer of a scene.
+    /// Returns an observer of a scene that keeps the first sample from each of these steps on, in order. It always
+    /// keeps the first and the last sample.
     #[must_use]
-    pub fn new(scene: &'s Scene) -> Self {
+    pub fn new(scene: &'s Scene, snapshot_steps: &'s [u64]) -> Self {
         let sampled =
             Scene { sampling: Sampling::Cycles(1), snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
@@ -128,9 +129,9 @@ impl<'s> Observer<'s> {
             pairs: false,
             walls: vec![true; scene.walls.len()],
         };
-        let pairs = PairForces::default();
+        let (pairs, due, heights) = (PairForces::default(), snapshot_steps, BTreeMap::new());
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
-        Self { scene, sampled, recorders, known, pairs, snapshots, shifted_start, heights: BTreeMap::new(), last }
+        Self { scene, sampled, recorders, known, pairs, due, snapshots, shifted_start, heights, last }
     }
 
     /// Adds forces between grains.
@@ -154,7 +155,6 @@ impl<'s> Observer<'s> {
         names: &Names,
         time: f64,
         digits: Option<&[Digits]>,
-        keep: bool,
     ) -> Result<(), ReadError> {
         let columns = self.columns(file, snapshot, names)?;
         let flat = self.scene.dimension == Dimension::Two;
@@ -176,7 +176,10 @@ impl<'s> Observer<'s> {
         if let Some(digits) = digits {
             self.check_grains(file, snapshot, &columns, &order, digits)?;
         }
-        let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
+        let past = self.due.partition_point(|&due| due <= snapshot.step);
+        let keep = past > 0 || self.last.is_none();
+        self.due = &self.due[past..];
+        let of_file = digits.map(Digits::all);
         let shifts = if digits.is_some() { &[Shift::None, Shift::Along, Shift::Outwards][..] } else { &[Shift::None] };
         for (&shift, recorder) in shifts.iter().zip(&mut self.recorders) {
             let value = |row: &[f64], column: Option<usize>, scale: f64| -> f64 {
@@ -257,9 +260,8 @@ impl<'s> Observer<'s> {
     /// Finds the columns of a snapshot. The id and the positions are required.
     fn columns(&self, file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Columns, ReadError> {
         let missing = |what: &str| {
-            let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
-            let found = crate::read::read_error::quoted(&have.join(" "));
-            ReadError::at(file, snapshot.first_line.saturating_sub(1), format!("a column {what}"), found)
+            let line = snapshot.first_line.saturating_sub(1);
+            ReadError::at(file, line, format!("a column {what}"), quoted_names(&snapshot.columns))
         };
         let column = |name: &str| snapshot.column(names.in_file(name));
         let id = column("id");
@@ -269,10 +271,7 @@ impl<'s> Observer<'s> {
         let mut position = [None; 3];
         for axis in 0..3 {
             let name = ["x", "y", "z"][axis];
-            position[axis] = match names.in_file(name) {
-                theirs if theirs == name => snapshot.coordinate(axis),
-                theirs => snapshot.coordinate_named(theirs, axis),
-            };
+            position[axis] = names.coordinate(snapshot, axis);
             if position[axis].is_none() && axis < self.scene.dimension.count() {
                 let theirs = names.in_file(name);
                 return Err(missing(&format!("`{theirs}`, `{name}u`, `{name}s` or `{name}su`")));
@@ -302,7 +301,7 @@ impl<'s> Observer<'s> {
         order: &[(usize, usize)],
         digits: Option<&[Digits]>,
     ) -> Result<(), ReadError> {
-        let of_file = digits.unwrap_or_default().iter().fold(Digits::default(), |all, digits| all.with(digits));
+        let of_file = Digits::all(digits.unwrap_or_default());
         let open = |column: usize, value: f64| {
             digits.and_then(|digits| digits.get(column)).map_or(0.0, |digits| digits.uncertainty(value, &of_file))
         };
@@ -343,7 +342,7 @@ impl<'s> Observer<'s> {
         order: &[(usize, usize)],
         digits: &[Digits],
     ) -> Result<(), ReadError> {
-        let of_file = digits.iter().fold(Digits::default(), |all, digits| all.with(digits));
+        let of_file = Digits::all(digits);
         for &(place, row) in order {
             let grain = &self.scene.grains[place];
             let known = [
@@ -381,14 +380,12 @@ impl<'s> Observer<'s> {
             let hint = if rows < grains { " (where grains leave, the scene has `removal`)" } else { "" };
             return wrong(expected, format!("{rows}{hint}"));
         }
-        let mut order: Vec<usize> = (0..rows).collect();
-        let Some(id) = columns.id else { return Ok(order.into_iter().enumerate().collect()) };
-        Ids::default().check(file, snapshot, id)?;
-        let id = |row: usize| snapshot.row(row)[id];
-        order.sort_by(|&a, &b| id(a).total_cmp(&id(b)));
-        if !may_leave {
-            return Ok(order.into_iter().enumerate().collect());
+        if let Some(id) = columns.id {
+            Ids::default().check(file, snapshot, id)?;
         }
+        let order = snapshot.rows_by(columns.id).into_iter();
+        let Some(id) = columns.id.filter(|_| may_leave) else { return Ok(order.enumerate().collect()) };
+        let id = |row: usize| snapshot.row(row)[id];
         let mut there: Vec<(usize, usize)> = Vec::with_capacity(rows);
         for row in order {
             let place = (1..=grains).contains(&(id(row) as usize)).then(|| id(row) as usize - 1);

@@ -8,10 +8,11 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
 use crate::clock::Clock;
-use crate::observer::{DumpRecord, Names, Observer, SnapshotSchedule};
+use crate::observer::{DumpRecord, Names, Observer};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::read_log;
+use crate::read::numbers::quoted_names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
@@ -350,12 +351,11 @@ impl Outputs {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
-        let mut observer = Observer::new(scene).with_pairs(self.contacts(scene)?);
+        let mut observer = Observer::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
         // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
         let mut before = DumpSnapshot::default();
-        let mut due = SnapshotSchedule(&self.sources.snapshot_steps);
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
             let mut reader = Snapshots::open(file, u64::MAX)?;
@@ -385,8 +385,7 @@ impl Outputs {
                 }
                 last_time = time;
                 snapshot.step = self.step(&snapshot, time);
-                let keep = due.is_at(snapshot.step) || last.is_none();
-                observer.take(&name, &snapshot, &self.sources.names, time, Some(digits), keep)?;
+                observer.take(&name, &snapshot, &self.sources.names, time, Some(digits))?;
                 last = Some(number);
                 snapshot.step = number;
             }
@@ -502,9 +501,8 @@ impl Outputs {
         }
         if observed.series.columns.is_empty() {
             let wanted: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-            let have: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
             let expected = format!("a column such as {}", quoted(&wanted.join(" ")));
-            return Err(ReadError::at(&name, 1, expected, quoted(&have.join(" "))).into());
+            return Err(ReadError::at(&name, 1, expected, quoted_names(&table.columns)).into());
         }
         Ok(observed)
     }

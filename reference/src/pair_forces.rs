@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 
 use crate::observer::Names;
 use crate::read::digits::Digits;
-use crate::read::read_error::{ReadError, quoted};
+use crate::read::numbers::quoted_names;
+use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 
 /// Force on the first of two grains (N), and the uncertainty of its components by printed digits (N).
@@ -45,9 +46,8 @@ impl PairColumns {
     pub(crate) fn find(file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Self, ReadError> {
         let column = |name: &str| snapshot.column(names.in_file(name));
         let missing = |what: &str| {
-            let have: Vec<&str> = snapshot.columns.iter().map(|column| column.name.as_str()).collect();
             let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
-            ReadError::at(file, snapshot.first_line.saturating_sub(1), expected, quoted(&have.join(" ")))
+            ReadError::at(file, snapshot.first_line.saturating_sub(1), expected, quoted_names(&snapshot.columns))
         };
         let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
             return Err(missing("`id1` and `id2`"));
@@ -97,7 +97,7 @@ impl PairForces {
         digits: Option<&[Digits]>,
     ) -> Result<(), ReadError> {
         let columns = PairColumns::find(file, snapshot, names)?;
-        let of_file = digits.map(|digits| digits.iter().fold(Digits::default(), |all, digits| all.with(digits)));
+        let of_file = digits.map(Digits::all);
         let forces = self.by_step.entry(snapshot.step).or_default();
         for at in 0..snapshot.rows() {
             let row = snapshot.row(at);

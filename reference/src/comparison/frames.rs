@@ -103,7 +103,8 @@ impl Frames {
         };
         match &self.from {
             FrameSource::Grains { snapshot, .. } => {
-                let axes: Vec<_> = (0..3).filter_map(|axis| Some((axis, self.coordinate(snapshot, axis)?))).collect();
+                let axes: Vec<_> =
+                    (0..3).filter_map(|axis| Some((axis, self.names.coordinate(snapshot, axis)?))).collect();
                 let mut names: Vec<String> = axes.iter().map(|(axis, _)| AXES[*axis].to_owned()).collect();
                 let others = snapshot.columns.iter().enumerate().filter(|(at, column)| {
                     !(column.is_text || column.name == "id" || axes.iter().any(|(_, axis)| axis.column == *at))
@@ -116,13 +117,6 @@ impl Frames {
                 let columns = table.columns.iter().enumerate().filter(|(at, _)| !keys.contains(&Some(*at)));
                 columns.map(|(_, column)| ours(&column.name)).collect()
             }
-        }
-    }
-
-    fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<crate::read::snapshot::Coordinate> {
-        match self.names.in_file(AXES[axis]) {
-            theirs if theirs == AXES[axis] => snapshot.coordinate(axis),
-            theirs => snapshot.coordinate_named(theirs, axis),
         }
     }
 
@@ -237,14 +231,11 @@ impl Frames {
     }
 
     fn of_snapshot(&self, snapshot: &DumpSnapshot, number: u64) -> Frame {
-        let mut order: Vec<usize> = (0..snapshot.rows()).collect();
         let id = snapshot.column(self.names.in_file("id"));
-        if let Some(id) = id {
-            order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
-        }
+        let order = snapshot.rows_by(id);
         let values = self.wanted.iter().map(|name| {
             let axis = AXES.iter().position(|axis| axis == name);
-            if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
+            if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
                 return order.iter().map(|&row| coordinate.value(snapshot.row(row))).collect();
             }
             let at = snapshot.column(self.names.in_file(name));
@@ -262,31 +253,21 @@ impl Frames {
 
     /// Returns the printed digits of a column. They are complete after all frames have been read.
     pub(super) fn printed(&self, name: &str) -> PrintedDigits {
-        match &self.from {
+        let (columns, of_file) = match &self.from {
             FrameSource::Grains { snapshot, .. } => {
                 let of_file = snapshot.digits();
                 let axis = AXES.iter().position(|axis| *axis == name);
-                if let Some(coordinate) = axis.and_then(|axis| self.coordinate(snapshot, axis)) {
+                if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
                     let digits = snapshot.columns[coordinate.column].digits;
                     let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
                     return PrintedDigits { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
                 }
-                let at = snapshot.column(self.names.in_file(name));
-                at.map_or(PrintedDigits::default(), |at| PrintedDigits {
-                    digits: snapshot.columns[at].digits,
-                    of_file,
-                    scale: None,
-                })
+                (&snapshot.columns, of_file)
             }
-            FrameSource::Table { table, .. } => {
-                let of_file = table.digits();
-                let at = table.column(self.names.in_file(name));
-                at.map_or(PrintedDigits::default(), |at| PrintedDigits {
-                    digits: table.columns[at].digits,
-                    of_file,
-                    scale: None,
-                })
-            }
-        }
+            FrameSource::Table { table, .. } => (&table.columns, table.digits()),
+        };
+        let name = self.names.in_file(name);
+        let column = columns.iter().find(|column| column.name == name);
+        column.map_or(PrintedDigits::default(), |column| PrintedDigits { digits: column.digits, of_file, scale: None })
     }
 }

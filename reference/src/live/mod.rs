@@ -15,7 +15,7 @@ use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Solver
 use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::grain_dump::contacts_of;
-use crate::observer::{DumpRecord, Observer, SnapshotSchedule};
+use crate::observer::{DumpRecord, Observer};
 use crate::pair_forces::PairForces;
 use crate::process::{self, Limits, ProcessStart};
 use crate::read::dump::DumpReader;
@@ -222,9 +222,8 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
             pairs.take(name, &snapshot, &deck.names, None).map_err(output)?;
         }
     }
-    let mut observer = Observer::new(scene).with_pairs(pairs);
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
-    let mut due = SnapshotSchedule(recorder.snapshot_steps());
+    let mut observer = Observer::new(scene, recorder.snapshot_steps()).with_pairs(pairs);
     for name in [SAMPLES, END] {
         if name == END && stepping.ends_on_a_sample() {
             continue;
@@ -233,9 +232,8 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NonFiniteNumbers::Kept);
         while reader.read(&mut snapshot).map_err(output)? {
             deadline.check()?;
-            let keep = due.is_at(snapshot.step);
             let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &deck.names, time, None, keep).map_err(output)?;
+            observer.take(name, &snapshot, &deck.names, time, None).map_err(output)?;
         }
     }
     let mut observed = observer.finish();

@@ -113,7 +113,8 @@ pub struct BodyProbe {
     pub at: Option<[f64; 3]>,
 }
 
-fn vector(vector: &Vector3<f64>) -> [f64; 3] {
+/// Returns the components of a vector.
+pub(super) fn vector(vector: &Vector3<f64>) -> [f64; 3] {
     [vector.x, vector.y, vector.z]
 }
 

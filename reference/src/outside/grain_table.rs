@@ -1,8 +1,9 @@
 //! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
 
 use crate::deck::Stepping;
-use crate::observer::{DumpRecord, Names, Observer, SnapshotSchedule};
-use crate::read::read_error::{ReadError, quoted};
+use crate::observer::{DumpRecord, Names, Observer};
+use crate::read::numbers::quoted_names;
+use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};
 use grainbench_scene::recorder::Recorder;
@@ -21,9 +22,8 @@ pub(super) fn observe(
     let table = read_table(path)?;
     let time_step = stepping.time_step;
     let steps = steps(&table, name, names, time_step)?;
-    let mut observer = Observer::new(scene);
     let recorder = Recorder::new(scene, time_step, stepping.steps);
-    let mut due = SnapshotSchedule(recorder.snapshot_steps());
+    let mut observer = Observer::new(scene, recorder.snapshot_steps());
     let (mut row, mut last) = (0, None);
     while row < table.rows() {
         let step = steps[row];
@@ -39,8 +39,7 @@ pub(super) fn observe(
             values: table.rows_from(row, rows).to_vec(),
             ..DumpSnapshot::default()
         };
-        let keep = due.is_at(step) || last.is_none();
-        observer.take(name, &snapshot, names, step as f64 * time_step, None, keep)?;
+        observer.take(name, &snapshot, names, step as f64 * time_step, None)?;
         (row, last) = (row + rows, Some(step));
     }
     Ok(observer.finish())
@@ -54,8 +53,7 @@ fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec
         return steps.map_err(|step| ReadError::at(name, 1, "whole steps from zero on", step.to_string()));
     }
     let Some(column) = ["time", "t"].into_iter().find_map(|time| table.column(names.in_file(time))) else {
-        let have: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
-        return Err(ReadError::at(name, 1, "a column `step` or `time`", quoted(&have.join(" "))));
+        return Err(ReadError::at(name, 1, "a column `step` or `time`", quoted_names(&table.columns)));
     };
     let step = |time: f64| {
         let step = (time / time_step).round();

@@ -1,6 +1,6 @@
 //! Scene for external programs. All values are explicit and in SI units, and no other source is needed.
 
-use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle};
+use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle, vector};
 use super::manifest::SceneFormat;
 use crate::deck::Stepping;
 use grainbench_scene::contact_law::{ContactLaw, Springs};
@@ -9,7 +9,6 @@ use grainbench_scene::file::GrainShape;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
 use grainbench_scene::solver::Resolution;
-use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -247,7 +246,6 @@ impl Resolved {
     #[must_use]
     pub fn new(given: &DiscretizedScene<'_>) -> Self {
         let DiscretizedScene { scene, stepping, grid } = given;
-        let vector = |vector: &Vector3<f64>| [vector.x, vector.y, vector.z];
         let material = |place: u16| scene.materials[usize::from(place)].clone();
         let critical = scene.critical_time_step();
         Self {
@@ -352,12 +350,11 @@ fn law(between: [String; 2], law: &ContactLaw) -> Law {
 }
 
 fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> ResolvedWall {
-    let vector = |vector: Vector3<f64>| [vector.x, vector.y, vector.z];
     let phase = |phase: &grainbench_scene::motion::Phase| {
         let stop = phase.stop.seconds(stepping.time_step);
         Phase {
-            velocity: vector(phase.velocity),
-            spin: vector(phase.spin),
+            velocity: vector(&phase.velocity),
+            spin: vector(&phase.spin),
             start: phase.start.seconds(stepping.time_step),
             stop: stop.is_finite().then_some(stop),
         }
@@ -366,15 +363,17 @@ fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> Resolved
         name: wall.name.clone(),
         material,
         shape: match wall.shape {
-            WallShape::Plane { point, normal } => Shape::Plane { point: vector(point), normal: vector(normal) },
-            WallShape::Segment { ends } => Shape::Segment(ends.map(vector)),
+            WallShape::Plane { point, normal } => Shape::Plane { point: vector(&point), normal: vector(&normal) },
+            WallShape::Segment { ends } => Shape::Segment(ends.map(|end| vector(&end))),
             WallShape::Rectangle { corner, edges } => {
-                Shape::Rectangle { corner: vector(corner), edges: edges.map(vector) }
+                Shape::Rectangle { corner: vector(&corner), edges: edges.map(|edge| vector(&edge)) }
             }
-            WallShape::Round { axis, radii } => Shape::Round { axis: axis.map(vector), radii },
-            WallShape::Mesh(ref mesh) => Shape::Mesh(mesh.triangles().map(|triangle| triangle.map(vector)).collect()),
+            WallShape::Round { axis, radii } => Shape::Round { axis: axis.map(|end| vector(&end)), radii },
+            WallShape::Mesh(ref mesh) => {
+                Shape::Mesh(mesh.triangles().map(|triangle| triangle.map(|corner| vector(&corner))).collect())
+            }
         },
-        centre: vector(wall.motion.centre),
+        centre: vector(&wall.motion.centre),
         motion: wall.motion.phases.iter().map(phase).collect(),
     }
 }

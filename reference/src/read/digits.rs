@@ -31,6 +31,11 @@ impl Digits {
         Self { significant: 17, ..Self::default() }
     }
 
+    /// Returns the common digits of columns.
+    pub(crate) fn all<'d>(columns: impl IntoIterator<Item = &'d Self>) -> Self {
+        columns.into_iter().fold(Self::default(), |all, digits| all.with(digits))
+    }
+
     /// Marks the numbers as single precision.
     pub(crate) fn single(self) -> Self {
         Self { single: true, ..self }

@@ -23,6 +23,12 @@ impl NumberColumn {
     }
 }
 
+/// Returns the names of columns as quoted text for error messages.
+pub(crate) fn quoted_names(columns: &[NumberColumn]) -> String {
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    quoted(&names.join(" "))
+}
+
 /// Treatment of NaN and infinity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NonFiniteNumbers {

@@ -117,6 +117,15 @@ impl DumpSnapshot {
         Some(Coordinate { column, origin: low[axis], scale: high[axis] - low[axis], tilted })
     }
 
+    /// Returns the rows in the order of a column, for example the ids. Without a column, the order is that of the file.
+    pub(crate) fn rows_by(&self, column: Option<usize>) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.rows()).collect();
+        if let Some(column) = column {
+            order.sort_by(|&a, &b| self.row(a)[column].total_cmp(&self.row(b)[column]));
+        }
+        order
+    }
+
     /// Finds the first number that differs from another snapshot by more than the uncertainty of printed digits.
     /// Returns its row, and the expected and the actual value as text.
     ///
@@ -125,13 +134,7 @@ impl DumpSnapshot {
         if self.rows() != other.rows() {
             return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
         }
-        let orders = [other, self].map(|snapshot| {
-            let mut order: Vec<usize> = (0..snapshot.rows()).collect();
-            if let Some(id) = snapshot.column("id") {
-                order.sort_by(|&a, &b| snapshot.row(a)[id].total_cmp(&snapshot.row(b)[id]));
-            }
-            order
-        });
+        let orders = [other, self].map(|snapshot| snapshot.rows_by(snapshot.column("id")));
         let of_files = [other, self].map(Self::digits);
         for (at, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_text) {
             let Some(before) = other.column(&column.name) else { continue };
@@ -159,8 +162,7 @@ impl DumpSnapshot {
     /// Returns the common digits of all columns of numbers.
     #[must_use]
     pub fn digits(&self) -> Digits {
-        let counted = self.columns.iter().filter(|column| !column.is_text);
-        counted.fold(Digits::default(), |all, column| all.with(&column.digits))
+        Digits::all(self.columns.iter().filter(|column| !column.is_text).map(|column| &column.digits))
     }
 }
 

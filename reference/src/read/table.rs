@@ -52,7 +52,7 @@ impl Table {
     /// Returns the common digits of all columns.
     #[must_use]
     pub fn digits(&self) -> Digits {
-        self.columns.iter().fold(Digits::default(), |all, column| all.with(&column.digits))
+        Digits::all(self.columns.iter().map(|column| &column.digits))
     }
 }
 

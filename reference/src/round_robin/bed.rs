@@ -1,6 +1,6 @@
 //! Shared initial states of the impact case. They are tables of spheres, one of which is the ball.
 
-use super::atoms::{DENSITY_M1, atoms};
+use super::atoms::{DENSITY_M1, atoms, coordinates};
 use crate::read::line_reader::LineReader;
 use crate::read::read_error::{ReadError, quoted};
 use std::fs::File;
@@ -55,11 +55,7 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
         if line.text.trim().is_empty() {
             continue;
         }
-        let numbers: Option<Vec<f64>> = line
-            .text
-            .split_whitespace()
-            .map(|field| field.parse().ok().filter(|number: &f64| number.abs() < 1.0))
-            .collect();
+        let numbers = coordinates(line.text.split_whitespace());
         let is = |radius: f64, kind: usize| (radius - RADII[kind]).abs() < ROUNDED;
         match numbers.as_deref() {
             Some(&[radius, x, y, z]) if is(radius, 0) && grains.len() < count => grains.push([x, y, z]),

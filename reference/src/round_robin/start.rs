@@ -1,7 +1,7 @@
 //! Shared initial state of the drum. An `xyz` file of grains is converted to LAMMPS data files with the origin at the
 //! centre of the drum.
 
-use super::atoms::{DENSITY_M1, atoms};
+use super::atoms::{DENSITY_M1, atoms, coordinates};
 use crate::read::line_reader::LineReader;
 use crate::read::read_error::{ReadError, quoted};
 use std::fs::File;
@@ -49,10 +49,9 @@ pub fn read_start(path: &Path) -> Result<Start, ReadError> {
         let expected = || format!("a type, 0 or 1, and three coordinates of {count} grains");
         let place = row as u64 + 3;
         let line = lines.next_line()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
-        let fields: Vec<&str> = line.text.split_whitespace().collect();
-        let numbers: Option<Vec<f64>> =
-            fields.iter().skip(1).map(|field| field.parse().ok().filter(|number: &f64| number.abs() < 1.0)).collect();
-        let kind = fields.first().and_then(|kind| ["0", "1"].iter().position(|known| known == kind));
+        let mut fields = line.text.split_whitespace();
+        let kind = fields.next().and_then(|kind| ["0", "1"].iter().position(|known| *known == kind));
+        let numbers = coordinates(fields);
         match (kind, numbers.as_deref()) {
             (Some(kind), Some(&[x, y, z])) => {
                 start.kinds[kind].push([x - MIDDLE[0], y - MIDDLE[1], z - MIDDLE[2]].map(rounded));
