@@ -8,21 +8,20 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
 mod clock;
 pub mod comparison;
-mod deadline;
 pub mod deck;
+mod execution;
 pub mod grain_dump;
 pub mod live;
 pub mod observer;
 pub mod outputs;
 pub mod outside;
 mod pair_forces;
-mod process;
 mod read;
 pub mod round_robin;
 mod run_files;
 pub mod stored;
 
-pub use process::{end_programs_at, has_ended_programs};
+pub use execution::process::{end_programs_at, has_ended_programs};
 pub use read::atom::Atom;
 pub use read::data_file::{DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;

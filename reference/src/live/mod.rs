@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use grainbench_scene::record::{Cost, Provenance, Record, Series};
+use grainbench_scene::record::Record;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Solver, Watch};
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 
-use crate::deadline::Deadline;
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
+use crate::execution::process::{Limits, on_path};
+use crate::execution::{self, Deadline, Launch, PreparedRun, Protocol, most_bytes, output, plain_file};
 use crate::grain_dump::contacts_of;
 use crate::observer::{DumpRecord, Observer};
 use crate::pair_forces::PairForces;
-use crate::process::{self, Limits, ProcessStart};
 use crate::read::dump::DumpReader;
-use crate::read::log::read_log;
+use crate::read::log::{Log, read_log};
 use crate::read::numbers::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
@@ -50,9 +50,7 @@ impl LiveProgram {
             Some(path) => Some(PathBuf::from(&path))
                 .filter(|path| path.is_file())
                 .ok_or_else(|| format!("{variable} names `{}`, which is not a file", PathBuf::from(path).display())),
-            None => env::var_os("PATH")
-                .and_then(|path| env::split_paths(&path).map(|folder| folder.join(usual)).find(|path| path.is_file()))
-                .ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),
+            None => on_path(usual).ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),
         };
         match env::var(OTHER_LIMIT).ok().filter(|text| !text.is_empty()).map(|text| (text.parse::<u64>(), text)) {
             None => Self { program, executable, time_limit: TIME_LIMIT },
@@ -112,134 +110,78 @@ impl Solver for LiveProgram {
 
     fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
         let deck = self.deck(scene, resolution)?;
-        let executable = self.executable()?;
-        let stepping = deck.stepping;
-        let particles = scene.grains.len() as u64;
-        watch.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
-        let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
-        let files = deck.files.iter().map(|(name, text)| (name.as_str(), text.as_str()));
-        let folder = process::scratch(files).map_err(|error| fail(Failure::NotRun(error.to_string()), Vec::new()))?;
-        let deadline = Deadline::after(self.time_limit);
-        let limits = Limits { deadline, bytes: most_bytes(scene, stepping), memory: None, threads: 1 };
-        let arguments = ["-in", &deck.files[0].0, "-log", LOG].map(str::to_owned);
-        let started =
-            ProcessStart { executable, arguments: &arguments, folder: folder.path(), at: None, errors_apart: false };
-        let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
-        let screen = ended.last_lines;
-        if ended.code != 0 {
-            return Err(fail(Failure::Crash(format!("exit status: {}", ended.code)), screen));
-        }
-        let unusable = |failure: Failure| fail(failure, screen.clone());
-        let mut observed = observe(scene, &deck, folder.path(), deadline).map_err(unusable)?;
-        let log = plain_file(folder.path(), LOG).and_then(|path| read_log(&path).map_err(output));
-        let log = log.map_err(unusable)?;
-        for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
-            observed.add(scene, &column, values);
-        }
-        observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
-        complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing), screen.clone()))?;
-        watch.progress(stepping.steps, stepping.steps);
-        let seconds = log.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum();
-        let options = log.version.into_iter().collect();
-        Ok(Record {
-            provenance: Provenance::new(scene, self.name(), resolution, stepping.time_step, options),
-            series: observed.series,
-            snapshots: observed.snapshots,
-            cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
+        let prepared = DeckRun { scene, deck, executable: self.executable()?, time_limit: self.time_limit };
+        execution::run(&prepared, self.name(), scene, resolution, watch)
+    }
+}
+
+/// Run of a deck.
+struct DeckRun<'r> {
+    scene: &'r Scene,
+    deck: Deck,
+    executable: &'r Path,
+    time_limit: Duration,
+}
+
+impl PreparedRun for DeckRun<'_> {
+    fn stepping(&self) -> Stepping {
+        self.deck.stepping
+    }
+
+    fn files(&self) -> Result<Vec<(String, String)>, String> {
+        Ok(self.deck.files.clone())
+    }
+
+    fn launch(&self, _: &Path, files: &[(String, String)]) -> Result<Launch<'_>, RunError> {
+        let bytes = most_bytes(self.scene, self.deck.stepping);
+        Ok(Launch {
+            executable: self.executable.to_owned(),
+            arguments: ["-in", &files[0].0, "-log", LOG].map(str::to_owned).to_vec(),
+            limits: Limits { deadline: Deadline::after(self.time_limit), bytes, memory: None, threads: 1 },
+            protocol: Protocol::ExitCode,
         })
     }
-}
 
-/// Returns the maximum size of the files of a run (B).
-///
-/// It contains 64 MiB for the start and 4 KiB per sample and grain. This is four times the size of its columns and a
-/// dozen contacts.
-pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
-    let samples = stepping.steps / stepping.interval + 2;
-    (64 << 20) + samples.saturating_mul(4096).saturating_mul(scene.grains.len() as u64)
-}
-
-/// Returns an error if a series lacks a sample of its deck or has a value that is not finite.
-pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
-    let mut found = series.step.iter().copied();
-    for step in stepping.samples() {
-        match found.next() {
-            Some(at) if at == step => {}
-            Some(at) => return Err(format!("expected a sample at step {step}, found step {at}")),
-            None => {
-                let (last, steps) = (series.step.last().copied().unwrap_or_default(), stepping.steps);
-                return Err(format!("expected samples to step {steps}, found the last at step {last}"));
-            }
+    fn read(&self, folder: &Path, deadline: Deadline) -> Result<(DumpRecord, Option<Log>), Failure> {
+        let mut observed = observe(self.scene, &self.deck, folder, deadline)?;
+        let log = read_log(&plain_file(folder, LOG)?).map_err(output)?;
+        for (column, values) in logged::read(&self.deck.logged, &log, &observed.series) {
+            observed.add(self.scene, &column, values);
         }
-    }
-    for (column, values) in series.columns.iter().zip(&series.values) {
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let (name, step, value) = (&column.name, series.step[at], values[at]);
-            return Err(format!("expected finite numbers, found {name} = {value} at step {step}"));
-        }
-    }
-    Ok(())
-}
-
-/// Returns the failure of a run whose file cannot be read.
-pub(crate) fn output(error: ReadError) -> Failure {
-    Failure::Output(error.to_string())
-}
-
-/// Returns the path of a file that a run wrote in a folder. Links are refused, including those to parent folders.
-/// Pipes are refused, because reading them could block forever.
-pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
-    let path = folder.join(name);
-    let between = Path::new(name).ancestors().skip(1).filter(|part| !part.as_os_str().is_empty());
-    for part in between {
-        if fs::symlink_metadata(folder.join(part)).is_ok_and(|found| !found.is_dir()) {
-            let part = part.display();
-            return Err(Failure::Output(format!("{name}: expected the folder {part}, found a link or a file")));
-        }
-    }
-    match fs::symlink_metadata(&path) {
-        Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),
-        // A missing file is reported when it is opened.
-        _ => Ok(path),
+        Ok((observed, Some(log)))
     }
 }
 
-/// Reads the files of a deck's run in a folder until the deadline. Values that are not finite are kept, and errors
+/// Reads the dumps of a deck's run in a folder until the deadline. Values that are not finite are kept, and errors
 /// later name their column and step.
 fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<DumpRecord, Failure> {
     let stepping = deck.stepping;
-    let mut snapshot = DumpSnapshot::default();
+    let open = |name: &str| DumpReader::open(&plain_file(folder, name)?).map_err(output);
+    // Calls a function with each snapshot of a dump at the samples, and of the dump at the end if there is one.
+    let read = |names: [&'static str; 2], take: &mut dyn FnMut(&str, &DumpSnapshot) -> Result<(), ReadError>| {
+        let mut snapshot = DumpSnapshot::default();
+        for name in &names[..if stepping.ends_on_a_sample() { 1 } else { 2 }] {
+            let mut reader = open(name)?.not_finite(NonFiniteNumbers::Kept);
+            while reader.read(&mut snapshot).map_err(output)? {
+                deadline.check()?;
+                take(name, &snapshot).map_err(output)?;
+            }
+        }
+        Ok(())
+    };
     let ids: Vec<u64> = (1..=scene.grains.len() as u64).collect();
     let mut pairs = PairForces::new(scene, &ids);
-    for (name, is_there) in [(CONTACTS, true), (END_CONTACTS, !stepping.ends_on_a_sample())] {
-        if !pairs.is_asked() || !is_there {
-            continue;
-        }
-        let path = plain_file(folder, name)?;
-        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NonFiniteNumbers::Kept);
-        while reader.read(&mut snapshot).map_err(output)? {
-            deadline.check()?;
-            pairs.take(name, &snapshot, &deck.names, None).map_err(output)?;
-        }
+    if pairs.is_asked() {
+        read([CONTACTS, END_CONTACTS], &mut |name, snapshot| pairs.take(name, snapshot, &deck.names, None))?;
     }
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
     let mut observer = Observer::new(scene, recorder.snapshot_steps()).with_pairs(pairs);
-    for name in [SAMPLES, END] {
-        if name == END && stepping.ends_on_a_sample() {
-            continue;
-        }
-        let path = plain_file(folder, name)?;
-        let mut reader = DumpReader::open(&path).map_err(output)?.not_finite(NonFiniteNumbers::Kept);
-        while reader.read(&mut snapshot).map_err(output)? {
-            deadline.check()?;
-            let time = snapshot.step as f64 * stepping.time_step;
-            observer.take(name, &snapshot, &deck.names, time, None).map_err(output)?;
-        }
-    }
+    read([SAMPLES, END], &mut |name, snapshot| {
+        observer.take(name, snapshot, &deck.names, snapshot.step as f64 * stepping.time_step, None)
+    })?;
     let mut observed = observer.finish();
     if scene.snapshot_contacts {
-        let path = plain_file(folder, CONTACTS)?;
-        let (mut reader, mut entries) = (DumpReader::open(&path).map_err(output)?, DumpSnapshot::default());
+        let (mut reader, mut entries) = (open(CONTACTS)?, DumpSnapshot::default());
         for seen in observed.snapshots.iter_mut().filter(|seen| seen.step.is_multiple_of(stepping.interval)) {
             deadline.check()?;
             let contacts = contacts_of(seen, &mut reader, &mut entries, CONTACTS, &deck.names).map_err(output)?;

@@ -11,41 +11,36 @@ mod can;
 mod deformable;
 mod grain_table;
 mod manifest;
-mod report;
 mod resolved;
-mod worker;
 
 pub use manifest::{
     Capabilities, GrainFormat, Grains, Limits, Manifest, ManifestError, Output, ParameterValues, SceneFormat, Wall,
 };
 pub use resolved::{DiscretizedScene, Resolved, schema};
 
-use crate::deadline::Deadline;
+pub use crate::execution::CANNOT;
+
 use crate::deck::Stepping;
-use crate::live::{complete, most_bytes, output, plain_file};
+use crate::execution::process::{self, ERRORS, ProcessStart, SCREEN, on_path};
+use crate::execution::{self, Deadline, Launch, PreparedRun, Protocol, Worker, most_bytes, output, plain_file};
 use crate::observer::DumpRecord;
 use crate::outputs::{OutputError, Outputs, Sources};
-use crate::process::{self, ERRORS, ProcessEnd, ProcessStart, SCREEN};
+use crate::read::log::Log;
 use crate::read::read_error::one_line;
 use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
-use grainbench_scene::record::{Cost, Provenance, Record};
+use grainbench_scene::record::Record;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Solver, Watch};
+use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
 use grainbench_scene::terms::Terms;
-use report::{ProgramReport, Seconds};
 use std::collections::BTreeMap;
-use std::env;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::{Duration, Instant};
-use worker::{Answer, Worker};
+use std::time::Duration;
 
-/// Exit code of a program that cannot express a scene.
-pub const CANNOT: i32 = 64;
 /// File with the scene in the folder of the run.
 const SCENE: &str = "scene";
 /// Time limit for the command that prints the version.
@@ -116,9 +111,7 @@ impl ExternalProgram {
         if name.contains('/') || beside.is_file() {
             return if beside.is_file() { Ok(beside) } else { Err(format!("{} is no file", beside.display())) };
         }
-        env::var_os("PATH")
-            .and_then(|path| env::split_paths(&path).map(|folder| folder.join(name)).find(|path| path.is_file()))
-            .ok_or_else(|| format!("there is no `{}` beside the manifest or on PATH", one_line(name)))
+        on_path(name).ok_or_else(|| format!("there is no `{}` beside the manifest or on PATH", one_line(name)))
     }
 
     /// Returns the arguments of a command with placeholders in braces replaced. Files beside the manifest are
@@ -268,67 +261,10 @@ impl ExternalProgram {
         self.version.get_or_init(ask).clone()
     }
 
-    /// Runs the program with a scene and waits until it ends.
-    fn start(&self, given: &DiscretizedScene<'_>) -> Result<ProgramResult, RunError> {
-        let fail = |failure, last_lines| RunError::Program { solver: self.name(), failure, last_lines };
-        let not_run = |reason: String| fail(Failure::NotRun(reason), Vec::new());
-        let format = self.manifest.scene;
-        let text = Resolved::new(given).text(format).map_err(not_run)?;
-        let ending = if format == SceneFormat::Json { "json" } else { "toml" };
-        let name = format!("{SCENE}.{ending}");
-        let folder = process::scratch([(&*name, &*text)]).map_err(|error| not_run(error.to_string()))?;
-        let file = folder.path().join(&name);
-        let executable = self.program()?;
-        let arguments = self.words(self.manifest.command(), &file, folder.path());
-        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(given.scene, given.stepping);
-        let limits = self.limits(Duration::from_secs(self.manifest.limits.seconds), bytes);
-        let mut start = Instant::now();
-        let (message, last_lines) = if self.manifest.worker.is_empty() {
-            let started = ProcessStart {
-                executable: &executable,
-                arguments: &arguments,
-                folder: folder.path(),
-                errors_apart: true,
-                at: None,
-            };
-            let ended = process::run(&started, limits).map_err(|(failure, last_lines)| fail(failure, last_lines))?;
-            let failed = |failure| fail(failure, ended.last_lines.clone());
-            let own = self.manifest.output.report.as_ref();
-            let own = own.map(|name| report::read(&folder.path().join(name), name)).transpose().map_err(failed)?;
-            (ProgramMessage::by_process(&ended, own.unwrap_or_default(), folder.path()), ended.last_lines)
-        } else {
-            let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-            let waiting = idle().pop();
-            let worker = waiting.map_or_else(|| Worker::start(&executable, &arguments, limits), Ok);
-            let mut worker = worker.map_err(|failure| fail(failure, Vec::new()))?;
-            // The start of the worker does not count, because later runs do not need it.
-            start = Instant::now();
-            let answer = worker.ask(&file, folder.path(), limits);
-            let answer = answer.map_err(|(failure, last_lines)| fail(failure, last_lines))?;
-            let last_lines = worker.last_lines();
-            idle().push(worker);
-            (ProgramMessage::by_worker(answer), last_lines)
-        };
-        Ok(ProgramResult { folder, said: message, last_lines, seconds: start.elapsed().as_secs_f64() })
-    }
-
     /// Returns the path of the program that is started.
     fn program(&self) -> Result<PathBuf, RunError> {
         let found = self.executable(&self.manifest.command()[0]);
         found.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
-    }
-
-    /// Returns the time of a run with zero steps (s).
-    fn start_up(&self, given: &DiscretizedScene<'_>) -> f64 {
-        let grains = given.scene.grains.len();
-        let known =
-            |program: &Self| program.start_up.lock().unwrap_or_else(PoisonError::into_inner).get(&grains).copied();
-        known(self).unwrap_or_else(|| {
-            let stepping = Stepping { steps: 0, interval: 1, ..given.stepping };
-            let seconds = self.start(&DiscretizedScene { stepping, ..*given }).map_or(0.0, |finished| finished.seconds);
-            self.start_up.lock().unwrap_or_else(PoisonError::into_inner).insert(grains, seconds);
-            seconds
-        })
     }
 
     /// Reads the output of a run.
@@ -404,50 +340,6 @@ fn observe_grains(
     })
 }
 
-/// Result of a program that ended regularly.
-struct ProgramResult {
-    folder: tempfile::TempDir,
-    said: ProgramMessage,
-    last_lines: Vec<String>,
-    /// Elapsed time (s).
-    seconds: f64,
-}
-
-/// Message of a program about its run.
-enum ProgramMessage {
-    /// The run succeeded. The times are present if the program reports them.
-    Ran(Option<Seconds>),
-    /// The program cannot express the scene, for this reason.
-    Cannot(String),
-    Failed(Failure),
-}
-
-impl ProgramMessage {
-    /// Returns the message that follows from the exit code, the report and the printed text in the folder.
-    fn by_process(ended: &ProcessEnd, own: ProgramReport, folder: &Path) -> Self {
-        if ended.code == CANNOT {
-            let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
-            let screen = String::from_utf8_lossy(&screen).into_owned();
-            let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
-            return Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} without a reason")));
-        }
-        match own.failed {
-            Some(failed) => Self::Failed(Failure::Crash(failed.words())),
-            None if ended.code != 0 => Self::Failed(Failure::Crash(format!("exit status: {}", ended.code))),
-            None => Self::Ran(own.seconds),
-        }
-    }
-
-    /// Returns the message that follows from the answer of a worker.
-    fn by_worker(answer: Answer) -> Self {
-        match answer {
-            Answer::Ran(times) => times.seconds().map_or_else(Self::Failed, Self::Ran),
-            Answer::Cannot(reason) => Self::Cannot(one_line(&reason)),
-            Answer::Failed(failed) => Self::Failed(Failure::Crash(failed.words())),
-        }
-    }
-}
-
 /// Returns the files of a pattern with `*` in the folder, or the single file of a path without it.
 fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     let Some((before, after)) = pattern.split_once('*') else { return Ok(vec![plain_file(folder, pattern)?]) };
@@ -492,31 +384,64 @@ impl Solver for ExternalProgram {
         }
         let given = DiscretizedScene::new(scene, resolution)
             .map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
-        let stepping = given.stepping;
         self.prepare()?;
-        let particles = scene.grains.len() as u64;
-        watch.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
-        let ProgramResult { folder, said: message, last_lines, seconds } = self.start(&given)?;
-        let fail = |failure| RunError::Program { solver: self.name(), failure, last_lines: last_lines.clone() };
-        let times = match message {
-            ProgramMessage::Ran(times) => times,
-            ProgramMessage::Cannot(reason) => return Err(cannot(reason)),
-            ProgramMessage::Failed(failure) => return Err(fail(failure)),
-        };
-        let mut observed = self.observe(scene, &stepping, folder.path()).map_err(fail)?;
-        observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
-        complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
-        watch.progress(stepping.steps, stepping.steps);
-        let seconds = match times {
-            Some(times) => times.solve,
-            None => (seconds - self.start_up(&given)).max(0.0),
-        };
-        let options = self.version().into_iter().collect();
-        Ok(Record {
-            provenance: Provenance::new(scene, self.name(), resolution, stepping.time_step, options),
-            series: observed.series,
-            snapshots: observed.snapshots,
-            cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
+        execution::run(&ManifestRun { program: self, given }, self.name(), scene, resolution, watch)
+    }
+}
+
+/// Run of a program with a manifest.
+struct ManifestRun<'r> {
+    program: &'r ExternalProgram,
+    given: DiscretizedScene<'r>,
+}
+
+impl PreparedRun for ManifestRun<'_> {
+    fn stepping(&self) -> Stepping {
+        self.given.stepping
+    }
+
+    fn files(&self) -> Result<Vec<(String, String)>, String> {
+        let format = self.program.manifest.scene;
+        let ending = if format == SceneFormat::Json { "json" } else { "toml" };
+        Ok(vec![(format!("{SCENE}.{ending}"), Resolved::new(&self.given).text(format)?)])
+    }
+
+    fn launch(&self, folder: &Path, files: &[(String, String)]) -> Result<Launch<'_>, RunError> {
+        let Manifest { limits, output, worker, .. } = &self.program.manifest;
+        let (name, text) = &files[0];
+        let scene = folder.join(name);
+        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(self.given.scene, self.given.stepping);
+        Ok(Launch {
+            executable: self.program.program()?,
+            arguments: self.program.words(self.program.manifest.command(), &scene, folder),
+            limits: self.program.limits(Duration::from_secs(limits.seconds), bytes),
+            protocol: if worker.is_empty() {
+                Protocol::Report(output.report.as_deref())
+            } else {
+                Protocol::Worker(&self.program.idle, scene)
+            },
         })
+    }
+
+    fn read(&self, folder: &Path, _: Deadline) -> Result<(DumpRecord, Option<Log>), Failure> {
+        Ok((self.program.observe(self.given.scene, &self.given.stepping, folder)?, None))
+    }
+
+    fn start_up(&self) -> f64 {
+        let grains = self.given.scene.grains.len();
+        let times = || self.program.start_up.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = times().get(&grains).copied();
+        known.unwrap_or_else(|| {
+            let stepping = Stepping { steps: 0, interval: 1, ..self.given.stepping };
+            let given = DiscretizedScene { stepping, ..self.given };
+            let run = execution::execute(&ManifestRun { given, ..*self }, &self.program.name());
+            let seconds = run.map_or(0.0, |finished| finished.seconds);
+            times().insert(grains, seconds);
+            seconds
+        })
+    }
+
+    fn version(&self) -> Option<String> {
+        self.program.version()
     }
 }

@@ -56,6 +56,14 @@ pub struct Log {
     pub runs: Vec<LoggedRun>,
 }
 
+impl Log {
+    /// Returns the wall-clock time of all runs (s).
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum()
+    }
+}
+
 /// Reads the log at `path`, plain, gzip or zstd. See [`parse_log`].
 ///
 /// # Errors

@@ -5,8 +5,8 @@
 //! solution (s) is optional, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays are
 //! written to files in the folder.
 
+use super::process::{self, ERRORS, Limits};
 use super::report::{FailureReport, Seconds};
-use crate::process::{self, ERRORS, Limits};
 use crate::read::read_error::{one_line, quoted};
 use grainbench_scene::solver::Failure;
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,7 @@ impl Times {
 
 /// Program that keeps running.
 #[derive(Debug)]
-pub(super) struct Worker {
+pub(crate) struct Worker {
     guard: Child,
     requests: ChildStdin,
     answers: Receiver<String>,

@@ -1,8 +1,9 @@
 //! Execution of a program in a scratch folder within a time limit.
 
+use std::env;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -12,7 +13,7 @@ use std::time::{Duration, Instant};
 use grainbench_scene::solver::Failure;
 use tempfile::TempDir;
 
-use crate::deadline::Deadline;
+use super::Deadline;
 
 /// File with the standard output of a program.
 pub(crate) const SCREEN: &str = "screen";
@@ -26,6 +27,12 @@ const SWEEPS: u32 = 20;
 const LAST_LINES: usize = 4;
 /// Number of bytes at the end of a file that are searched for last lines (B).
 const END: u64 = 4096;
+
+/// Returns the path of a program on `PATH`.
+pub(crate) fn on_path(name: &str) -> Option<PathBuf> {
+    let path = env::var_os("PATH")?;
+    env::split_paths(&path).map(|folder| folder.join(name)).find(|path| path.is_file())
+}
 
 /// Creates a folder with files of these names and texts. The folder is deleted when it is dropped.
 pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -> io::Result<TempDir> {
