@@ -7,7 +7,7 @@ use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::{Cost, GrainState, Provenance, Record, Snapshot, StepState};
 use grainbench::scene::recorder::Recorder;
 use grainbench::scene::scene::{Duration, Scene, WallShape};
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 
 struct Rigid;
 
@@ -20,7 +20,7 @@ impl Solver for Rigid {
         false
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let unsupported = |reason: &str| RunError::Unsupported { solver: self.name(), reason: reason.to_owned() };
         let ([grain], [wall]) = (&scene.grains[..], &scene.walls[..]) else {
             return Err(unsupported("it knows one grain and one wall"));
@@ -63,7 +63,7 @@ impl Solver for Rigid {
             position += 0.5 * (before.0 + velocity) * time_step;
             angle += 0.5 * (before.1 + spin).z * time_step;
         }
-        watch.progress(steps, steps);
+        observer.progress(steps, steps);
         let (series, snapshots) = recorder.finish();
         let provenance = Provenance {
             scene: scene.title.clone(),

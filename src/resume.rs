@@ -6,7 +6,7 @@ use crate::scene::checkpoint::{Checkpoint, CheckpointError};
 use crate::scene::end_state::EndState;
 use crate::scene::record::{PartialOutput, Record, Snapshot};
 use crate::scene::scene::Scene;
-use crate::scene::solver::{Resolution, RunError, RunOutline, Solver, StorageError, Watch};
+use crate::scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver, StorageError};
 use std::path::Path;
 
 /// File for checkpoints; each checkpoint replaces the previous one.
@@ -32,10 +32,10 @@ pub fn run(
     resolution: &Resolution,
     from: Option<&Checkpoint>,
     place: Place<'_>,
-    watch: &mut dyn Watch,
+    observer: &mut dyn Observer,
 ) -> Result<Record, RunError> {
     let before = from.map_or(Some(0.0), seconds).unwrap_or(f64::NAN);
-    let mut watcher = CheckpointWriter { watch, place, before, begun: std::time::Instant::now() };
+    let mut watcher = CheckpointWriter { observer, place, before, begun: std::time::Instant::now() };
     let mut record = match from {
         None => solver.run(scene, resolution, &mut watcher)?,
         Some(checkpoint) => solver.restart(scene, resolution, checkpoint, &mut watcher)?,
@@ -54,29 +54,25 @@ fn seconds(checkpoint: &Checkpoint) -> Option<f64> {
 
 /// Observer that stores checkpoints and forwards all other calls.
 struct CheckpointWriter<'a> {
-    watch: &'a mut dyn Watch,
+    observer: &'a mut dyn Observer,
     place: Place<'a>,
     /// Run time before the checkpoint (s).
     before: f64,
     begun: std::time::Instant,
 }
 
-impl Watch for CheckpointWriter<'_> {
+impl Observer for CheckpointWriter<'_> {
     fn begin(&mut self, ahead: RunOutline) {
-        self.watch.begin(ahead);
+        self.observer.begin(ahead);
         self.begun = std::time::Instant::now();
     }
 
-    fn threads(&self) -> usize {
-        self.watch.threads()
-    }
-
     fn progress(&mut self, done: u64, total: u64) {
-        self.watch.progress(done, total);
+        self.observer.progress(done, total);
     }
 
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(self.place.every)
+    fn options(&self) -> RunOptions {
+        RunOptions { checkpoint_interval: Some(self.place.every), ..self.observer.options() }
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
@@ -86,38 +82,22 @@ impl Watch for CheckpointWriter<'_> {
     }
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
-        self.watch.snapshot(snapshot)
-    }
-
-    fn most_rows(&self) -> u64 {
-        self.watch.most_rows()
-    }
-
-    fn allows_unstable(&self) -> bool {
-        self.watch.allows_unstable()
+        self.observer.snapshot(snapshot)
     }
 
     fn in_short(&mut self, brief: Brief, rows: u64) {
-        self.watch.in_short(brief, rows);
-    }
-
-    fn keeps_snapshots(&self) -> bool {
-        self.watch.keeps_snapshots()
-    }
-
-    fn wants_end_state(&self) -> bool {
-        self.watch.wants_end_state()
+        self.observer.in_short(brief, rows);
     }
 
     fn end_state(&mut self, state: EndState) {
-        self.watch.end_state(state);
+        self.observer.end_state(state);
     }
 
     fn is_over(&self) -> bool {
-        self.watch.is_over()
+        self.observer.is_over()
     }
 
     fn broke(&mut self, remains: PartialOutput) {
-        self.watch.broke(remains);
+        self.observer.broke(remains);
     }
 }

@@ -6,7 +6,7 @@ use grainbench_mpm::solver::Mpm;
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
 
 /// Returns the solver of a name such as `mpm+apic`; `None` if a word is unknown.
 pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
@@ -72,8 +72,8 @@ impl Solver for VariedMpm {
         self.mpm.deforms()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.run(scene, resolution, watch)?))
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        Ok(self.named(self.mpm.run(scene, resolution, observer)?))
     }
 
     fn restart(
@@ -81,8 +81,8 @@ impl Solver for VariedMpm {
         scene: &Scene,
         resolution: &Resolution,
         from: &Checkpoint,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.restart(scene, resolution, from, watch)?))
+        Ok(self.named(self.mpm.restart(scene, resolution, from, observer)?))
     }
 }

@@ -3,7 +3,7 @@
 
 use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, StorageError, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, Solver, StorageError};
 use std::fmt;
 
 /// A named reader of the snapshots of a run.
@@ -94,15 +94,9 @@ struct Watcher {
     reader: Option<Box<dyn Reader>>,
 }
 
-impl Watch for Watcher {
-    fn threads(&self) -> usize {
-        self.threads
-    }
-
-    fn progress(&mut self, _done: u64, _total: u64) {}
-
-    fn keeps_snapshots(&self) -> bool {
-        self.reader.is_none()
+impl Observer for Watcher {
+    fn options(&self) -> RunOptions {
+        RunOptions { threads: self.threads, keep_snapshots: self.reader.is_none(), ..RunOptions::DEFAULT }
     }
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {

@@ -58,7 +58,7 @@ pub struct DumpRecord {
 }
 
 /// Builds a record from the snapshots of a dump, one after the other.
-pub struct Observer<'s> {
+pub struct DumpObserver<'s> {
     scene: &'s Scene,
     /// Scene with a sample at every step that is passed to the recorder.
     sampled: Scene,
@@ -113,7 +113,7 @@ enum Shift {
     Outwards,
 }
 
-impl<'s> Observer<'s> {
+impl<'s> DumpObserver<'s> {
     /// Returns an observer of a scene that keeps the first sample from each of these steps on, in order. It always
     /// keeps the first and the last sample.
     #[must_use]

@@ -8,7 +8,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 
 use crate::clock::Clock;
-use crate::observer::{DumpRecord, Names, Observer};
+use crate::observer::{DumpObserver, DumpRecord, Names};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::read_log;
@@ -351,7 +351,7 @@ impl Outputs {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
-        let mut observer = Observer::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
+        let mut observer = DumpObserver::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
         // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;

@@ -13,7 +13,7 @@ use grainbench::harness::runner::Runner;
 use grainbench::reports::StagedDir;
 use grainbench::resume::{self, Place};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{RunError, RunOutline, Watch};
+use grainbench::scene::solver::{Observer, RunError, RunOptions, RunOutline};
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -199,15 +199,15 @@ struct Watcher<'a> {
     is_new: bool,
 }
 
-impl Watch for Watcher<'_> {
+impl Observer for Watcher<'_> {
     fn begin(&mut self, ahead: RunOutline) {
         let progress = Progress::new(ahead.steps, "steps");
         progress.now(&self.of.words);
         self.progress = Some(progress);
     }
 
-    fn threads(&self) -> usize {
-        usize::from(self.of.arguments.threads)
+    fn options(&self) -> RunOptions {
+        RunOptions { threads: usize::from(self.of.arguments.threads), ..RunOptions::DEFAULT }
     }
 
     fn progress(&mut self, done: u64, total: u64) {

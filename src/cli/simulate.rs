@@ -22,7 +22,7 @@ use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, PartialOutput, Provenance, Record, Series, Snapshot};
 use grainbench::scene::scene::{Duration, Scene};
-use grainbench::scene::solver::{Method, Resolution, RunError, RunOutline, Solver, StorageError, Watch};
+use grainbench::scene::solver::{Method, Observer, Resolution, RunError, RunOptions, RunOutline, Solver, StorageError};
 use grainbench::scene::source::SceneSource;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -501,7 +501,18 @@ fn rough(seconds: f64) -> String {
     format!("{} {unit}", number::significant(size, 2))
 }
 
-impl Watch for Watcher {
+impl Observer for Watcher {
+    fn options(&self) -> RunOptions {
+        RunOptions {
+            threads: self.threads,
+            checkpoint_interval: self.store.as_ref().map(|store| store.every),
+            most_rows: self.snapshots.most_rows(),
+            allow_unstable: self.allow_unstable,
+            keep_snapshots: false,
+            end_state: self.wants_state,
+        }
+    }
+
     fn begin(&mut self, ahead: RunOutline) {
         let RunOutline { time_step, steps, .. } = ahead;
         let of_critical = if self.method == Some(Method::Grid) {
@@ -534,18 +545,10 @@ impl Watch for Watcher {
         self.progress = Some(Progress::new(steps, "steps"));
     }
 
-    fn threads(&self) -> usize {
-        self.threads
-    }
-
     fn progress(&mut self, done: u64, total: u64) {
         if let Some(progress) = &self.progress {
             progress.set(done, total);
         }
-    }
-
-    fn checkpoint_interval(&self) -> Option<u64> {
-        self.store.as_ref().map(|store| store.every)
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
@@ -560,20 +563,8 @@ impl Watch for Watcher {
         self.snapshots.add(snapshot).map(|()| None).map_err(|error| StorageError(error.to_string()))
     }
 
-    fn allows_unstable(&self) -> bool {
-        self.allow_unstable
-    }
-
-    fn most_rows(&self) -> u64 {
-        self.snapshots.most_rows()
-    }
-
     fn in_short(&mut self, brief: Brief, rows: u64) {
         self.snapshots.pass(brief, rows);
-    }
-
-    fn wants_end_state(&self) -> bool {
-        self.wants_state
     }
 
     fn end_state(&mut self, state: EndState) {

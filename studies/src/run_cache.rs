@@ -16,7 +16,7 @@ use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::kept_record;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, Solver};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -227,15 +227,16 @@ impl Solver for CachingSolver {
         self.solver.deforms()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        let wants_more = !watch.keeps_snapshots() || watch.wants_end_state() || watch.checkpoint_interval().is_some();
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let options = observer.options();
+        let wants_more = !options.keep_snapshots || options.end_state || options.checkpoint_interval.is_some();
         let Some(name) = self.cache.name(&self.name, self.defect, scene, resolution).filter(|_| !wants_more) else {
-            return self.solver.run(scene, resolution, watch);
+            return self.solver.run(scene, resolution, observer);
         };
         if let Some(record) = self.cache.take(&name) {
             return Ok(record);
         }
-        let record = self.solver.run(scene, resolution, watch)?;
+        let record = self.solver.run(scene, resolution, observer)?;
         self.cache.put(&name, &record);
         Ok(record)
     }
@@ -245,9 +246,9 @@ impl Solver for CachingSolver {
         scene: &Scene,
         resolution: &Resolution,
         from: &Checkpoint,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        self.solver.restart(scene, resolution, from, watch)
+        self.solver.restart(scene, resolution, from, observer)
     }
 }
 

@@ -22,7 +22,7 @@ use grainbench::reports::{Provenance, Report, Section, page, plot, record_figure
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Sampling, Scene};
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 use proptest::prelude::*;
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::fs;
@@ -178,10 +178,10 @@ fn scene() -> Scene {
     scene
 }
 
-/// Watch that keeps the last checkpoint.
+/// Observer that keeps the last checkpoint.
 struct Keeper(Option<Checkpoint>);
 
-impl Watch for Keeper {
+impl Observer for Keeper {
     fn progress(&mut self, _done: u64, _total: u64) {}
     fn checkpoint_interval(&self) -> Option<u64> {
         Some(25)

@@ -10,7 +10,7 @@ use grainbench::scene::body::BlockShape;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
-use grainbench::scene::solver::{Method, Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Method, Observer, Resolution, RunError, Solver};
 use grainbench::scene::source::SceneSource;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -27,10 +27,10 @@ const ABSURD: f64 = 1e12;
 const CELLS: f64 = 2.0;
 const POINTS: u32 = 2;
 
-/// Watch that ends a run after some steps by rejecting its checkpoint.
+/// Observer that ends a run after some steps by rejecting its checkpoint.
 struct Brief;
 
-impl Watch for Brief {
+impl Observer for Brief {
     fn progress(&mut self, _done: u64, _total: u64) {}
     fn checkpoint_interval(&self) -> Option<u64> {
         Some(STEPS)

@@ -21,7 +21,7 @@ use grainbench_reports::sweep::{Factor, PointOutput, Quantity, RunCounts};
 use grainbench_scene::error::did_you_mean;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, Threads};
+use grainbench_scene::solver::{Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
 use grainbench_scene::text::{line_of, written};
 use grainbench_studies::clock;
@@ -314,12 +314,12 @@ impl Sweep {
 
     fn ran(&self, scene: &Scene, level: &Resolution, solver: &dyn Solver) -> Result<(Record, Vec<Timing>), RunError> {
         if !self.file.timed {
-            return Ok((solver.run(scene, level, &mut Threads(1))?, Vec::new()));
+            return Ok((solver.run(scene, level, &mut ())?, Vec::new()));
         }
         let mut timings = Vec::new();
         let mut last = None;
         for _ in 0..self.file.repetitions {
-            let clocked = clock::clocked(REFERENCE, || solver.run(scene, level, &mut Threads(1)));
+            let clocked = clock::clocked(REFERENCE, || solver.run(scene, level, &mut ()));
             let record = clocked.done?;
             let wall = record.cost.wall_seconds;
             let start_up = (clocked.wall - wall).max(0.0);

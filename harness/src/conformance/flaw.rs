@@ -4,7 +4,7 @@
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -162,10 +162,10 @@ impl Solver for FlawedSolver<'_> {
         self.solver.deforms()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let mut scene = scene.clone();
         self.flaw.spoil(&mut scene, self.runs.fetch_add(1, Ordering::Relaxed));
-        let mut record = self.solver.run(&scene, resolution, watch)?;
+        let mut record = self.solver.run(&scene, resolution, observer)?;
         if self.flaw == Flaw::FirstOrder
             && let Some(last) = record.snapshots.last_mut()
         {
@@ -189,9 +189,9 @@ impl Solver for FlawedSolver<'_> {
         scene: &Scene,
         resolution: &Resolution,
         from: &Checkpoint,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        let mut record = self.solver.restart(scene, resolution, from, watch)?;
+        let mut record = self.solver.restart(scene, resolution, from, observer)?;
         if self.flaw == Flaw::Restarted
             && let Some(grain) = record.snapshots.last_mut().and_then(|last| last.grains.first_mut())
         {
@@ -214,7 +214,7 @@ mod tests {
             "refuses".to_owned()
         }
 
-        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
             Err(RunError::Unsupported { solver: self.name(), reason: "everything".to_owned() })
         }
     }

@@ -2,7 +2,7 @@
 
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
 use std::sync::{Mutex, PoisonError};
 
 type CachedRun = (Scene, Resolution, Result<Record, RunError>);
@@ -32,12 +32,12 @@ impl Solver for CachedRuns<'_> {
         self.solver.deforms()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((.., record)) = known.iter().find(|(known_scene, at, _)| known_scene == scene && at == resolution) {
             return record.clone();
         }
-        let record = self.solver.run(scene, resolution, watch);
+        let record = self.solver.run(scene, resolution, observer);
         known.push((scene.clone(), *resolution, record.clone()));
         record
     }

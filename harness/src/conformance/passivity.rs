@@ -267,7 +267,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+    use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
     use grainbench_scene::terms::Terms;
 
     /// A solver that runs nothing.
@@ -278,7 +278,7 @@ mod tests {
             "nothing".to_owned()
         }
 
-        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
             Err(RunError::Unsupported { solver: self.name(), reason: "everything".to_owned() })
         }
     }

@@ -7,7 +7,7 @@ use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench_scene::solver::{RunError, RunOutline, Solver, Watch};
+use grainbench_scene::solver::{Observer, RunError, RunOptions, RunOutline, Solver};
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",
@@ -54,15 +54,13 @@ impl HalfwayCheckpoint {
     }
 }
 
-impl Watch for HalfwayCheckpoint {
+impl Observer for HalfwayCheckpoint {
     fn begin(&mut self, ahead: RunOutline) {
         self.steps = ahead.steps;
     }
 
-    fn progress(&mut self, _done: u64, _total: u64) {}
-
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(self.steps.div_ceil(2))
+    fn options(&self) -> RunOptions {
+        RunOptions { checkpoint_interval: Some(self.steps.div_ceil(2)), ..RunOptions::DEFAULT }
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {

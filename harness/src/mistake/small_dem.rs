@@ -10,7 +10,7 @@ use grainbench_scene::record::{ContactState, Cost, GrainState, Partner, Provenan
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
 use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;
@@ -528,7 +528,7 @@ impl Solver for SmallDem {
         "small-dem".to_owned()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let refuse = |reason: String| RunError::Unsupported { solver: self.name(), reason };
         if let Some(what) = scene.needs_deformable().or_else(|| scene.passing()) {
             return Err(refuse(what.to_owned()));
@@ -564,7 +564,7 @@ impl Solver for SmallDem {
                 due.into_iter().for_each(|snapshot| recorder.keep(snapshot));
             }
         }
-        watch.progress(steps, steps);
+        observer.progress(steps, steps);
         let (series, snapshots) = recorder.finish();
         let provenance = Provenance::new(scene, self.name(), resolution, step, Vec::new());
         Ok(Record { provenance, series, snapshots, cost: Cost::of_program(steps, scene.grains.len(), f64::NAN) })

@@ -17,7 +17,7 @@ use crate::read::log::Log;
 use crate::read::read_error::{ReadError, one_line};
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, RunOutline, Watch};
+use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, RunOutline};
 use process::{Limits, ProcessEnd, ProcessStart, SCREEN};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -107,11 +107,11 @@ pub(crate) fn run(
     solver: String,
     scene: &Scene,
     resolution: &Resolution,
-    watch: &mut dyn Watch,
+    observer: &mut dyn Observer,
 ) -> Result<Record, RunError> {
     let stepping = prepared.stepping();
     let particles = scene.grains.len() as u64;
-    watch.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
+    observer.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
     let Execution { folder, deadline, message, last_lines, seconds } = execute(prepared, &solver)?;
     let fail = |failure| RunError::Program { solver: solver.clone(), failure, last_lines: last_lines.clone() };
     let reported = match message {
@@ -122,7 +122,7 @@ pub(crate) fn run(
     let (mut observed, log) = prepared.read(folder.path(), deadline).map_err(fail)?;
     observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
     complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
-    watch.progress(stepping.steps, stepping.steps);
+    observer.progress(stepping.steps, stepping.steps);
     let (seconds, version) = match log {
         Some(log) => (log.seconds(), log.version),
         None => {

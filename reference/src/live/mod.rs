@@ -10,13 +10,13 @@ use std::time::{Duration, SystemTime};
 use grainbench_scene::record::Record;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, Solver};
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
 use crate::execution::process::{Limits, on_path};
 use crate::execution::{self, Deadline, Launch, PreparedRun, Protocol, most_bytes, output, plain_file};
 use crate::grain_dump::contacts_of;
-use crate::observer::{DumpRecord, Observer};
+use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;
 use crate::read::dump::DumpReader;
 use crate::read::log::{Log, read_log};
@@ -108,10 +108,10 @@ impl Solver for LiveProgram {
         self.executable().map(drop)
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let deck = self.deck(scene, resolution)?;
         let prepared = DeckRun { scene, deck, executable: self.executable()?, time_limit: self.time_limit };
-        execution::run(&prepared, self.name(), scene, resolution, watch)
+        execution::run(&prepared, self.name(), scene, resolution, observer)
     }
 }
 
@@ -175,7 +175,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         read([CONTACTS, END_CONTACTS], &mut |name, snapshot| pairs.take(name, snapshot, &deck.names, None))?;
     }
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
-    let mut observer = Observer::new(scene, recorder.snapshot_steps()).with_pairs(pairs);
+    let mut observer = DumpObserver::new(scene, recorder.snapshot_steps()).with_pairs(pairs);
     read([SAMPLES, END], &mut |name, snapshot| {
         observer.take(name, snapshot, &deck.names, snapshot.step as f64 * stepping.time_step, None)
     })?;

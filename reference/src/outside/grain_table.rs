@@ -1,7 +1,7 @@
 //! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
 
 use crate::deck::Stepping;
-use crate::observer::{DumpRecord, Names, Observer};
+use crate::observer::{DumpObserver, DumpRecord, Names};
 use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
@@ -23,7 +23,7 @@ pub(super) fn observe(
     let time_step = stepping.time_step;
     let steps = steps(&table, name, names, time_step)?;
     let recorder = Recorder::new(scene, time_step, stepping.steps);
-    let mut observer = Observer::new(scene, recorder.snapshot_steps());
+    let mut observer = DumpObserver::new(scene, recorder.snapshot_steps());
     let (mut row, mut last) = (0, None);
     while row < table.rows() {
         let step = steps[row];

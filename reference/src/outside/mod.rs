@@ -32,7 +32,7 @@ use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::record::Record;
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, Solver};
 use grainbench_scene::terms::Terms;
 use std::collections::BTreeMap;
 use std::fs;
@@ -377,7 +377,7 @@ impl Solver for ExternalProgram {
         self.program().map(drop)
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let cannot = |reason: String| RunError::Unsupported { solver: self.name(), reason };
         if let Some(reason) = can::lacks(&self.manifest, scene, resolution) {
             return Err(cannot(reason));
@@ -385,7 +385,7 @@ impl Solver for ExternalProgram {
         let given = DiscretizedScene::new(scene, resolution)
             .map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         self.prepare()?;
-        execution::run(&ManifestRun { program: self, given }, self.name(), scene, resolution, watch)
+        execution::run(&ManifestRun { program: self, given }, self.name(), scene, resolution, observer)
     }
 }
 

@@ -22,7 +22,7 @@ use grainbench_scene::end_state::EndState;
 use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Defect, Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, RunOptions, Solver};
 use grainbench_scene::space::{Plane, Solid};
 use grainbench_scene::terms::{Limitation, Terms};
 
@@ -202,8 +202,8 @@ impl Solver for Dem {
         self.convention.name.to_owned()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        self.go(scene, resolution, None, watch)
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        self.go(scene, resolution, None, observer)
     }
 
     fn restart(
@@ -211,9 +211,9 @@ impl Solver for Dem {
         scene: &Scene,
         resolution: &Resolution,
         from: &Checkpoint,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        self.go(scene, resolution, Some(from), watch)
+        self.go(scene, resolution, Some(from), observer)
     }
 }
 
@@ -224,18 +224,19 @@ impl Dem {
         scene: &Scene,
         resolution: &Resolution,
         from: Option<&Checkpoint>,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
         self.refuse(scene)?;
         let (time_step, steps) = self.steps(scene, resolution)?;
         self.refuse_lagging_dashpots(scene, time_step)?;
-        let dem = Self { allow_unstable: self.allow_unstable || watch.allows_unstable(), ..*self };
-        let mut simulation = dem.start_on(scene, time_step, watch.threads(), watch.most_rows())?;
+        let RunOptions { threads, most_rows, allow_unstable, .. } = observer.options();
+        let dem = Self { allow_unstable: self.allow_unstable || allow_unstable, ..*self };
+        let mut simulation = dem.start_on(scene, time_step, threads, most_rows)?;
         let run = self.run_of(scene, time_step, steps, simulation.layout());
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let mut running = RunningSimulation { simulation, run, defect: self.defect };
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, watch)?;
+        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, observer)?;
         Ok(Record {
             provenance: Provenance::new(scene, self.name(), resolution, time_step, self.convention.words()),
             series,

@@ -11,7 +11,7 @@ use grainbench_scene::memory;
 use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run, beyond_steps};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver, beyond_run, beyond_steps};
 use grainbench_scene::space::{Plane, Solid, Space};
 use std::f64::consts::PI;
 
@@ -135,16 +135,22 @@ impl Mpm {
         resolution: &Resolution,
         plan: &Plan,
         from: Option<&Checkpoint>,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<LoopOutput, RunError> {
         let &Plan { lattice, points, time_step, steps, critical } = plan;
-        let mut simulation =
-            Simulation::<S>::new(scene, self.setting, lattice, points, [time_step, critical], watch.threads());
+        let mut simulation = Simulation::<S>::new(
+            scene,
+            self.setting,
+            lattice,
+            points,
+            [time_step, critical],
+            observer.options().threads,
+        );
         let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
         let run = Run { solver, scene, time_step, steps, layout: std::any::type_name::<Simulation<S>>() };
         let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
         let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        course.drive(&mut RunningSimulation { simulation, run }, watch)
+        course.drive(&mut RunningSimulation { simulation, run }, observer)
     }
 
     /// Runs from the start or from a checkpoint to the end.
@@ -153,12 +159,12 @@ impl Mpm {
         scene: &Scene,
         resolution: &Resolution,
         from: Option<&Checkpoint>,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
         let plan = self.plan(scene, resolution)?;
         let LoopOutput { series, snapshots, cost } = match scene.dimension {
-            Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, watch)?,
-            Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, watch)?,
+            Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, observer)?,
+            Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, observer)?,
         };
         Ok(Record {
             provenance: Provenance {
@@ -304,8 +310,8 @@ impl Solver for Mpm {
         true
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
-        self.go(scene, resolution, None, watch)
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        self.go(scene, resolution, None, observer)
     }
 
     fn restart(
@@ -313,8 +319,8 @@ impl Solver for Mpm {
         scene: &Scene,
         resolution: &Resolution,
         from: &Checkpoint,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        self.go(scene, resolution, Some(from), watch)
+        self.go(scene, resolution, Some(from), observer)
     }
 }

@@ -6,7 +6,7 @@ mod support;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::record::{Cost, Record};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, Solver};
 use support::{collision, incline, scene};
 
 /// Observer that stores every checkpoint of a run, after conversion to and from bytes.
@@ -15,10 +15,9 @@ struct Keeper {
     kept: Vec<Checkpoint>,
 }
 
-impl Watch for Keeper {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(self.every)
+impl Observer for Keeper {
+    fn options(&self) -> RunOptions {
+        RunOptions { checkpoint_interval: Some(self.every), ..RunOptions::DEFAULT }
     }
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);

@@ -7,7 +7,7 @@ use crate::simulation::Simulation;
 use grainbench_scene::drive::{Course, LoopOutput, Stepper};
 use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, Watch, beyond_run};
+use grainbench_scene::solver::{Observer, Resolution, RunError, Solver, beyond_run};
 use grainbench_scene::terms::{Limitation, Terms};
 
 /// Version of rapier.
@@ -135,7 +135,7 @@ impl Solver for Rigid {
         "rigid".to_owned()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         if let Some(reason) = limits::reason(scene) {
             return Err(self.unsupported(reason));
         }
@@ -147,7 +147,7 @@ impl Solver for Rigid {
         let stepping = Stepping { time_step, iterations, length, mass, settings: self.settings };
         let mut running = RunningSimulation { simulation: Simulation::new(scene, stepping), step: 0 };
         let course = Course { scene, time_step, steps, resumed: None, between_progress: STEPS_BETWEEN_PROGRESS };
-        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, watch)?;
+        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, observer)?;
         Ok(Record {
             provenance: Provenance {
                 critical_time_step: None,

@@ -7,7 +7,7 @@ use crate::end_state::EndState;
 use crate::record::{Cost, Counts, PartialOutput, Series, Snapshot, StepState};
 use crate::recorder::Recorder;
 use crate::scene::Scene;
-use crate::solver::{RunError, RunOutline, Watch};
+use crate::solver::{Observer, RunError, RunOutline};
 use std::time::Instant;
 
 /// State that can be advanced in time.
@@ -101,9 +101,9 @@ impl Course<'_> {
     /// # Errors
     /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The watcher
     /// receives the partial results of a run that broke or was interrupted.
-    pub fn drive(mut self, stepper: &mut dyn Stepper, watch: &mut dyn Watch) -> Result<LoopOutput, RunError> {
+    pub fn drive(mut self, stepper: &mut dyn Stepper, observer: &mut dyn Observer) -> Result<LoopOutput, RunError> {
         let particles = stepper.particles(self.scene);
-        watch.begin(RunOutline { time_step: self.time_step, steps: self.steps, particles });
+        observer.begin(RunOutline { time_step: self.time_step, steps: self.steps, particles });
         let clock = Instant::now();
         let resumed = self.resumed.take();
         let begins = resumed.is_none();
@@ -116,7 +116,7 @@ impl Course<'_> {
                 return Err(CheckpointError::Damaged(reason.to_owned()).into());
             }
         };
-        if let Err(error) = self.steps(begins, &mut recorder, stepper, watch) {
+        if let Err(error) = self.steps(begins, &mut recorder, stepper, observer) {
             let end = match error {
                 RunError::Interrupted { .. } => {
                     let look = stepper.look(true);
@@ -135,14 +135,14 @@ impl Course<'_> {
             if let Some(mut end) = end {
                 self.scene.columns.keep(&mut end);
                 let (series, snapshots) = recorder.finish();
-                watch.broke(PartialOutput { series, snapshots, end });
+                observer.broke(PartialOutput { series, snapshots, end });
             }
             return Err(error);
         }
-        if watch.wants_end_state()
+        if observer.options().end_state
             && let Some(state) = stepper.end_state()
         {
-            watch.end_state(state);
+            observer.end_state(state);
         }
         let cost = Cost::new(stepper.counts(), clock.elapsed().as_secs_f64());
         let (series, snapshots) = recorder.finish();
@@ -154,23 +154,23 @@ impl Course<'_> {
         begins: bool,
         recorder: &mut Recorder,
         stepper: &mut dyn Stepper,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
         if begins {
             stepper.begin()?;
         }
         let first = stepper.step();
         // No checkpoint is stored at the first step.
-        let between_checkpoints = watch.checkpoint_interval().unwrap_or(u64::MAX).max(1);
+        let between_checkpoints = observer.options().checkpoint_interval.unwrap_or(u64::MAX).max(1);
         loop {
             let now = stepper.step();
-            if now < self.steps && watch.is_over() {
+            if now < self.steps && observer.is_over() {
                 return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
             }
             if (begins || now > first) && recorder.is_due(now) {
-                self.take_down(now, recorder, stepper, watch)?;
+                self.take_down(now, recorder, stepper, observer)?;
             }
-            watch.progress(now, self.steps);
+            observer.progress(now, self.steps);
             if now == self.steps {
                 return Ok(());
             }
@@ -178,7 +178,7 @@ impl Course<'_> {
                 && now.is_multiple_of(between_checkpoints)
                 && let Some(checkpoint) = stepper.keep(recorder)?
             {
-                watch.checkpoint(checkpoint)?;
+                observer.checkpoint(checkpoint)?;
             }
             let checkpoint = (now / between_checkpoints + 1).saturating_mul(between_checkpoints);
             let stop = recorder.next(now).min(checkpoint).min(now + self.between_progress);
@@ -193,16 +193,16 @@ impl Course<'_> {
         step: u64,
         recorder: &mut Recorder,
         stepper: &mut dyn Stepper,
-        watch: &mut dyn Watch,
+        observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
         let is_snapshot = recorder.is_snapshot(step);
-        let shown = is_snapshot && stepper.shows(self.scene, watch.most_rows());
+        let shown = is_snapshot && stepper.shows(self.scene, observer.options().most_rows);
         let rows = stepper.rows(self.scene);
         let sampled = recorder.is_sample(step) && !self.scene.probes.is_empty();
         let look = (shown || sampled).then(|| stepper.look(shown));
         if is_snapshot && !shown {
             let brief = look.as_ref().map_or_else(|| stepper.brief(), Brief::of_look);
-            watch.in_short(brief, rows);
+            observer.in_short(brief, rows);
         }
         let Some(look) = look else {
             recorder.sample_nothing(step, step as f64 * self.time_step);
@@ -214,7 +214,7 @@ impl Course<'_> {
             return Err(RunError::NotFinite { time, step, column, value });
         }
         if let Some(snapshot) = snapshot
-            && let Some(kept) = watch.snapshot(snapshot)?
+            && let Some(kept) = observer.snapshot(snapshot)?
         {
             recorder.keep(kept);
         }

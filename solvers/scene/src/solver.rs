@@ -548,47 +548,68 @@ pub struct RunOutline {
     pub particles: u64,
 }
 
+/// Options of a run, fixed before its first step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunOptions {
+    /// Number of threads for solvers that use several. No bit of the record depends on it.
+    pub threads: usize,
+    /// Number of steps between checkpoints; `None` for no checkpoints.
+    pub checkpoint_interval: Option<u64>,
+    /// Largest number of rows of grains, contacts and points in a wanted snapshot. For a larger snapshot,
+    /// [`Observer::in_short`] is called, and no memory is used for its rows.
+    pub most_rows: u64,
+    /// True if a run continues although its time step exceeds the critical one.
+    pub allow_unstable: bool,
+    /// True if every snapshot stays in the record.
+    pub keep_snapshots: bool,
+    /// True if the final state is wanted as the initial state of another scene.
+    pub end_state: bool,
+}
+
+impl RunOptions {
+    /// One thread, no checkpoints, all snapshots in the record.
+    pub const DEFAULT: Self = Self {
+        threads: 1,
+        checkpoint_interval: None,
+        most_rows: u64::MAX,
+        allow_unstable: false,
+        keep_snapshots: true,
+        end_state: false,
+    };
+
+    /// Returns the default options with time steps above the critical one.
+    #[must_use]
+    pub const fn unstable() -> Self {
+        Self { allow_unstable: true, ..Self::DEFAULT }
+    }
+}
+
+impl Default for RunOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
 /// Observer of a run.
-pub trait Watch {
+pub trait Observer {
+    /// Returns the options of the run.
+    fn options(&self) -> RunOptions {
+        RunOptions::DEFAULT
+    }
     /// Called once, before the first step.
     fn begin(&mut self, _ahead: RunOutline) {}
-    /// Returns the number of threads for solvers that use several; called once. No bit of the record depends on it.
-    fn threads(&self) -> usize {
-        1
-    }
     /// Called from time to time with the number of completed steps and the total.
-    fn progress(&mut self, done: u64, total: u64);
-    /// Returns the number of steps between checkpoints; `None` for no checkpoints. Called once, after [`Watch::begin`].
-    fn checkpoint_interval(&self) -> Option<u64> {
-        None
-    }
+    fn progress(&mut self, _done: u64, _total: u64) {}
     /// Called with every snapshot, in order of time. A returned snapshot stays in the record of the run and in its
-    /// checkpoints. If the watcher takes it over, it is in neither, and memory holds one snapshot at a time.
+    /// checkpoints. If the observer takes it over, it is in neither, and memory holds one snapshot at a time.
     ///
     /// # Errors
     /// When the snapshot cannot be stored. The run ends with this error.
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         Ok(Some(snapshot))
     }
-    /// Returns the largest number of rows of grains, contacts and points in a wanted snapshot; called before the first
-    /// step. For a larger snapshot, [`Watch::in_short`] is called, and no memory is used for its rows.
-    fn most_rows(&self) -> u64 {
-        u64::MAX
-    }
-    /// Called instead of [`Watch::snapshot`] for a snapshot that is not wanted, with a summary and its number of rows.
+    /// Called instead of [`Observer::snapshot`] for a snapshot that is not wanted, with a summary and its number of rows.
     fn in_short(&mut self, _brief: Brief, _rows: u64) {}
-    /// Returns true if a run continues although its time step exceeds the critical one.
-    fn allows_unstable(&self) -> bool {
-        false
-    }
-    /// Returns true if every snapshot stays in the record.
-    fn keeps_snapshots(&self) -> bool {
-        true
-    }
-    /// Returns true if the final state is wanted as the initial state of another scene.
-    fn wants_end_state(&self) -> bool {
-        false
-    }
     /// Called with the final state, by solvers that provide it.
     fn end_state(&mut self, _state: EndState) {}
     /// Returns true if the run must end early; called after each progress report.
@@ -606,28 +627,13 @@ pub trait Watch {
     }
 }
 
-/// Watcher that does nothing.
-impl Watch for () {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-}
+/// Observer that does nothing.
+impl Observer for () {}
 
-/// Watcher that only sets the number of threads.
-pub struct Threads(pub usize);
-
-impl Watch for Threads {
-    fn threads(&self) -> usize {
-        self.0
-    }
-    fn progress(&mut self, _done: u64, _total: u64) {}
-}
-
-/// Watcher that allows time steps above the critical one.
-pub struct UnstableStepWatch;
-
-impl Watch for UnstableStepWatch {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn allows_unstable(&self) -> bool {
-        true
+/// Observer that only has options.
+impl Observer for RunOptions {
+    fn options(&self) -> RunOptions {
+        *self
     }
 }
 
@@ -660,7 +666,7 @@ pub trait Solver: Send + Sync {
     ///
     /// # Errors
     /// When the scene is not supported, the resolution is not valid, or the simulation breaks.
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError>;
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError>;
 
     /// Continues a run of the same scene at the same resolution from one of its checkpoints. The record equals that of
     /// an uninterrupted run in every bit except for wall-clock times.
@@ -672,7 +678,7 @@ pub trait Solver: Send + Sync {
         _scene: &Scene,
         _resolution: &Resolution,
         _from: &Checkpoint,
-        _watch: &mut dyn Watch,
+        _observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
         let reason = "it leaves no checkpoints to continue from".to_owned();
         Err(RunError::Unsupported { solver: self.name(), reason })

@@ -10,7 +10,7 @@ use grainbench_harness::solvers::Solvers;
 use grainbench_reports::WriteError;
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver, UnstableStepWatch};
+use grainbench_scene::solver::{Resolution, RunError, RunOptions, Solver};
 
 /// Relative precision of a bracket.
 const PRECISION: f64 = 0.005;
@@ -72,8 +72,9 @@ pub fn of_assembly(
         None => "there is no such solver".clone_into(&mut limit.detail),
         Some(solver) => {
             fill(&mut limit, RANGE, 1, |step| {
-                let record =
-                    solver.run(&assembly.scene, &Resolution::TimeStep(step), &mut UnstableStepWatch).map_err(stop)?;
+                let record = solver
+                    .run(&assembly.scene, &Resolution::TimeStep(step), &mut RunOptions::unstable())
+                    .map_err(stop)?;
                 assembly.judge(&record).map_err(Stop::Unstable)
             });
         }
@@ -126,8 +127,9 @@ fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Resu
     let mut scene = scene.clone();
     // Two periods.
     scene.duration = Duration::Seconds(20.0);
-    let record =
-        solver.run(&scene, &Resolution::Grid { cells, points: 2, courant }, &mut UnstableStepWatch).map_err(stop)?;
+    let record = solver
+        .run(&scene, &Resolution::Grid { cells, points: 2, courant }, &mut RunOptions::unstable())
+        .map_err(stop)?;
     let energy = record.series.column("all.total_energy").unwrap_or_default();
     let start = energy.first().copied().unwrap_or(f64::NAN);
     let most = energy

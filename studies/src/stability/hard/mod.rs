@@ -17,7 +17,7 @@ use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, RunOutline, Solver, UnstableStepWatch, Watch};
+use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -189,7 +189,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
     let run = if case.goes_on {
         solver.run(scene, &resolution, &mut halfway)
     } else {
-        solver.run(scene, &resolution, &mut UnstableStepWatch)
+        solver.run(scene, &resolution, &mut RunOptions::unstable())
     };
     match run {
         Ok(record) => {
@@ -215,19 +215,13 @@ struct HalfwayCheckpoint {
     checkpoint: Option<Checkpoint>,
 }
 
-impl Watch for HalfwayCheckpoint {
+impl Observer for HalfwayCheckpoint {
     fn begin(&mut self, ahead: RunOutline) {
         self.steps = ahead.steps;
     }
 
-    fn progress(&mut self, _done: u64, _total: u64) {}
-
-    fn allows_unstable(&self) -> bool {
-        true
-    }
-
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(self.steps.div_ceil(2))
+    fn options(&self) -> RunOptions {
+        RunOptions { checkpoint_interval: Some(self.steps.div_ceil(2)), ..RunOptions::unstable() }
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
@@ -247,7 +241,8 @@ fn continues(
         let reason = "it leaves no checkpoints to continue from".to_owned();
         return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
     };
-    let continued = solver.restart(scene, resolution, &checkpoint, &mut UnstableStepWatch).map_err(Stop::Cannot)?;
+    let continued =
+        solver.restart(scene, resolution, &checkpoint, &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
         return Err(Stop::Failed(Failure::Wrong(format!("{differ} grains end otherwise when the run is continued"))));
