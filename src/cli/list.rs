@@ -109,7 +109,7 @@ fn table(entries: &[Entry]) -> String {
         let solvers = solvers.join(", ");
         text.push_str(&format!("{name:<width$}  {title}\n"));
         text.push_str(&format!("{:<width$}    variants  {variants}\n", ""));
-        text.push_str(&format!("{:<width$}    {gates} gate{plural}, level {default_level}, solvers {solvers}\n", ""));
+        text.push_str(&format!("{:<width$}    {gates} claim{plural}, level {default_level}, solvers {solvers}\n", ""));
     }
     text
 }
