@@ -7,8 +7,8 @@
 //! `without-springs` keeps only what a scene with `springs = false` reads, which is half the size. `at-rest` keeps only
 //! positions, in a quarter of that size.
 
-use grainbench::reports::write_file;
 use grainbench::scene::end_state::{EndState, Springs};
+use grainbench::store::write_file;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -22,4 +22,5 @@ pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;
 pub use grainbench_reports as reports;
 pub use grainbench_scene as scene;
+pub use grainbench_store as store;
 pub use grainbench_studies as studies;

@@ -1,12 +1,12 @@
 //! Runs that can be interrupted and continued from periodic checkpoints.
 
-use crate::reports::write_file;
 use crate::scene::brief::Brief;
 use crate::scene::checkpoint::{Checkpoint, CheckpointError};
 use crate::scene::end_state::EndState;
 use crate::scene::record::{PartialOutput, Record, Snapshot};
 use crate::scene::scene::Scene;
 use crate::scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver, StorageError};
+use crate::store::write_file;
 use std::path::Path;
 
 /// File for checkpoints; each checkpoint replaces the previous one.

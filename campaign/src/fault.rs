@@ -1,6 +1,6 @@
 //! Errors of planning, running and collecting.
 
-use grainbench_reports::WriteError;
+use grainbench_store::WriteError;
 use std::fmt::Display;
 use std::path::Path;
 use thiserror::Error;

@@ -6,24 +6,18 @@
 //! Times are file times of the shared file system, because the clocks of the machines differ.
 
 use crate::fault::Fault;
-use crate::machine;
 use crate::plan::RUNNING;
-use grainbench_reports::{WriteError, write_file};
+use grainbench_store::lock::{LOCK, Lock, LockTerms, time_of};
+use grainbench_store::{WriteError, machine, write_file};
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::{self, Write};
+use std::fs;
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-/// Name of the lock file, which is held while leases are read and one is added.
-const LOCK: &str = ".lock";
-/// Age (s) at which a lock counts as abandoned.
-const LEFT: f64 = 20.0;
-/// Maximum number of attempts to take the lock, and the pause between two attempts.
-const TRIES: u32 = 3000;
-const PAUSE: Duration = Duration::from_millis(20);
+/// Durations of the lock that is held while leases are read and one is added.
+const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(60), abandoned_after: Duration::from_secs(20) };
 /// File extension of leases.
 const ENDING: &str = "json";
 
@@ -74,7 +68,13 @@ impl Lease {
     ) -> Result<(Option<Self>, Vec<LeaseContents>), Fault> {
         let folder = plan.join(RUNNING);
         fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
-        let _lock = Lock::acquire(&folder)?;
+        let _lock = Lock::acquire(&folder, TERMS).map_err(|error| match error.kind() {
+            io::ErrorKind::ResourceBusy => {
+                let expected = "a lock that is released within a minute";
+                Fault::in_file(&folder.join(LOCK), expected, "a held lock; delete it if no worker is running")
+            }
+            _ => WriteError::new(&folder, error).into(),
+        })?;
         let others: Vec<LeaseContents> =
             held(plan, seconds)?.into_iter().filter(|other| other.worker != contents.worker).collect();
         let mut tasks: Vec<[usize; 2]> = Vec::new();
@@ -148,82 +148,17 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
     Ok(found)
 }
 
-/// Returns the time of a file system, or the time of the local clock if the folder is not writable.
-fn time_of(folder: &Path) -> SystemTime {
-    let path = folder.join(format!(".time-{}-{}", machine::name(), std::process::id()));
-    let now = File::create(&path).and_then(|file| file.metadata()?.modified());
-    let _ = fs::remove_file(&path);
-    now.unwrap_or_else(|_| SystemTime::now())
-}
-
 /// Returns the age of a file (s), or `None` if it does not exist.
 fn age(path: &Path, now: SystemTime) -> Option<f64> {
     let written = fs::metadata(path).and_then(|about| about.modified()).ok()?;
     Some(now.duration_since(written).unwrap_or_default().as_secs_f64())
 }
 
-/// The lock file, which is removed on drop.
-struct Lock {
-    path: PathBuf,
-    /// Lock by the operating system, which orders the processes of one machine and ends with its process.
-    ///
-    /// `None` if the file system has no such locks.
-    _turn: Option<File>,
-}
-
-impl Lock {
-    fn acquire(folder: &Path) -> Result<Self, Fault> {
-        let path = folder.join(LOCK);
-        let turn = File::create(folder.join(format!("{LOCK}-{}", machine::name()))).ok();
-        let turn = turn.filter(|file| file.lock().is_ok());
-        for _ in 0..TRIES {
-            match File::create_new(&path) {
-                Ok(mut file) => {
-                    let _ = file.write_all(machine::name().as_bytes());
-                    return Ok(Self { path, _turn: turn });
-                }
-                Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
-                    return Err(WriteError::new(path, error).into());
-                }
-                Err(_) => {}
-            }
-            if is_left(&path, turn.is_some(), time_of(folder)) {
-                // Renaming is atomic: only one contender succeeds, and it removes the file that it has inspected.
-                let aside = folder.join(format!(".left-{}-{}", machine::name(), std::process::id()));
-                if fs::rename(&path, &aside).is_ok() {
-                    let _ = fs::remove_file(&aside);
-                }
-            } else {
-                sleep(PAUSE);
-            }
-        }
-        Err(Fault::in_file(
-            &path,
-            "a lock that is released within a minute",
-            "a held lock; delete it if no worker is running",
-        ))
-    }
-}
-
-/// Returns true if a lock is abandoned.
-///
-/// An old lock is abandoned. A lock of this machine is also abandoned if this process holds the system lock, because
-/// the process that wrote the file has then ended.
-fn is_left(path: &Path, is_our_turn: bool, now: SystemTime) -> bool {
-    let is_of_this_machine = || fs::read_to_string(path).is_ok_and(|host| host == machine::name());
-    age(path, now).is_some_and(|age| age > LEFT) || is_our_turn && is_of_this_machine()
-}
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.path);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
+    use std::thread::sleep;
 
     fn lease_contents(worker: &str, process: u32) -> LeaseContents {
         LeaseContents {
@@ -269,24 +204,6 @@ mod tests {
         }
         fs::write(plan.path().join(RUNNING).join("b.json"), "{\"worker\"").unwrap();
         assert_eq!(held(plan.path(), 60.0).unwrap(), [], "what cannot be read is nobody's");
-    }
-
-    /// A worker that was killed while it held the lock does not block other workers on its machine.
-    #[test]
-    fn a_lock_is_left_by_who_is_no_more() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(LOCK);
-        for (host, is_our_turn, left) in [
-            (machine::name(), true, true),
-            (machine::name(), false, false),
-            ("elsewhere".to_owned(), true, false),
-            (String::new(), true, false),
-        ] {
-            fs::write(&path, &host).unwrap();
-            let written = fs::metadata(&path).unwrap().modified().unwrap();
-            assert_eq!(is_left(&path, is_our_turn, written), left, "{host:?} {is_our_turn}");
-            assert!(is_left(&path, is_our_turn, written + Duration::from_secs(21)), "{host:?} {is_our_turn}");
-        }
     }
 
     #[test]

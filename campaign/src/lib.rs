@@ -10,7 +10,6 @@ pub mod fault;
 pub mod finished;
 pub mod lease;
 pub mod log;
-pub mod machine;
 pub mod plan;
 pub mod shard;
 pub mod share;

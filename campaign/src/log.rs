@@ -4,7 +4,7 @@
 //! damaged lines; their tasks are repeated. The first line identifies the worker.
 
 use crate::task::Id;
-use grainbench_reports::WriteError;
+use grainbench_store::WriteError;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Write};

@@ -3,8 +3,8 @@
 use crate::fault::Fault;
 use crate::shard;
 use crate::task::{self, Task};
-use grainbench_reports::{StagedDir, WriteError, is_scratch};
 use grainbench_scene::text::line_of;
+use grainbench_store::{StagedDir, WriteError, is_scratch};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;

@@ -8,7 +8,7 @@ use crate::finished::FinishedTasks;
 use crate::lease;
 use crate::plan::Plan;
 use crate::shard::{self, MOST};
-use grainbench_reports::{WriteError, write_file};
+use grainbench_store::{WriteError, write_file};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};

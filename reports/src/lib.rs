@@ -8,7 +8,6 @@ pub mod headline;
 pub mod judged;
 pub mod junit;
 pub mod line;
-mod manifest;
 pub mod measured;
 pub mod number;
 pub mod page;
@@ -19,28 +18,21 @@ pub mod record_figures;
 pub mod report;
 pub mod results;
 pub mod rows;
-mod scratch;
 mod series_figures;
 mod solid_figures;
-pub mod staged;
 pub mod store;
 mod stored_figure;
 pub mod study;
 pub mod sweep;
 pub mod terminal;
 pub mod trend;
-pub mod write;
 
 #[cfg(test)]
 mod sample;
 
 pub use headline::Headline;
-pub use manifest::refuse_mixed;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
-pub use scratch::{is_scratch, sweep};
-pub use staged::{StagedDir, refuse_other_programs};
 pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
 pub use terminal::summary_table;
-pub use write::{FolderWriter, WriteError, write_file};

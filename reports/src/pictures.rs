@@ -1,10 +1,10 @@
 //! Pages with figures of records, without results.
 
 use crate::page::{figures, shell, slug, unique};
-use crate::staged::StagedDir;
 use crate::store::{SaveError, add_figure};
 use grainbench_harness::figure::Figure;
 use grainbench_scene::record::{Provenance, Record};
+use grainbench_store::StagedDir;
 use maud::{PreEscaped, html};
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -17,8 +17,8 @@ use crate::plot;
 use crate::report::Report;
 use crate::results::{points_csv, results_json};
 use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
-use crate::staged::StagedDir;
-use crate::write::WriteError;
+use grainbench_store::StagedDir;
+use grainbench_store::WriteError;
 
 /// File from which all other files can be written again.
 pub const REPORT_FILE: &str = "report.json";

@@ -3,10 +3,10 @@
 use crate::number;
 use crate::page::{scrolling, shell, sign};
 use crate::plot::{self, DrawError};
-use crate::staged::StagedDir;
 use crate::store::SaveError;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::{Outcome, Severity};
+use grainbench_store::StagedDir;
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -119,7 +119,7 @@ pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), Save
 
 /// Adds the existing files of a directory.
 fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
-    let write_error = |source| crate::write::WriteError::new(folder, source);
+    let write_error = |source| grainbench_store::WriteError::new(folder, source);
     for entry in fs::read_dir(folder).map_err(write_error)? {
         let path = entry.map_err(write_error)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -129,7 +129,7 @@ fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError
         if path.is_dir() {
             keep(out, root, &path)?;
         } else {
-            let bytes = fs::read(&path).map_err(|source| crate::write::WriteError::new(&path, source))?;
+            let bytes = fs::read(&path).map_err(|source| grainbench_store::WriteError::new(&path, source))?;
             out.write(path.strip_prefix(root).unwrap_or(&path), bytes)?;
         }
     }

@@ -1,8 +1,8 @@
 //! Checkpoint files.
 
 use super::exit::Fault;
-use grainbench::reports::write_file;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::store::write_file;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

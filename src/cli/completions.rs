@@ -1,7 +1,7 @@
 //! `grainbench completions` and `grainbench man`: shell completions and manual pages, generated from the commands.
 
 use super::exit::{Fault, Outcome, check_folder, print};
-use grainbench::reports::StagedDir;
+use grainbench::store::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

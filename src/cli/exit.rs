@@ -119,12 +119,12 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
 /// Rejects an output directory that cannot be written. It may contain other files of the user.
 pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
     // The test directory is removed at once, so that an interrupted run leaves nothing next to the output directory.
-    grainbench::reports::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
+    grainbench::store::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
 }
 
 /// Rejects an output directory before any computation. The directory must be writable and must not contain a page or
 /// manifest of another program.
 pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
     check_folder(out)?;
-    grainbench::reports::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))
+    grainbench::store::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))
 }

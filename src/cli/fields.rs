@@ -12,10 +12,11 @@ use grainbench::reference::ReadError;
 use grainbench::reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench::reference::observer::Names;
 use grainbench::reports::elements::{Summary, write_elements};
-use grainbench::reports::{each_snapshot, number, refuse_mixed};
+use grainbench::reports::{each_snapshot, number};
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::Dimension;
+use grainbench::store::refuse_mixed;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -5,9 +5,10 @@
 use super::exit::Fault;
 use super::select::CaseSelection;
 use grainbench::reference::outside::ExternalProgram;
+use grainbench::reports::Report;
 use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::study::{Study, kept_text};
-use grainbench::reports::{Report, write_file};
+use grainbench::store::write_file;
 use std::fs;
 
 /// File of stored results.

@@ -15,7 +15,7 @@ use grainbench::campaign::shard;
 use grainbench::campaign::sweep::Sweep;
 use grainbench::cases::registry::read_grains;
 use grainbench::reports::export::{self, Format};
-use grainbench::reports::{SnapshotStore, StagedDir, number, write_file};
+use grainbench::reports::{SnapshotStore, number};
 use grainbench::scene::brief::Brief;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::effects::Effects;
@@ -24,6 +24,7 @@ use grainbench::scene::record::{Cost, PartialOutput, Provenance, Record, Series,
 use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Method, Observer, Resolution, RunError, RunOptions, RunOutline, Solver, StorageError};
 use grainbench::scene::source::SceneSource;
+use grainbench::store::{StagedDir, write_file};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Cache of finished results, each in its own file; the file name is a hash of the task.
 
-use grainbench_reports::{WriteError, sweep, write_file};
+use grainbench_store::{WriteError, remove_leftovers, write_file};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs;
@@ -36,7 +36,7 @@ impl ResultCache {
         // Removes temporary files of killed programs, here and in the directory of the report. Files with their final
         // name are complete.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
-            sweep(place).map_err(|source| WriteError::new(place, source))?;
+            remove_leftovers(place).map_err(|source| WriteError::new(place, source))?;
         }
         Ok(Self { place: Place::Folder(folder.to_owned(), fresh) })
     }

@@ -11,12 +11,12 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::solvers::{ExternalSolver, Solvers, StoredResult};
 use grainbench_lanes::Processor;
-use grainbench_reports::{FolderWriter, WriteError, sweep};
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::kept_record;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, Solver};
+use grainbench_store::{FolderWriter, WriteError, remove_leftovers};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -54,7 +54,7 @@ impl RunCache {
     pub fn open(folder: &Path, most: u64, fresh: bool, edition: Edition) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
         // Removes temporary files of killed programs.
-        sweep(folder).map_err(|source| WriteError::new(folder, source))?;
+        remove_leftovers(folder).map_err(|source| WriteError::new(folder, source))?;
         let folder = folder.to_owned();
         Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
     }

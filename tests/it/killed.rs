@@ -3,7 +3,7 @@
 //! The unit tests of `reports/src/staged.rs` interrupt each disk operation of a commit in turn.
 
 use crate::common::{files, grainbench};
-use grainbench::reports::refuse_mixed;
+use grainbench::store::refuse_mixed;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;

@@ -9,11 +9,11 @@ pub use summary::{ElementMean, Summary};
 
 use crate::number;
 use crate::pictures::write_page;
-use crate::staged::StagedDir;
 use crate::store::SaveError;
 use grainbench_fields::course::Course;
 use grainbench_fields::element_picture::film;
 use grainbench_harness::figure::Figure;
+use grainbench_store::StagedDir;
 use std::path::Path;
 
 /// Plotted quantities, by column name.

@@ -16,8 +16,8 @@ use grainbench_scene::record::{Record, Series};
 use serde::Serialize;
 
 use crate::parts::{READABLE, SnapshotStore};
-use crate::staged::StagedDir;
-use crate::write::WriteError;
+use grainbench_store::StagedDir;
+use grainbench_store::WriteError;
 
 /// Format of snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

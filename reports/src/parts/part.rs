@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use super::columns::Row;
 use super::rows::{Frame, SnapshotRow};
 use super::table::{TableReader, TableWriter, file_name};
-use crate::scratch::temporary_in;
+use grainbench_store::temporary_in;
 
 /// All tables of a part, in a fixed order.
 const TABLES: [&str; 6] =

@@ -16,8 +16,8 @@ use thiserror::Error;
 
 use super::part::{OpenPart, PartReader, Seal, files, rows_of};
 use super::rows::left_out;
-use crate::scratch::{sweep, temporary_in};
-use crate::write::{WriteError, parent_of};
+use grainbench_store::{WriteError, parent_of};
+use grainbench_store::{remove_leftovers, temporary_in};
 
 /// Largest number of rows (grains, contacts and points) of a small run. Its snapshots are written as readable text.
 pub const READABLE: u64 = 200_000;
@@ -248,7 +248,7 @@ impl SnapshotStore {
     /// Deletes parts that the store does not list. It must follow a checkpoint that lists all parts of the store.
     pub fn forget_others(&self) {
         let Place::Folder(folder) = &self.place else { return };
-        let _ = sweep(folder);
+        let _ = remove_leftovers(folder);
         let known: BTreeSet<OsString> = self.closed.iter().map(|seal| OsString::from(&seal.name)).collect();
         let Ok(entries) = fs::read_dir(folder) else { return };
         for entry in entries.flatten().filter(|entry| !known.contains(&entry.file_name())) {

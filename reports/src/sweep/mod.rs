@@ -6,12 +6,12 @@ mod page;
 mod table;
 
 use crate::report::Provenance;
-use crate::staged::StagedDir;
 use crate::store::SaveError;
 use crate::study::point::Timing;
 use crate::{page as shared, plot};
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Outcome, Severity};
+use grainbench_store::StagedDir;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::io;

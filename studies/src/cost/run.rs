@@ -8,11 +8,11 @@ use grainbench_harness::run::{Change, FinishedRun};
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::statistics::range;
 use grainbench_harness::subject::TargetQuantity;
-use grainbench_reports::WriteError;
 use grainbench_reports::study::point::{Counts, Diagram, Point, PointStatus, Timing};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{RunError, Solver};
+use grainbench_store::WriteError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 

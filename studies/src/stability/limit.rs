@@ -7,10 +7,10 @@ use super::failure::{Failure, of_error};
 use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
-use grainbench_reports::WriteError;
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, RunOptions, Solver};
+use grainbench_store::WriteError;
 
 /// Relative precision of a bracket.
 const PRECISION: f64 = 0.005;

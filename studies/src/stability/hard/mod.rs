@@ -11,7 +11,6 @@ use crate::cost::knobs::nominal_seconds;
 use crate::identity;
 use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
-use grainbench_reports::WriteError;
 use grainbench_reports::study::stability::{HardCaseResult, Hardness};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
@@ -19,6 +18,7 @@ use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_store::WriteError;
 use std::path::Path;
 
 /// Checks the condition at the end of a run.

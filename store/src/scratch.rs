@@ -1,6 +1,7 @@
 //! Temporary hidden directories and files. Their names contain the process that made them. Leftovers of ended processes
 //! are thus distinct from files in use, and from files of the user with similar names.
 
+use crate::machine;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -11,8 +12,6 @@ use tempfile::{Builder, TempDir};
 
 /// Start of the names of all our temporary files.
 const PREFIX: &str = ".grainbench-";
-/// Name of the lock file of a directory that is being written.
-const LOCK: &str = ".grainbench-lock";
 /// Age after which a file from another machine counts as a leftover, because its process cannot be checked.
 const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 
@@ -20,9 +19,12 @@ const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 ///
 /// Files are created inside it and not by `NamedTempFile`, so that they get the permissions of ordinary new files.
 /// Leftovers of ended processes in `parent` are removed first.
-pub(crate) fn temporary_in(parent: &Path) -> io::Result<TempDir> {
+///
+/// # Errors
+/// When the directory cannot be created.
+pub fn temporary_in(parent: &Path) -> io::Result<TempDir> {
     // Leftovers that cannot be removed do not prevent writing.
-    let _ = sweep(parent);
+    let _ = remove_leftovers(parent);
     Builder::new().prefix(&prefix()).tempdir_in(parent).map_err(without_its_path)
 }
 
@@ -33,8 +35,8 @@ pub fn is_scratch(name: &std::ffi::OsStr) -> bool {
 }
 
 /// Returns the start of the names of this process. A random suffix without a dash follows.
-fn prefix() -> String {
-    format!("{PREFIX}{}@{}-", process::id(), machine())
+pub(crate) fn prefix() -> String {
+    format!("{PREFIX}{}@{}-", process::id(), machine::name())
 }
 
 /// Returns the process and the machine that a name contains.
@@ -47,7 +49,7 @@ fn owner_in(name: &str) -> Option<(u32, &str)> {
 ///
 /// # Errors
 /// When the folder cannot be read, or when a leftover cannot be removed.
-pub fn sweep(folder: &Path) -> io::Result<()> {
+pub fn remove_leftovers(folder: &Path) -> io::Result<()> {
     // The parent of a bare file name is the current directory.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     for entry in fs::read_dir(folder)? {
@@ -64,62 +66,12 @@ pub fn sweep(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Lock of a directory. It is released when this value is dropped.
-#[derive(Debug)]
-pub(crate) struct Lock(std::path::PathBuf);
-
-impl Lock {
-    /// Locks a directory. It waits up to 10 s for another process to release the lock.
-    pub(crate) fn acquire(directory: &Path) -> io::Result<Self> {
-        const TRIES: u32 = 200;
-        let path = directory.join(LOCK);
-        for _ in 0..TRIES {
-            // The lock file contains its owner from the start. An empty file left by a crash could never be attributed.
-            let mut file = Builder::new().prefix(&prefix()).tempfile_in(directory).map_err(without_its_path)?;
-            io::Write::write_all(&mut file, owner().as_bytes())?;
-            match file.persist_noclobber(&path).map_err(|error| error.error) {
-                Ok(_) => return Ok(Self(path)),
-                Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
-                Err(_) if is_left(&path) => {
-                    let _ = fs::remove_file(&path);
-                }
-                Err(_) => std::thread::sleep(Duration::from_millis(50)),
-            }
-        }
-        let whose = fs::read_to_string(&path).unwrap_or_default();
-        let whose = whose.split_whitespace().nth(1).unwrap_or("of unknown number").to_owned();
-        Err(io::Error::new(io::ErrorKind::ResourceBusy, format!("process {whose} is writing here ({LOCK})")))
-    }
-}
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-    }
-}
-
-/// Returns the process number and the machine in words.
-fn owner() -> String {
-    format!("process {} on {}\n", process::id(), machine())
-}
-
-fn machine() -> String {
-    let name = fs::read_to_string("/proc/sys/kernel/hostname").ok();
-    name.map_or_else(|| "unknown".to_owned(), |name| name.trim().replace(char::is_whitespace, "-"))
-}
-
-/// Returns true if the owner of a lock has ended.
-fn is_left(lock: &Path) -> bool {
-    let Ok(text) = fs::read_to_string(lock) else { return false };
-    let words: Vec<&str> = text.split_whitespace().collect();
-    let ["process", number, "on", host] = words[..] else { return false };
-    number.parse().is_ok_and(|process| is_gone(process, host, lock))
-}
-
 /// Returns true if a process has ended. For a process on another machine, returns true if its file is old.
 fn is_gone(process: u32, host: &str, made: &Path) -> bool {
-    if host == machine() && Path::new("/proc/self").exists() {
-        return !Path::new(&format!("/proc/{process}")).exists();
+    if host == machine::name()
+        && let Some(runs) = machine::runs(process)
+    {
+        return !runs;
     }
     age_of(made).is_some_and(|age| age > PATIENCE)
 }
@@ -130,7 +82,7 @@ fn age_of(path: &Path) -> Option<Duration> {
 }
 
 /// Returns the error of the operating system, without the name of the temporary file.
-fn without_its_path(error: io::Error) -> io::Error {
+pub(crate) fn without_its_path(error: io::Error) -> io::Error {
     let inner =
         error.get_ref().and_then(|wrapper| wrapper.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
     inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
@@ -151,31 +103,17 @@ mod tests {
     fn only_what_is_left_of_a_process_that_is_no_more_goes() {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
-        let left = format!(".grainbench-{}@{}-aX3", gone(), machine());
+        let left = format!(".grainbench-{}@{}-aX3", gone(), machine::name());
         let other = ".grainbench-1@another-machine-aX3";
         for name in [".grainbench-notes", ".grainbench-1-notes", &left, other] {
             fs::create_dir(place(name)).unwrap();
             fs::write(place(name).join("mine"), "").unwrap();
         }
-        let file = format!(".grainbench-{}@{}-bY4", gone(), machine());
+        let file = format!(".grainbench-{}@{}-bY4", gone(), machine::name());
         fs::write(place(&file), "").unwrap();
         let at_work = temporary_in(folder.path()).unwrap();
-        sweep(folder.path()).unwrap();
+        remove_leftovers(folder.path()).unwrap();
         assert!(at_work.path().is_dir() && !place(&left).exists() && !place(&file).exists());
         assert!([".grainbench-notes", ".grainbench-1-notes", other].iter().all(|name| place(name).is_dir()));
-    }
-
-    #[test]
-    fn a_lock_is_held_by_one_and_outlived_by_none() {
-        let folder = tempfile::tempdir().unwrap();
-        let held = Lock::acquire(folder.path()).unwrap();
-        let (path, directory) = (folder.path().join(LOCK), folder.path().to_owned());
-        assert!(path.is_file() && !is_left(&path));
-        let waiting = std::thread::spawn(move || Lock::acquire(&directory).is_ok());
-        std::thread::sleep(Duration::from_millis(120));
-        drop(held);
-        assert!(waiting.join().unwrap() && !path.exists());
-        fs::write(&path, format!("process {} on {}\n", gone(), machine())).unwrap();
-        assert!(Lock::acquire(folder.path()).is_ok());
     }
 }

@@ -4,12 +4,17 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::time::Duration;
 
 use tempfile::TempDir;
 
+use crate::lock::{Lock, LockTerms};
 use crate::manifest::{MANIFEST, Manifest};
-use crate::scratch::{Lock, sweep, temporary_in};
+use crate::scratch::{remove_leftovers, temporary_in};
 use crate::write::{WriteError, parent_of};
+
+/// Durations of the lock of a directory while its files are replaced.
+const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(10), abandoned_after: Duration::from_secs(24 * 3600) };
 
 /// A set of files that will be moved to a directory. They are written to a hidden directory and moved at
 /// [`StagedDir::commit`]. If the value is dropped before that, no file remains.
@@ -59,8 +64,8 @@ impl StagedDir {
         }
         // Leftovers of an ended process are next to the directory if it was new then, otherwise inside it. Failure to
         // remove them does not prevent writing.
-        let _ = sweep(parent_of(&self.target));
-        let _ = sweep(parent);
+        let _ = remove_leftovers(parent_of(&self.target));
+        let _ = remove_leftovers(parent);
         let holder = temporary_in(parent)?;
         fs::create_dir(holder.path().join("new"))?;
         self.holder = Some(holder);
@@ -173,7 +178,7 @@ impl StagedDir {
             }
         }
         self.refuse_others()?;
-        let _lock = Lock::acquire(&self.target).map_err(at_target)?;
+        let _lock = Lock::acquire(&self.target, TERMS).map_err(at_target)?;
         after();
         let mut moves = Moves { target: &self.target, holder: &holder, done: Vec::new() };
         if !self.manifest {

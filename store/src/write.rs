@@ -78,7 +78,8 @@ impl FolderWriter {
 }
 
 /// Returns the directory that contains `path`; for a bare file name, the current directory.
-pub(crate) fn parent_of(path: &Path) -> &Path {
+#[must_use]
+pub fn parent_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

@@ -1,0 +1,13 @@
+//! Files on disk: written completely or not at all, with locks and without leftovers of ended processes.
+
+pub mod lock;
+pub mod machine;
+mod manifest;
+mod scratch;
+mod staged;
+mod write;
+
+pub use manifest::refuse_mixed;
+pub use scratch::{is_scratch, remove_leftovers, temporary_in};
+pub use staged::{StagedDir, refuse_other_programs};
+pub use write::{FolderWriter, WriteError, parent_of, write_file};
