@@ -1,7 +1,7 @@
 //! Runs of external programs: input files in a scratch folder, one process, its output and the record.
 //!
 //! LAMMPS and LIGGGHTS ([`crate::live`]) and programs with a manifest ([`crate::outside`]) have the same run. They
-//! differ in their files, in the protocol of their processes and in the readers of their output ([`PreparedRun`]).
+//! differ in the data of [`Launch`] and in the readers of their output.
 
 mod deadline;
 pub(crate) mod process;
@@ -13,7 +13,6 @@ pub(crate) use worker::Worker;
 
 use crate::deck::Stepping;
 use crate::observer::DumpRecord;
-use crate::read::log::Log;
 use crate::read::read_error::{ReadError, one_line};
 use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
@@ -29,42 +28,19 @@ use worker::Answer;
 /// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
 
-/// Run of a program that can express the scene.
-pub(crate) trait PreparedRun {
-    /// Returns the time steps and the samples.
-    fn stepping(&self) -> Stepping;
-    /// Returns the name and the text of each input file.
-    ///
-    /// # Errors
-    /// If a file cannot be written, with the reason.
-    fn files(&self) -> Result<Vec<(String, String)>, String>;
-    /// Returns the process of the run in a folder with the input files.
-    ///
-    /// # Errors
-    /// If the program is not available.
-    fn launch(&self, folder: &Path, files: &[(String, String)]) -> Result<Launch<'_>, RunError>;
-    /// Reads the output of the program in a folder, and its log if it has one.
-    ///
-    /// # Errors
-    /// If the output is not valid, or the time limit has expired.
-    fn read(&self, folder: &Path, deadline: Deadline) -> Result<(DumpRecord, Option<Log>), Failure>;
-    /// Returns the time of a run with zero steps (s), for programs without a log.
-    fn start_up(&self) -> f64 {
-        0.0
-    }
-    /// Returns the version, for programs without a log.
-    fn version(&self) -> Option<String> {
-        None
-    }
-}
-
-/// Process of a run.
+/// Run of a program.
 pub(crate) struct Launch<'p> {
+    /// Name of the solver.
+    pub(crate) solver: String,
+    /// Time steps and samples.
+    pub(crate) stepping: Stepping,
+    /// Name and text of each input file.
+    pub(crate) files: Vec<(String, String)>,
     /// Path of the program.
     pub(crate) executable: PathBuf,
-    /// Command-line arguments.
+    /// Command-line arguments. `{scene}` is replaced by the path of the first input file, and `{out}` by the folder.
     pub(crate) arguments: Vec<String>,
-    /// Limits, including the time limit, which has started.
+    /// Limits. The time limit has started.
     pub(crate) limits: Limits,
     /// Protocol of the process.
     pub(crate) protocol: Protocol<'p>,
@@ -77,9 +53,8 @@ pub(crate) enum Protocol<'p> {
     /// The exit code is 0 after a run and [`CANNOT`] if the program cannot express the scene. The program may write a
     /// report with this name.
     Report(Option<&'p str>),
-    /// Workers answer one request after the other. The list contains those that wait for a run, and the path is the
-    /// file with the scene.
-    Worker(&'p Mutex<Vec<Worker>>, PathBuf),
+    /// Workers answer one request after the other. The list contains those that wait for a run.
+    Worker(&'p Mutex<Vec<Worker>>),
 }
 
 /// Message of a program about its run.
@@ -94,45 +69,40 @@ enum ProgramMessage {
 /// Execution that ended regularly.
 pub(crate) struct Execution {
     folder: TempDir,
-    deadline: Deadline,
     message: ProgramMessage,
     last_lines: Vec<String>,
     /// Elapsed time (s).
     pub(crate) seconds: f64,
 }
 
-/// Runs a program and returns the record of a solver with this name.
-pub(crate) fn run(
-    prepared: &dyn PreparedRun,
-    solver: String,
-    scene: &Scene,
-    resolution: &Resolution,
+/// Runs a program and returns its record. `read` reads the output in the folder until the deadline, and may return
+/// further data. `finish` returns the time of the run (s) and the version of the program. Its arguments are the time
+/// that the program reports (s), the elapsed time (s) and these data.
+pub(crate) fn run<T>(
+    launch: &Launch<'_>,
+    (scene, resolution): (&Scene, &Resolution),
     observer: &mut dyn Observer,
+    read: impl FnOnce(&Path, Deadline) -> Result<(DumpRecord, T), Failure>,
+    finish: impl FnOnce(Option<f64>, f64, T) -> (f64, Option<String>),
 ) -> Result<Record, RunError> {
-    let stepping = prepared.stepping();
+    let Launch { solver, stepping, .. } = launch;
     let particles = scene.grains.len() as u64;
     observer.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
-    let Execution { folder, deadline, message, last_lines, seconds } = execute(prepared, &solver)?;
+    let Execution { folder, message, last_lines, seconds } = execute(launch)?;
     let fail = |failure| RunError::Program { solver: solver.clone(), failure, last_lines: last_lines.clone() };
     let reported = match message {
         ProgramMessage::Ran(seconds) => seconds,
-        ProgramMessage::Cannot(reason) => return Err(RunError::Unsupported { solver, reason }),
+        ProgramMessage::Cannot(reason) => return Err(RunError::Unsupported { solver: solver.clone(), reason }),
         ProgramMessage::Failed(failure) => return Err(fail(failure)),
     };
-    let (mut observed, log) = prepared.read(folder.path(), deadline).map_err(fail)?;
+    let (mut observed, further) = read(folder.path(), launch.limits.deadline).map_err(fail)?;
     observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
-    complete(&observed.series, stepping).map_err(|missing| fail(Failure::Output(missing)))?;
+    complete(&observed.series, *stepping).map_err(|missing| fail(Failure::Output(missing)))?;
     observer.progress(stepping.steps, stepping.steps);
-    let (seconds, version) = match log {
-        Some(log) => (log.seconds(), log.version),
-        None => {
-            let seconds = reported.unwrap_or_else(|| (seconds - prepared.start_up()).max(0.0));
-            (seconds, prepared.version())
-        }
-    };
+    let (seconds, version) = finish(reported, seconds, further);
     let options = version.into_iter().collect();
     Ok(Record {
-        provenance: Provenance::new(scene, solver, resolution, stepping.time_step, options),
+        provenance: Provenance::new(scene, solver.clone(), resolution, stepping.time_step, options),
         series: observed.series,
         snapshots: observed.snapshots,
         cost: Cost::of_program(stepping.steps, scene.grains.len(), seconds),
@@ -140,38 +110,35 @@ pub(crate) fn run(
 }
 
 /// Starts a program in a new folder with its files, and waits until its run ends.
-pub(crate) fn execute(prepared: &dyn PreparedRun, solver: &str) -> Result<Execution, RunError> {
-    let fail = |(failure, last_lines)| RunError::Program { solver: solver.to_owned(), failure, last_lines };
-    let not_run = |reason: String| fail((Failure::NotRun(reason), Vec::new()));
-    let files = prepared.files().map_err(not_run)?;
+pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
+    let Launch { solver, files, executable, limits, protocol, .. } = launch;
+    let fail = |(failure, last_lines)| RunError::Program { solver: solver.clone(), failure, last_lines };
     let texts = files.iter().map(|(name, text)| (name.as_str(), text.as_str()));
-    let folder = process::scratch(texts).map_err(|error| not_run(error.to_string()))?;
-    let Launch { executable, arguments, limits, protocol } = prepared.launch(folder.path(), &files)?;
+    let folder = process::scratch(texts).map_err(|error| fail((Failure::NotRun(error.to_string()), Vec::new())))?;
+    let (out, scene) = (folder.path(), folder.path().join(&files[0].0));
+    let replaced =
+        |word: &String| word.replace("{scene}", &scene.to_string_lossy()).replace("{out}", &out.to_string_lossy());
+    let arguments: Vec<String> = launch.arguments.iter().map(replaced).collect();
     let mut start = Instant::now();
-    let (message, last_lines) = match protocol {
-        Protocol::Worker(idle, scene) => {
-            let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-            let waiting = idle().pop();
-            let worker = waiting.map_or_else(|| Worker::start(&executable, &arguments, limits), Ok);
-            let mut worker = worker.map_err(|failure| fail((failure, Vec::new())))?;
-            // The start of the worker does not count, because later runs do not need it.
-            start = Instant::now();
-            let answer = worker.ask(&scene, folder.path(), limits).map_err(fail)?;
-            let last_lines = worker.last_lines();
-            idle().push(worker);
-            (ProgramMessage::from_answer(answer), last_lines)
-        }
-        Protocol::ExitCode | Protocol::Report(_) => {
-            let errors_apart = matches!(protocol, Protocol::Report(_));
-            let (executable, arguments) = (executable.as_path(), arguments.as_slice());
-            let started = ProcessStart { executable, arguments, folder: folder.path(), at: None, errors_apart };
-            let ended = process::run(&started, limits).map_err(fail)?;
-            let message = ProgramMessage::from_process(&ended, &protocol, folder.path());
-            (message.map_err(|failure| fail((failure, ended.last_lines.clone())))?, ended.last_lines)
-        }
+    let (message, last_lines) = if let Protocol::Worker(idle) = protocol {
+        let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let waiting = idle().pop();
+        let worker = waiting.map_or_else(|| Worker::start(executable, &arguments, *limits), Ok);
+        let mut worker = worker.map_err(|failure| fail((failure, Vec::new())))?;
+        // The start of the worker does not count, because later runs do not need it.
+        start = Instant::now();
+        let answer = worker.ask(&scene, out, *limits).map_err(fail)?;
+        let last_lines = worker.last_lines();
+        idle().push(worker);
+        (ProgramMessage::from_answer(answer), last_lines)
+    } else {
+        let errors_apart = matches!(protocol, Protocol::Report(_));
+        let started = ProcessStart { executable, arguments: &arguments, folder: out, at: None, errors_apart };
+        let ended = process::run(&started, *limits).map_err(fail)?;
+        let message = ProgramMessage::from_process(&ended, protocol, out);
+        (message.map_err(|failure| fail((failure, ended.last_lines.clone())))?, ended.last_lines)
     };
-    let seconds = start.elapsed().as_secs_f64();
-    Ok(Execution { folder, deadline: limits.deadline, message, last_lines, seconds })
+    Ok(Execution { folder, message, last_lines, seconds: start.elapsed().as_secs_f64() })
 }
 
 impl ProgramMessage {

@@ -12,14 +12,14 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, Solver};
 
-use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, Stepping, logged, write_deck};
+use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
 use crate::execution::process::{Limits, on_path};
-use crate::execution::{self, Deadline, Launch, PreparedRun, Protocol, most_bytes, output, plain_file};
+use crate::execution::{self, Deadline, Launch, Protocol, most_bytes, output, plain_file};
 use crate::grain_dump::contacts_of;
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;
 use crate::read::dump::DumpReader;
-use crate::read::log::{Log, read_log};
+use crate::read::log::read_log;
 use crate::read::numbers::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
@@ -110,45 +110,25 @@ impl Solver for LiveProgram {
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let deck = self.deck(scene, resolution)?;
-        let prepared = DeckRun { scene, deck, executable: self.executable()?, time_limit: self.time_limit };
-        execution::run(&prepared, self.name(), scene, resolution, observer)
-    }
-}
-
-/// Run of a deck.
-struct DeckRun<'r> {
-    scene: &'r Scene,
-    deck: Deck,
-    executable: &'r Path,
-    time_limit: Duration,
-}
-
-impl PreparedRun for DeckRun<'_> {
-    fn stepping(&self) -> Stepping {
-        self.deck.stepping
-    }
-
-    fn files(&self) -> Result<Vec<(String, String)>, String> {
-        Ok(self.deck.files.clone())
-    }
-
-    fn launch(&self, _: &Path, files: &[(String, String)]) -> Result<Launch<'_>, RunError> {
-        let bytes = most_bytes(self.scene, self.deck.stepping);
-        Ok(Launch {
-            executable: self.executable.to_owned(),
-            arguments: ["-in", &files[0].0, "-log", LOG].map(str::to_owned).to_vec(),
-            limits: Limits { deadline: Deadline::after(self.time_limit), bytes, memory: None, threads: 1 },
+        let (stepping, deadline) = (deck.stepping, Deadline::after(self.time_limit));
+        let launch = Launch {
+            solver: self.name(),
+            stepping,
+            files: deck.files.clone(),
+            executable: self.executable()?.to_owned(),
+            arguments: ["-in", &deck.files[0].0, "-log", LOG].map(str::to_owned).to_vec(),
+            limits: Limits { deadline, bytes: most_bytes(scene, stepping), memory: None, threads: 1 },
             protocol: Protocol::ExitCode,
-        })
-    }
-
-    fn read(&self, folder: &Path, deadline: Deadline) -> Result<(DumpRecord, Option<Log>), Failure> {
-        let mut observed = observe(self.scene, &self.deck, folder, deadline)?;
-        let log = read_log(&plain_file(folder, LOG)?).map_err(output)?;
-        for (column, values) in logged::read(&self.deck.logged, &log, &observed.series) {
-            observed.add(self.scene, &column, values);
-        }
-        Ok((observed, Some(log)))
+        };
+        let read = |folder: &Path, deadline| {
+            let mut observed = observe(scene, &deck, folder, deadline)?;
+            let log = read_log(&plain_file(folder, LOG)?).map_err(output)?;
+            for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
+                observed.add(scene, &column, values);
+            }
+            Ok((observed, log))
+        };
+        execution::run(&launch, (scene, resolution), observer, read, |_, _, log| (log.seconds(), log.version))
     }
 }
 

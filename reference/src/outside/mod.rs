@@ -22,10 +22,9 @@ pub use crate::execution::CANNOT;
 
 use crate::deck::Stepping;
 use crate::execution::process::{self, ERRORS, ProcessStart, SCREEN, on_path};
-use crate::execution::{self, Deadline, Launch, PreparedRun, Protocol, Worker, most_bytes, output, plain_file};
+use crate::execution::{self, Deadline, Launch, Protocol, Worker, most_bytes, output, plain_file};
 use crate::observer::DumpRecord;
 use crate::outputs::{OutputError, Outputs, Sources};
-use crate::read::log::Log;
 use crate::read::read_error::one_line;
 use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
@@ -267,6 +266,43 @@ impl ExternalProgram {
         found.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
+    /// Returns the run of a scene.
+    fn launch(&self, given: &DiscretizedScene<'_>) -> Result<Launch<'_>, RunError> {
+        let Manifest { scene: format, worker, limits, output, .. } = &self.manifest;
+        let not_run = |reason: String| {
+            let (failure, last_lines) = (Failure::NotRun(reason), Vec::new());
+            RunError::Program { solver: self.name(), failure, last_lines }
+        };
+        let text = Resolved::new(given).text(*format).map_err(not_run)?;
+        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(given.scene, given.stepping);
+        let ending = if *format == SceneFormat::Json { "json" } else { "toml" };
+        let report = Protocol::Report(output.report.as_deref());
+        Ok(Launch {
+            solver: self.name(),
+            stepping: given.stepping,
+            files: vec![(format!("{SCENE}.{ending}"), text)],
+            executable: self.program()?,
+            arguments: self.words(self.manifest.command(), Path::new("{scene}"), Path::new("{out}")),
+            limits: self.limits(Duration::from_secs(limits.seconds), bytes),
+            protocol: if worker.is_empty() { report } else { Protocol::Worker(&self.idle) },
+        })
+    }
+
+    /// Returns the time of a run with zero steps (s).
+    fn start_up(&self, given: &DiscretizedScene<'_>) -> f64 {
+        let grains = given.scene.grains.len();
+        let times = || self.start_up.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = times().get(&grains).copied();
+        known.unwrap_or_else(|| {
+            let stepping = Stepping { steps: 0, interval: 1, ..given.stepping };
+            let launch = self.launch(&DiscretizedScene { stepping, ..*given });
+            let run = launch.and_then(|launch| execution::execute(&launch));
+            let seconds = run.map_or(0.0, |finished| finished.seconds);
+            times().insert(grains, seconds);
+            seconds
+        })
+    }
+
     /// Reads the output of a run.
     fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<DumpRecord, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
@@ -385,63 +421,11 @@ impl Solver for ExternalProgram {
         let given = DiscretizedScene::new(scene, resolution)
             .map_err(|reason| RunError::Resolution { solver: self.name(), reason })?;
         self.prepare()?;
-        execution::run(&ManifestRun { program: self, given }, self.name(), scene, resolution, observer)
-    }
-}
-
-/// Run of a program with a manifest.
-struct ManifestRun<'r> {
-    program: &'r ExternalProgram,
-    given: DiscretizedScene<'r>,
-}
-
-impl PreparedRun for ManifestRun<'_> {
-    fn stepping(&self) -> Stepping {
-        self.given.stepping
-    }
-
-    fn files(&self) -> Result<Vec<(String, String)>, String> {
-        let format = self.program.manifest.scene;
-        let ending = if format == SceneFormat::Json { "json" } else { "toml" };
-        Ok(vec![(format!("{SCENE}.{ending}"), Resolved::new(&self.given).text(format)?)])
-    }
-
-    fn launch(&self, folder: &Path, files: &[(String, String)]) -> Result<Launch<'_>, RunError> {
-        let Manifest { limits, output, worker, .. } = &self.program.manifest;
-        let (name, text) = &files[0];
-        let scene = folder.join(name);
-        let bytes = text.len() as u64 + MOST_PRINTED + most_bytes(self.given.scene, self.given.stepping);
-        Ok(Launch {
-            executable: self.program.program()?,
-            arguments: self.program.words(self.program.manifest.command(), &scene, folder),
-            limits: self.program.limits(Duration::from_secs(limits.seconds), bytes),
-            protocol: if worker.is_empty() {
-                Protocol::Report(output.report.as_deref())
-            } else {
-                Protocol::Worker(&self.program.idle, scene)
-            },
-        })
-    }
-
-    fn read(&self, folder: &Path, _: Deadline) -> Result<(DumpRecord, Option<Log>), Failure> {
-        Ok((self.program.observe(self.given.scene, &self.given.stepping, folder)?, None))
-    }
-
-    fn start_up(&self) -> f64 {
-        let grains = self.given.scene.grains.len();
-        let times = || self.program.start_up.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = times().get(&grains).copied();
-        known.unwrap_or_else(|| {
-            let stepping = Stepping { steps: 0, interval: 1, ..self.given.stepping };
-            let given = DiscretizedScene { stepping, ..self.given };
-            let run = execution::execute(&ManifestRun { given, ..*self }, &self.program.name());
-            let seconds = run.map_or(0.0, |finished| finished.seconds);
-            times().insert(grains, seconds);
-            seconds
-        })
-    }
-
-    fn version(&self) -> Option<String> {
-        self.program.version()
+        let stepping = given.stepping;
+        let read = |folder: &Path, _| Ok((self.observe(scene, &stepping, folder)?, ()));
+        let finish = |reported: Option<f64>, elapsed: f64, ()| {
+            (reported.unwrap_or_else(|| (elapsed - self.start_up(&given)).max(0.0)), self.version())
+        };
+        execution::run(&self.launch(&given)?, (scene, resolution), observer, read, finish)
     }
 }

@@ -56,6 +56,27 @@ impl<'b> Reader<'b> {
             self.words();
             let wrong = |expected: &str| here.error(expected);
             let entities = if entities_of == ArrayEntities::Cells { cells } else { points };
+            let color = if self.is_binary { "unsigned_char" } else { "float" };
+            // Name, type and components of an array with one entry for each point or cell.
+            let array = match words[..] {
+                ["SCALARS", name, kind, ref rest @ ..] => {
+                    let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
+                    if matches!(self.bytes.next_words().as_deref(), Some(["LOOKUP_TABLE", _])) {
+                        self.words();
+                    }
+                    Some((name, kind, components))
+                }
+                ["COLOR_SCALARS", name, components] => Some((name, color, number(components, &here)?)),
+                ["VECTORS" | "NORMALS", name, kind] => Some((name, kind, 3)),
+                ["TENSORS", name, kind] => Some((name, kind, 9)),
+                ["TENSORS6", name, kind] => Some((name, kind, 6)),
+                ["TEXTURE_COORDINATES", name, components, kind] => Some((name, kind, number(components, &here)?)),
+                _ => None,
+            };
+            if let Some((name, kind, components)) = array {
+                keep(&mut arrays, entities_of, self.array(name, kind, components, entities, &here)?);
+                continue;
+            }
             match words[..] {
                 ["DATASET", "POLYDATA" | "UNSTRUCTURED_GRID"] => {}
                 ["DATASET", ..] => return Err(wrong("`DATASET POLYDATA` or `DATASET UNSTRUCTURED_GRID`")),
@@ -77,36 +98,8 @@ impl<'b> Reader<'b> {
                     }
                 }
                 ["CELL_DATA", count] => (entities_of, cells) = (ArrayEntities::Cells, number(count, &here)?),
-                ["SCALARS", name, kind, ref rest @ ..] => {
-                    let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
-                    if matches!(self.bytes.next_words().as_deref(), Some(["LOOKUP_TABLE", _])) {
-                        self.words();
-                    }
-                    keep(&mut arrays, entities_of, self.array(name, kind, components, entities, &here)?);
-                }
                 ["LOOKUP_TABLE", _, count] => {
-                    let kind = if self.is_binary { "unsigned_char" } else { "float" };
-                    self.array("table", kind, 4, number(count, &here)?, &here)?;
-                }
-                ["COLOR_SCALARS", name, components] => {
-                    let kind = if self.is_binary { "unsigned_char" } else { "float" };
-                    keep(
-                        &mut arrays,
-                        entities_of,
-                        self.array(name, kind, number(components, &here)?, entities, &here)?,
-                    );
-                }
-                ["VECTORS" | "NORMALS", name, kind] => {
-                    keep(&mut arrays, entities_of, self.array(name, kind, 3, entities, &here)?);
-                }
-                ["TENSORS", name, kind] => keep(&mut arrays, entities_of, self.array(name, kind, 9, entities, &here)?),
-                ["TENSORS6", name, kind] => keep(&mut arrays, entities_of, self.array(name, kind, 6, entities, &here)?),
-                ["TEXTURE_COORDINATES", name, components, kind] => {
-                    keep(
-                        &mut arrays,
-                        entities_of,
-                        self.array(name, kind, number(components, &here)?, entities, &here)?,
-                    );
+                    self.array("table", color, 4, number(count, &here)?, &here)?;
                 }
                 ["FIELD", _, count] => {
                     for _ in 0..number(count, &here)? {
