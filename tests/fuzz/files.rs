@@ -2,6 +2,7 @@
 
 use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
 use crate::driver::RandomSource;
+use crate::observer::RunObserver;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use grainbench::cases::registry;
@@ -22,7 +23,7 @@ use grainbench::reports::{Provenance, Report, Section, page, plot, record_figure
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Sampling, Scene};
-use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench::scene::solver::{Resolution, RunError, Solver};
 use grainbench::store::refuse_mixed;
 use proptest::prelude::*;
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
@@ -179,20 +180,6 @@ fn scene() -> Scene {
     scene
 }
 
-/// Observer that keeps the last checkpoint.
-struct Keeper(Option<Checkpoint>);
-
-impl Observer for Keeper {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(25)
-    }
-    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.0 = Some(checkpoint);
-        Ok(())
-    }
-}
-
 const SOLVER: Convention = Convention::LAMMPS;
 const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
 
@@ -200,9 +187,9 @@ const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
 fn run() -> &'static (Record, Vec<u8>) {
     static RUN: OnceLock<(Record, Vec<u8>)> = OnceLock::new();
     RUN.get_or_init(|| {
-        let mut keeper = Keeper(None);
-        let record = Dem::new(SOLVER).run(&scene(), &RESOLUTION, &mut keeper).unwrap();
-        (record, keeper.0.unwrap().to_bytes().unwrap())
+        let mut observer = RunObserver::with_checkpoints(25);
+        let record = Dem::new(SOLVER).run(&scene(), &RESOLUTION, &mut observer).unwrap();
+        (record, observer.checkpoints.pop().unwrap().to_bytes().unwrap())
     })
 }
 

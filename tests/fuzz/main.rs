@@ -12,6 +12,8 @@ mod driver;
 mod files;
 #[path = "../mistakes/mod.rs"]
 mod mistakes;
+#[path = "../it/observer.rs"]
+mod observer;
 mod scenes;
 
 use driver::{Kind, go};

@@ -1,10 +1,11 @@
 //! Snapshots that no reader wants row by row are reduced to a summary and need no memory.
 
+use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::scene::brief::Brief;
-use grainbench::scene::record::{Series, Snapshot};
+use grainbench::scene::record::Series;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, StorageError, Watch};
+use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
@@ -31,40 +32,15 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
     [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.988, 0.1]\n\
     [output]\nevery = 0.004\nsnapshots = 2\n";
 
-/// Watch that takes all snapshots and summaries.
-struct Taker {
-    most_rows: u64,
-    threads: usize,
-    whole: Vec<Snapshot>,
-    in_short: Vec<(Brief, u64)>,
-}
-
-impl Watch for Taker {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn threads(&self) -> usize {
-        self.threads
-    }
-    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
-        self.whole.push(snapshot);
-        Ok(None)
-    }
-    fn most_rows(&self) -> u64 {
-        self.most_rows
-    }
-    fn in_short(&mut self, brief: Brief, rows: u64) {
-        self.in_short.push((brief, rows));
-    }
-}
-
-fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, Taker) {
+fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, RunObserver) {
     let scene: Scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err(String::new())).unwrap();
-    let mut taker = Taker { most_rows, threads, whole: Vec::new(), in_short: Vec::new() };
+    let mut observer = RunObserver { threads, most_rows: Some(most_rows), ..RunObserver::default() };
     let resolution = match solver {
         "mpm" => Resolution::Grid { cells: 6.0, points: 2, courant: 0.4 },
         _ => Resolution::CriticalFraction(0.1),
     };
-    let record = solvers::by_name(solver).unwrap().run(&scene, &resolution, &mut taker).unwrap();
-    (record.series, taker)
+    let record = solvers::by_name(solver).unwrap().run(&scene, &resolution, &mut observer).unwrap();
+    (record.series, observer)
 }
 
 /// The summary equals that of the snapshot, with and without probes, and the series has the same bits.
@@ -74,16 +50,16 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
         for probes in ["", "[probes]\nall.system = true\n", "[probes]\nall.system = true\np.contact = ['a', 'b']\n"] {
             let text = format!("{scene}{probes}");
             let (series, all) = taken(solver, &text, u64::MAX, 1);
-            assert!(all.in_short.is_empty() && all.whole.len() == 4, "{solver}: {} snapshots", all.whole.len());
+            assert!(all.briefs.is_empty() && all.snapshots.len() == 4, "{solver}: {} snapshots", all.snapshots.len());
             for threads in [1, 2] {
                 let (same, none) = taken(solver, &text, 20, threads);
                 assert_eq!(format!("{same:?}"), format!("{series:?}"), "{solver} {probes}");
-                assert!(none.whole.is_empty());
-                let summaries: Vec<&Brief> = none.in_short.iter().map(|(brief, _)| brief).collect();
-                let expected: Vec<Brief> = all.whole.iter().map(Brief::from_snapshot).collect();
+                assert!(none.snapshots.is_empty());
+                let summaries: Vec<&Brief> = none.briefs.iter().map(|(brief, _)| brief).collect();
+                let expected: Vec<Brief> = all.snapshots.iter().map(Brief::from_snapshot).collect();
                 assert_eq!(summaries, expected.iter().collect::<Vec<_>>(), "{solver} {probes}");
                 assert!(expected.iter().any(|brief| brief.contacts > Some(0)), "some touch");
-                for ((_, rows), snapshot) in none.in_short.iter().zip(&all.whole) {
+                for ((_, rows), snapshot) in none.briefs.iter().zip(&all.snapshots) {
                     let contacts = if solver == "dem" { snapshot.told_contacts().len() } else { 0 };
                     assert_eq!(*rows, (snapshot.grains.len() + snapshot.points.len() + contacts) as u64);
                 }
@@ -91,10 +67,7 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
         }
     }
     let slipping = |brief: &Brief| brief.slipping_contacts > Some(0) && brief.slipping_contacts < brief.contacts;
-    assert!(
-        taken("dem", DISCS, 20, 1).1.in_short.iter().any(|(brief, _)| slipping(brief)),
-        "some slip and some do not"
-    );
+    assert!(taken("dem", DISCS, 20, 1).1.briefs.iter().any(|(brief, _)| slipping(brief)), "some slip and some do not");
 }
 
 /// Grains that are close but not in contact give no rows, not even at the start.
@@ -105,9 +78,9 @@ fn what_is_near_and_does_not_touch_is_no_row() {
         [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
         lattice = { origin = [0.05, 0.05], spacing = [0.1001, 0.1001], count = [20, 20] }\n[output]\nevery_cycles = 3\n";
     let (_, all) = taken("dem", apart, 450, 1);
-    assert_eq!((all.whole.len(), all.in_short.len()), (2, 0));
+    assert_eq!((all.snapshots.len(), all.briefs.len()), (2, 0));
     let (_, none) = taken("dem", apart, 350, 1);
-    assert_eq!((none.whole.len(), none.in_short.len()), (0, 2));
+    assert_eq!((none.snapshots.len(), none.briefs.len()), (0, 2));
 }
 
 /// A large run that crashes leaves its last state, although it would only have left a summary.

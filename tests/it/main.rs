@@ -28,6 +28,7 @@ mod killed;
 mod long_runs;
 mod mesh_walls;
 mod motions;
+mod observer;
 mod outside;
 mod own_case;
 mod own_solver;

@@ -1,6 +1,7 @@
 //! A restarted run equals an uninterrupted one in all bits: for the scene of each case, and for a killed process.
 
 use crate::common::{bits, files, grainbench};
+use crate::observer::RunObserver;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
@@ -8,31 +9,13 @@ use grainbench::harness::case::Case;
 use grainbench::harness::run::FinishedRun;
 use grainbench::resume::{self, Place};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench::scene::end_state::EndState;
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};
-use grainbench::scene::solver::{Resolution, RunError, Watch};
+use grainbench::scene::solver::{Resolution, RunError};
 use rayon::prelude::*;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
-
-/// Watch that keeps all checkpoints of a run.
-struct Keeper {
-    every: u64,
-    kept: Vec<Checkpoint>,
-}
-
-impl Watch for Keeper {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(self.every)
-    }
-    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.kept.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
-        Ok(())
-    }
-}
 
 /// Returns the beginning of a scene, with samples at odd steps.
 fn begun(mut scene: Scene) -> Scene {
@@ -64,15 +47,15 @@ fn every_case_continues_to_the_same_bits() {
         let mut compared = 0;
         for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
             let resolution = Resolution::CriticalFraction(0.1);
-            let mut keeper = Keeper { every: 19, kept: Vec::new() };
+            let mut observer = RunObserver::with_checkpoints(19);
             let whole = match solver.run(scene, &resolution, &mut ()) {
                 // Scenes with only deformable bodies, and scenes whose dashpots need a shorter step.
                 Err(RunError::Unsupported { .. } | RunError::Resolution { .. }) => continue,
                 run => bits(run.unwrap()),
             };
-            let watched = bits(solver.run(scene, &resolution, &mut keeper).unwrap());
+            let watched = bits(solver.run(scene, &resolution, &mut observer).unwrap());
             assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
-            let (first, last) = (keeper.kept.first().unwrap(), keeper.kept.last().unwrap());
+            let (first, last) = (observer.checkpoints.first().unwrap(), observer.checkpoints.last().unwrap());
             for checkpoint in [first, last] {
                 let continued = bits(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
                 assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
@@ -83,28 +66,6 @@ fn every_case_continues_to_the_same_bits() {
     };
     let compared: u32 = scenes.par_iter().map(compare).sum();
     assert!(compared > 100, "{compared}");
-}
-
-/// Watch that ends a run after some steps.
-struct RunInterrupter {
-    until: u64,
-    done: u64,
-    end: Option<EndState>,
-}
-
-impl Watch for RunInterrupter {
-    fn progress(&mut self, done: u64, _total: u64) {
-        self.done = done;
-    }
-    fn is_over(&self) -> bool {
-        self.done >= self.until
-    }
-    fn wants_end_state(&self) -> bool {
-        true
-    }
-    fn end_state(&mut self, state: EndState) {
-        self.end = Some(state);
-    }
 }
 
 /// The stored files of a run that was interrupted twice equal those of an uninterrupted run, except for the run time.
@@ -128,7 +89,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let path = directory.path().join("run.checkpoint");
     let place = Place { path: &path, every: 300 };
     let go = |from: Option<&Checkpoint>, until: u64| {
-        let mut watch = RunInterrupter { until, done: 0, end: None };
+        let mut watch = RunObserver { until: Some(until), ..RunObserver::default() };
         let record = resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch);
         assert!(record.is_err() || watch.end.is_some(), "the final state of a resumed run");
         record
@@ -148,7 +109,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
     let mut other = scene.clone();
     other.gravity *= 2.0;
-    let mut watch = RunInterrupter { until: u64::MAX, done: 0, end: None };
+    let mut watch = RunObserver::default();
     let refused = resume::run(solver.as_ref(), &other, &run.resolution, Some(&theirs), place, &mut watch);
     assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }
