@@ -12,29 +12,7 @@ use std::process::Stdio;
 use std::time::Duration;
 
 /// Sweep of two factors by two solvers, with a claim of the case and a quantity of its own.
-const SWEEP: &str = "title = 'Slopes'
-scene = 'incline-disc/60deg-mu.3'
-[factors]
-mu = { key = 'contacts.plane.friction', values = [0.2, 0.5, 0.9] }
-theta = { key = 'gravity.slope_deg', from = 20.0, to = 60.0, count = 5 }
-[set]
-duration = 0.3
-[[gates]]
-quantity = 'displacement at the end'
-allowed = 0.01
-[[record]]
-quantity = 'velocity over g t'
-unit = '1'
-value = 'grain.vx / (9.8 * 0.3)'
-[[solvers]]
-solver = 'dem'
-levels = ['dt=.1', 'dt=.05']
-[[solvers]]
-solver = 'rigid'
-levels = ['substeps=8']
-";
-/// Line of the sweep's own quantity before its value.
-const RECORD: &str = "unit = '1'\n";
+const SWEEP: &str = include_str!("../scenes/sweep.toml");
 /// Number of points of the sweep.
 const POINTS: usize = 45;
 
@@ -148,17 +126,6 @@ fn a_sweep_at_once_is_its_plan() {
     }
     let [once, old] = ["once", "old"].map(|plan| rows(&here.join(plan).join("report/rows.csv")));
     assert_eq!(once, old);
-    let both = grainbench(here, &["simulate", "sweep.toml", "--solver", "dem"]);
-    assert!(both.code == Some(2) && both.err.contains("--solver: not supported with a sweep"), "{}", both.err);
-    for (arguments, message) in [
-        (&["run", "--shard", "1/2"][..], "--shard: expected `--resume DIR` with it"),
-        (&["report", ".", "--progress"], "--progress: expected the directory of a plan"),
-        (&["run", "squash", "--resume", "once"], "cannot be used with"),
-        (&["simulate", "sweep.toml", "--plan", "p", "--out", "q"], "cannot be used with"),
-    ] {
-        let answer = grainbench(here, arguments);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{arguments:?}: {}", answer.err);
-    }
 }
 
 #[test]
@@ -496,70 +463,6 @@ fn what_is_no_plan_is_refused() {
     for shard in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
         assert_eq!(grainbench(here, &["run", "--resume", "p", "--shard", shard]).code, Some(2), "{shard}");
     }
-}
-
-/// Rejects invalid sweeps and names the wrong key.
-#[test]
-fn what_is_no_sweep_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    let mut messages = String::new();
-    for (from, to) in [
-        ("title = 'Slopes'\n", ""),
-        ("title", "titel"),
-        ("incline-disc/60deg-mu.3", "inclin-disc"),
-        ("incline-disc/60deg-mu.3", "incline-disc/61deg"),
-        ("incline-disc/60deg-mu.3", "nowhere.toml"),
-        ("contacts.plane.friction", "contacts.plane.frictoin"),
-        ("contacts.plane.friction", "gravity..x"),
-        ("values = [0.2, 0.5, 0.9]", "values = []"),
-        ("values = [0.2, 0.5, 0.9]", "values = [-1.0]"),
-        ("values = [0.2, 0.5, 0.9]", "values = ['much']"),
-        ("count = 5", "count = 5, spacing = 'logarithmic'"),
-        ("displacement at the end", "displacment at the end"),
-        ("allowed = 0.01", "allowed = -1"),
-        (RECORD, "unit = '1'\nequals = 'sin(theta'\nallowed = 1\n"),
-        (RECORD, "unit = '1'\nallowed = 1\n"),
-        (RECORD, "unit = '1'\nequals = 1\n"),
-        (RECORD, "unit = '1'\nequals = 1\nallowed = 1\nscale = 0\n"),
-        (RECORD, "unit = '1'\nequals = 1\nallowed = 1\nscale = '-1e9'\n"),
-        ("value = 'grain.vx / (9.8 * 0.3)'", "value = '1 +'"),
-        ("value = 'grain.vx / (9.8 * 0.3)'", "value = 'grian.vx / (9.8 * 0.3)'"),
-        ("value = 'grain.vx / (9.8 * 0.3)'", "value = '0.5'"),
-        ("value = 'grain.vx / (9.8 * 0.3)'", "value = 't * gravity.magnitude'"),
-        (RECORD, "unit = '1'\nequals = 'sin(thta * pi/180)'\nallowed = 1\n"),
-        ("'dt=.1', 'dt=.05'", "'fine'"),
-        ("'dt=.1', 'dt=.05'", "'dt=.1', 'dt=0.1'"),
-        ("'dt=.1', 'dt=.05'", "'cells=4'"),
-        ("'dt=.1', 'dt=.05'", ""),
-        ("solver = 'rigid'", "solver = 'rigit'"),
-        ("solver = 'rigid'", "solver = 'nowhere/SOLVER.toml'"),
-        ("[set]", "map = ['mu', 'tau']\n[set]"),
-        ("[set]", "repetitions = 3\n[set]"),
-        ("[set]", "line = { formula = 'mu', label = 'l' }\n[set]"),
-        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'theta', label = 'l' }\n[set]"),
-        ("[set]", "map = ['mu', 'theta']\nline = { formula = 'mu +', label = 'l' }\n[set]"),
-        ("[set]", "[formulas]\nduration = 'tau * 2'\n[set]"),
-        ("[factors]", "design = 'random'\npoints = 0\n[factors]"),
-    ] {
-        assert!(SWEEP.contains(from), "{from}");
-        // TOML tables that would capture a line come after it.
-        let text = if ["map", "line", "repetitions"].iter().any(|key| to.starts_with(key)) {
-            format!("{}\n{SWEEP}", to.replace("\n[set]", ""))
-        } else {
-            SWEEP.replacen(from, to, 1)
-        };
-        fs::write(here.join("sweep.toml"), text).unwrap();
-        let answer = grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]);
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{to}: {}", answer.err);
-        messages += &format!("{}\n{}\n", to.trim(), answer.err);
-        assert!(!here.join("p").exists(), "{to}");
-    }
-    for text in ["", "\0", "title", "[", "title = 1"] {
-        fs::write(here.join("sweep.toml"), text).unwrap();
-        assert_eq!(grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]).code, Some(2), "{text}");
-    }
-    insta::assert_snapshot!("campaign_sweep_refused", messages);
 }
 
 /// An external solver with a manifest takes part in a sweep at each point.

@@ -1,7 +1,7 @@
 //! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`,
 //! `--against`.
 
-use crate::common::{Answer, files, grainbench};
+use crate::common::{Answer, grainbench};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -154,33 +154,6 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     assert_eq!(quantities("old"), again);
 }
 
-/// A wrong report for the comparison is an error before any run and any output.
-#[test]
-fn what_is_no_report_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    for (name, text) in [("empty", ""), ("other.json", "[1, 2]"), ("cut.json", "{\"verdicts\": [{\"case\": \"squa")] {
-        fs::write(here.join(name), text).unwrap();
-    }
-    let before = files(here);
-    for name in ["empty", "other.json", "cut.json", "absent", "."] {
-        let answer = run(here, &[CASE, "--against", name]);
-        assert_eq!(answer.code, Some(2), "{name}");
-        assert!(
-            answer.err.contains("--against: ") && answer.err.contains("expected the directory of a report"),
-            "{}",
-            answer.err
-        );
-        assert_eq!(answer.err.lines().count(), 1, "{}", answer.err);
-    }
-    assert_eq!(run(here, &["--retry-failed", "--out", "absent"]).code, Some(2));
-    for wrong in ["nothing", "colour=red", "outcome=red", "evidence=seen", "quantity=["] {
-        let answer = run(here, &[CASE, "--filter", wrong]);
-        assert!(answer.code == Some(2) && answer.err.contains("--filter"), "{wrong}: {}", answer.err);
-    }
-    assert_eq!(files(here), before);
-}
-
 #[test]
 fn shells_and_readers_of_manuals_are_served() {
     let directory = tempfile::tempdir().unwrap();
@@ -189,7 +162,6 @@ fn shells_and_readers_of_manuals_are_served() {
         let script = grainbench(here, &["completions", shell]);
         assert!(script.code == Some(0) && script.out.contains("retry-failed"), "{shell}");
     }
-    assert_eq!(grainbench(here, &["completions", "sh"]).code, Some(2));
     let page = grainbench(here, &["man"]);
     assert!(page.code == Some(0) && page.out.contains(".TH"), "{}", page.out);
     assert_eq!(grainbench(here, &["man", "--out", "man"]).code, Some(0));

@@ -208,16 +208,6 @@ fn run_prints_what_it_writes_as_json() {
     assert_eq!(results["controls"], json("[]"));
 }
 
-#[test]
-fn without_a_command_nothing_runs() {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &[]);
-    assert_eq!(answer.code, Some(2));
-    assert!(answer.err.contains("Judge solvers with the cases:\n  run "), "{}", answer.err);
-    assert_eq!(grainbench(directory.path(), &["--solver", "dem"]).code, Some(2));
-    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
-}
-
 /// Old spellings are accepted with a note until the next version.
 #[test]
 fn an_old_spelling_is_reported() {

@@ -243,24 +243,3 @@ fn a_directory_holds_one_deck() {
         assert_eq!(scripts, [script]);
     }
 }
-
-#[test]
-fn the_command_refuses_and_leaves_nothing() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut messages = String::new();
-    for arguments in [
-        &["deck", "nine-discs/static-0", "--for", "lammps"][..],
-        &["deck", "nine-discs", "--for", "lamps"],
-        &["deck", "nine-disc", "--for", "lammps"],
-        &["deck", "no-such.toml", "--for", "lammps"],
-        &["deck", "squash", "--for", "lammps", "--set", "contacts.all.stifness=1"],
-    ] {
-        let answer = grainbench(directory.path(), arguments);
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
-        assert!(files(directory.path()).is_empty());
-        // The list of cases is not part of this test.
-        let lines = answer.err.lines().filter(|line| !line.starts_with("  "));
-        lines.for_each(|line| messages.push_str(&(line.to_owned() + "\n")));
-    }
-    insta::assert_snapshot!(messages);
-}

@@ -1,6 +1,6 @@
 //! Grains as a continuum on the command line: for our runs, for dumps of external solvers, and for invalid files.
 
-use crate::common::{files, grainbench};
+use crate::common::grainbench;
 use grainbench::cases::solvers;
 use grainbench::fields::element::{elements, whole_stress};
 use grainbench::fields::grid::Grid;
@@ -225,53 +225,6 @@ fn a_run_of_ours_becomes_tables_images_films_and_trails() {
     grainbench(path, &again);
     let bytes = |folder: &str| std::fs::read(path.join(folder).join("elements.csv")).unwrap();
     assert!(bytes("seen") == bytes("again"));
-}
-
-#[test]
-fn what_cannot_be_read_as_a_continuum_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    let packing = packing();
-    let whole = dump(&packing);
-    std::fs::write(path.join("whole.dump"), &whole).unwrap();
-    std::fs::write(path.join("contacts.dump"), contacts(&packing)).unwrap();
-    std::fs::write(path.join("empty.dump"), "").unwrap();
-    std::fs::write(path.join("cut.dump"), &whole[..whole.len() / 2]).unwrap();
-    std::fs::write(path.join("bare.dump"), whole.replace("radius", "colour")).unwrap();
-    std::fs::write(path.join("flat.dump"), whole.replace("0 5\n", "3 3\n")).unwrap();
-    std::fs::write(path.join("later.dump"), contacts(&packing).replace("TIMESTEP\n7", "TIMESTEP\n8")).unwrap();
-    std::fs::write(path.join("strange.dump"), contacts(&packing).replace("\n9", "\n99999")).unwrap();
-    std::fs::create_dir(path.join("nothing")).unwrap();
-    let before = files(path);
-    let named = |name: &str, further: &[&str]| {
-        let answer = grainbench(path, &[&["fields", name, "--out", "out"][..], further].concat());
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{name} {further:?}: {}", answer.err);
-        assert_eq!(files(path), before);
-        format!("{name} {}\n    {}", further.join(" "), answer.err)
-    };
-    let cell = ["--cell", "2.5"];
-    let with = |further: &[&'static str]| [&cell[..], further].concat();
-    let refusals = [
-        named("empty.dump", &cell),
-        named("cut.dump", &cell),
-        named("bare.dump", &cell),
-        named("flat.dump", &cell),
-        named("nowhere.dump", &cell),
-        named("nothing", &cell),
-        named("whole.dump", &["--cell", "6"]),
-        named("whole.dump", &["--cell", "1,2"]),
-        named("whole.dump", &["--cell", "1e-3"]),
-        named("whole.dump", &with(&["--between"])),
-        named("whole.dump", &with(&["--from", "3"])),
-        named("whole.dump", &with(&["--time-step", "1", "--from", "8"])),
-        named("whole.dump", &with(&["--contacts", "contacts.dump"])),
-        named("whole.dump", &with(&["--contacts", "later.dump", "--map", MAP])),
-        named("whole.dump", &with(&["--contacts", "strange.dump", "--map", MAP])),
-        named("whole.dump", &with(&["--orifice", "x=1"])),
-        named("whole.dump", &with(&["--tracers", "50"])),
-        named("nothing", &with(&["--density", "2"])),
-    ];
-    insta::assert_snapshot!(refusals.join(""));
 }
 
 /// Grains outside the cells are counted and reported. A radius that the file lacks can be given as an option.

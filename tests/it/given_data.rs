@@ -31,29 +31,6 @@ fn without_it_rows_say_where_it_is_to_be_had() {
     }
 }
 
-/// Checks that the data in `data` is rejected with a message and nothing is run.
-fn refused(path: &Path, rows: &[&str], words: &str) {
-    let answer = grainbench(path, &[rows, &["--data", "data"]].concat());
-    assert_eq!(answer.code, Some(2), "{}", answer.err);
-    assert!(answer.err.contains(words) && !path.join("grainbench-out").exists(), "{}", answer.err);
-}
-
-#[test]
-fn what_is_no_start_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::create_dir(path.join("data")).unwrap();
-    let refused = |words: &str| refused(path, &ROWS, words);
-    refused("data: expected the start of the drum, a file whose name ends in `.xyz`, found none");
-    std::fs::write(path.join("data/start.xyz"), "1\nbox\n1 0 0\n").unwrap();
-    refused("start.xyz:3: expected a type, 0 or 1, and three coordinates");
-    std::fs::remove_dir_all(path.join("data")).unwrap();
-    refused("data: ");
-    let answer = grainbench(path, &["run", "squash", "--data", "."]);
-    assert_eq!(answer.code, Some(2));
-    assert!(answer.err.contains("--data: expected claims that start from third-party data"), "{}", answer.err);
-}
-
 /// The stored result belongs to the published start and is not used for another start.
 #[test]
 fn another_start_is_told_from_the_published_one() {
@@ -76,24 +53,6 @@ fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     let rows = rows(directory.path());
     let is_announced = |(outcome, row): &(String, String)| outcome == "not-available" && row.contains("KParticles.txt");
     assert!(rows.len() == 3 && rows.iter().all(is_announced), "{rows:?}");
-}
-
-/// An invalid bed of the impact is reported with its place.
-#[test]
-fn what_is_no_bed_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::create_dir(path.join("data")).unwrap();
-    let refused = |words: &str| refused(path, &BEDS, words);
-    refused("data: expected `50KParticles.txt` or `Case3_PenetrationTest_50000_Particles.txt`, found neither");
-    std::fs::write(path.join("data/100KParticles.txt"), "").unwrap();
-    refused("100KParticles.txt:1: expected a line of titles");
-    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0\n").unwrap();
-    refused(
-        "100KParticles.txt:2: expected a radius, 0.001 of 100000 grains or 0.01 of one ball, and three coordinates (m)",
-    );
-    std::fs::write(path.join("data/100KParticles.txt"), "R X Y Z\n0.001 0 0 0\n").unwrap();
-    refused("100KParticles.txt:2: expected 100000 grains and one ball, found 1 grains and 0 ball");
 }
 
 /// If one start is given, claims with another start are not available, and their controls do not run.

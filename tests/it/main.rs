@@ -39,6 +39,7 @@ mod programs;
 mod readme;
 mod records;
 mod references;
+mod refusals;
 mod restart;
 mod round_walls;
 mod state;

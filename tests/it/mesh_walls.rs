@@ -2,11 +2,11 @@
 //! inserted and removed grains. Invalid files are rejected.
 
 use crate::common::bits;
+use crate::observer::RunObserver;
 use grainbench::cases::solvers;
-use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError, Threads, Watch};
+use grainbench::scene::solver::{Resolution, Threads, Watch};
 use grainbench::scene::source::SceneSource;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -156,20 +156,6 @@ walls.roof = { material = "m", mesh = { file = "wall.stl", unit = "m", open = tr
     }
 }
 
-/// Watch that keeps the checkpoints of a run.
-struct Keeper(Vec<Checkpoint>);
-
-impl Watch for Keeper {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(700)
-    }
-    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.0.push(Checkpoint::from_bytes(&checkpoint.to_bytes()?)?);
-        Ok(())
-    }
-}
-
 /// Returns a rotating funnel of triangles. Grains fall through it and are removed below.
 fn funnel() -> Scene {
     let rim = |part: u32, radius: f64, z: f64| {
@@ -197,35 +183,19 @@ fn funnel() -> Scene {
 #[test]
 fn threads_and_restarts_change_no_bit() {
     let scene = funnel();
-    let mut keeper = Keeper(Vec::new());
-    let straight = run(&scene, &mut keeper);
+    let mut observer = RunObserver::with_checkpoints(700);
+    let straight = run(&scene, &mut observer);
     assert!(straight.snapshots.last().unwrap().grains.len() < 48, "none was taken out");
     let straight = bits(straight);
     for threads in [2, 3] {
         assert!(bits(run(&scene, &mut Threads(threads))) == straight, "{threads} threads");
     }
     let solver = solvers::by_name("dem").unwrap();
-    assert!(keeper.0.len() > 5);
-    for checkpoint in &keeper.0 {
+    assert!(observer.checkpoints.len() > 5);
+    for checkpoint in &observer.checkpoints {
         let record = solver.restart(&scene, &STEP, checkpoint, &mut ()).unwrap_or_else(|error| panic!("{error}"));
         assert!(bits(record) == straight);
     }
-}
-
-#[test]
-fn who_has_no_meshes_says_so() {
-    let mut scene = funnel();
-    scene.stays = Default::default();
-    for (name, resolution, word) in [
-        ("rigid", Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations: 4 }, "mesh of triangles"),
-        ("mpm", Resolution::Grid { cells: 4.0, points: 2, courant: 0.4 }, ""),
-    ] {
-        let refused = solvers::by_name(name).unwrap().run(&scene, &resolution, &mut ());
-        let has_it = matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains(word));
-        assert!(has_it, "{name}: {refused:?}");
-    }
-    let refused = solvers::by_name("lammps").unwrap().run(&scene, &STEP, &mut ());
-    assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("mesh")), "{refused:?}");
 }
 
 /// Returns a file in binary form.
@@ -240,80 +210,25 @@ fn binary(triangles: &[Triangle]) -> Vec<u8> {
     bytes
 }
 
-/// Reports the error of each kind of invalid mesh file.
+/// Valid files: in millimetres, with slightly different corners, binary, turned over where that is declared, and open.
+/// `tests/refusals/meshes.toml` has the invalid ones.
 #[test]
-fn what_is_wrong_with_a_mesh_is_told() {
+fn valid_files_are_read() {
     let cube = block([-1.0; 3], [1.0; 3]);
-    let text = stl(&cube);
-    let whole = binary(&cube);
-    let turned = |which: &[usize]| {
-        let mut cube = cube.clone();
-        which.iter().for_each(|&at| cube[at].swap(0, 1));
-        stl(&cube).into_bytes()
-    };
-    let with = |more: &[Triangle]| stl(&[&cube[..], more].concat()).into_bytes();
-    let line = |from: &str, to: &str| text.replacen(from, to, 1).into_bytes();
-    let mut nan = whole.clone();
-    nan[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+    let turned: Vec<Triangle> = cube.iter().map(|&[a, b, c]| [b, a, c]).collect();
     let mut nearly = cube.clone();
     nearly[0][0][0] += 1e-7;
-    let mut says_solid = whole[..whole.len() - 20].to_vec();
-    says_solid[..5].copy_from_slice(b"solid");
     let large: Vec<Triangle> = cube.iter().map(|triangle| triangle.map(|corner| corner.map(|x| 1e3 * x))).collect();
-    let tee =
-        [[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [[0.0, 0.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, 0.0]]];
-    let plain = "unit = 'm'";
-    let files: &[(&str, Vec<u8>, &str)] = &[
-        ("empty", Vec::new(), plain),
-        ("no mesh", b"ISO-10303-21;".to_vec(), plain),
-        ("no facet", b"solid a\nendsolid a\n".to_vec(), plain),
-        ("text cut off", text.as_bytes()[..text.len() - 30].to_vec(), plain),
-        ("text without its end", text.replace("endsolid test\n", "").into_bytes(), plain),
-        ("text with more", [text.as_bytes(), b"vertex 0 0 0\n"].concat(), plain),
-        ("no number", line("vertex -1.0 -1.0", "vertex -1.0 one"), plain),
-        ("not finite", line("vertex -1.0 -1.0", "vertex -1.0 inf"), plain),
-        ("two numbers", line("vertex -1.0 -1.0 -1.0", "vertex -1.0 -1.0"), plain),
-        ("normal of the other side", line("normal 0 0 0", "normal 0 0 1"), plain),
-        ("binary cut off", whole[..whole.len() - 20].to_vec(), plain),
-        ("binary with more", [&whole[..], &[0; 7]].concat(), plain),
-        ("binary that says solid, cut off", says_solid, plain),
-        ("binary not finite", nan, plain),
-        ("no area", with(&[[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]]), plain),
-        ("a corner twice", with(&[[[0.0; 3], [0.0; 3], [2.0, 0.0, 0.0]]]), plain),
-        ("twice", with(&cube[3..4]), plain),
-        ("three at an edge", with(&[[cube[0][0], cube[0][1], [3.0, 3.0, 3.0]]]), plain),
-        ("one missing", stl(&cube[1..]).into_bytes(), plain),
-        ("nearly the same corner", stl(&nearly).into_bytes(), plain),
-        ("one turned over", turned(&[4]), plain),
-        ("all turned over", turned(&(0..12).collect::<Vec<_>>()), plain),
-        ("not inward", text.clone().into_bytes(), "unit = 'm', inward = true"),
-        ("open and inward", text.clone().into_bytes(), "unit = 'm', inward = true, open = true"),
-        ("a corner on an edge", stl(&tee).into_bytes(), "unit = 'm', open = true"),
-        ("millimetres", stl(&large).into_bytes(), plain),
-        ("no unit", text.clone().into_bytes(), "open = true"),
-        ("inches", text.clone().into_bytes(), "unit = 'in'"),
-        ("a negative distance", text.clone().into_bytes(), "unit = 'm', merge = -1.0"),
-    ];
     let directory = tempfile::tempdir().unwrap();
-    let scene_of =
-        |more: &str| format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
-    let mut messages = String::new();
-    let _ = writeln!(messages, "no file: {}", scene_in(directory.path(), &scene_of(plain)).unwrap_err());
-    for (name, bytes, more) in files {
-        std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
-        let error = scene_in(directory.path(), &scene_of(more)).expect_err(name);
-        let _ = writeln!(messages, "{name}: {error}");
-    }
-    insta::assert_snapshot!(messages);
-    // Valid files: in millimetres, with slightly different corners, and binary.
     for (bytes, more) in [
         (stl(&large).into_bytes(), "unit = 'mm'"),
         (stl(&nearly).into_bytes(), "unit = 'm', merge = 1e-6"),
-        (whole, plain),
-        (turned(&(0..12).collect::<Vec<_>>()), "unit = 'm', inward = true"),
+        (binary(&cube), "unit = 'm'"),
+        (stl(&turned).into_bytes(), "unit = 'm', inward = true"),
         (stl(&cube[2..]).into_bytes(), "unit = 'm', open = true"),
     ] {
         std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
-        scene_in(directory.path(), &scene_of(more)).unwrap();
+        let text = format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
+        scene_in(directory.path(), &text).unwrap();
     }
 }

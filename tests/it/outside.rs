@@ -7,21 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-const MANIFEST: &str = r#"name = "liar"
-run = ["sh", "liar.sh", "{scene}", "{out}"]
-
-[can]
-dimension = [2, 3]
-laws = ["linear"]
-walls = ["plane"]
-effects = ["friction", "contact-damping"]
-
-[output]
-grains = { path = "grains.csv", format = "csv" }
-
-[limits]
-seconds = 2
-"#;
+const MANIFEST: &str = include_str!("../scenes/liar.toml");
 const HEAD: &str = "step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz";
 const CASE: &str = "incline-disc/30deg-mu.5";
 
@@ -164,67 +150,6 @@ fn what_is_not_declared_is_not_asked_for() {
     }
     let (verdict, detail) = reason(&MANIFEST.replace("\"sh\"", "\"no-such-program\""));
     assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
-}
-
-/// A wrong manifest is an error with file, place, expected and found text.
-#[test]
-fn a_wrong_manifest_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    let refused = |manifest: &str| {
-        write(path, manifest, "exit 0");
-        let answer = grainbench(path, &["run", CASE, "--solver", "SOLVER.toml"]);
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{manifest}");
-        answer.err
-    };
-    let wrong = [
-        ("name = \"liar\"", "name = \"dem\"", "SOLVER.toml: name: expected an unused name, found `dem`"),
-        ("name = \"liar\"", "name = \"\\u001b[2J\"", "SOLVER.toml: name: expected up to 40 letters"),
-        ("\"{scene}\", ", "", "SOLVER.toml: run: expected a word with `{scene}`"),
-        ("[2, 3]", "[4]", "SOLVER.toml: can.dimension: expected 2 and 3 alone, found 4"),
-        (
-            "[\"linear\"]",
-            "[\"liner\"]",
-            "SOLVER.toml: line 6: expected the keys of a manifest, found unknown variant `liner`",
-        ),
-        ("\"friction\"", "\"fiction\"", "SOLVER.toml: can.effects: expected names among friction, cohesion"),
-        ("\"grains.csv\"", "\"../grains.csv\"", "SOLVER.toml: output.grains.path: expected a path inside the folder"),
-        ("run = [", "worker = [\"sh\"]\nrun = [", "SOLVER.toml: run: expected one of `run` and `worker`, found both"),
-        ("seconds = 2", "seconds = 0", "SOLVER.toml: limits: expected numbers above zero, found 0"),
-        (
-            "seconds = 2",
-            "second = 2",
-            "SOLVER.toml: line 13: expected the keys of a manifest, found unknown field `second`",
-        ),
-        ("laws = [\"linear\"]", "", "SOLVER.toml: can.laws: expected a contact law, or laws of materials that deform"),
-        (
-            "grains = { path = \"grains.csv\", format = \"csv\" }",
-            "",
-            "SOLVER.toml: output: expected `grains`, or of a program whose bodies deform a `series`, found neither",
-        ),
-        (
-            "[limits]",
-            "[knobs]\ncells = [0]\n[limits]",
-            "SOLVER.toml: knobs.cells: expected numbers of cells above zero",
-        ),
-        (
-            "[limits]",
-            "[knobs]\ncritical-fraction = [1.5]\n[limits]",
-            "SOLVER.toml: knobs.critical-fraction: expected parts",
-        ),
-    ];
-    for (right, instead, message) in wrong {
-        let err = refused(&MANIFEST.replace(right, instead));
-        assert!(err.contains(message), "{err}");
-    }
-    assert!(refused("").contains("missing field `name`"));
-    assert!(refused(&MANIFEST[..40]).contains("SOLVER.toml: line 2"));
-    let missing = grainbench(path, &["run", CASE, "--solver", "nowhere.toml"]);
-    assert!(
-        missing.code == Some(2) && missing.err.contains("nowhere.toml: expected a file that can be read"),
-        "{}",
-        missing.err
-    );
 }
 
 /// An external solver gets a resolved scene, with the same contents in both formats.

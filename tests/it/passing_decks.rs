@@ -2,7 +2,6 @@
 //! error names the missing feature of the external solver.
 
 use grainbench::cases::solvers;
-use grainbench::reference::deck::{Program, write_deck};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Resolution, RunError};
@@ -12,18 +11,7 @@ use std::path::Path;
 const STEP: Resolution = Resolution::TimeStep(1e-3);
 
 /// Spheres of mass one above a floor that ends in the middle.
-const HEAD: &str = r#"title = "Passing"
-dimension = 3
-duration = 5.0
-gravity = [0.0, 0.0, -1.0]
-domain = { low = [-3.0, 0.0, -10.0], high = [3.0, 4.0, 10.0], periodic = [false, true, false] }
-materials.m.density = 1.909859317102744
-contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
-output = { every = 0.05, snapshots = 19 }
-grains.ball.material = "m"
-grains.ball.radius = 0.5
-grains.ball.lattice = { origin = [-2.4, 0.7, 0.55], spacing = [1.05, 1.3, 1.02], count = [5, 3, 2] }
-"#;
+const HEAD: &str = include_str!("../scenes/passing.toml");
 
 const LEDGE: &str = "walls.ledge.material = 'm'\n\
     walls.ledge.rectangle = { corner = [-3.0, -1.0, 0.0], edges = [[3.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }\n";
@@ -155,37 +143,4 @@ fn a_piston_presses_in_lammps_as_in_ours() {
         let [ours, _] = both(&text(&pressed.replace("mass = 20.0", "mass = 20.2")), "lammps").unwrap();
         assert!(apart(&[ours, records[1].clone()], 1.0) > 1e-5);
     }
-}
-
-/// A deck error names the feature that an external solver lacks.
-#[test]
-fn what_a_program_lacks_is_said() {
-    let message = |text: &str, program: Program| match write_deck(&scene(text), &STEP, program) {
-        Ok(deck) => panic!("{}", deck.files[0].1),
-        Err(error) => error.to_string(),
-    };
-    let poured = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\n\
-        poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 8.0], high = [0.0, 4.0, 8.0] }\n";
-    let removal = HEAD.replacen(
-        "grains.ball.material",
-        "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0] }\ngrains.ball.material",
-        1,
-    );
-    let pressed = LID.replace("motion", "piston = { force = 40.0, mass = 20.0 }\nmotion");
-    let gone = |wall: &str| format!("{HEAD}{wall}");
-    let ledge = LEDGE.replace("material = 'm'\n", "material = 'm'\nwalls.ledge.until = 1.0\n");
-    let round =
-        "walls.side = { material = 'm', cylinder = { axis = [[0.0, 2.0, -9.0], [0.0, 2.0, 9.0]], radius = 4.0 } }\n";
-    let text: Vec<String> = vec![
-        message(&format!("{HEAD}{poured}"), Program::LAMMPS),
-        message(&format!("{HEAD}{poured}"), Program::LIGGGHTS),
-        message(&removal, Program::LIGGGHTS),
-        message(&format!("{HEAD}{pressed}"), Program::LIGGGHTS),
-        message(&gone(&ledge), Program::LIGGGHTS),
-        message(&format!("{HEAD}{FLOOR}until = 1.0\n[probes]\nfloor = {{ wall = 'floor' }}\n"), Program::LIGGGHTS),
-        message(&gone(round), Program::LIGGGHTS),
-        message(&gone("[driven.d]\ngrains = 'ball'\nstart = 0.5\n"), Program::LAMMPS),
-        message(&gone("[driven.d]\ngrains = 'ball'\nstop = 0.5\n"), Program::LIGGGHTS),
-    ];
-    insta::assert_snapshot!(text.join("\n"));
 }

@@ -1,51 +1,19 @@
 //! Options of snapshots: columns, digits, and the stress averaged over the time between snapshots.
 
 use crate::common::grainbench;
+use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::reports::each_snapshot;
-use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::scene::checkpoint::Checkpoint;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
 use grainbench::scene::record::{GrainState, Partner, Record, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, Watch};
+use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
 /// Twelve hundred colliding spheres of two sizes between two walls and a periodic boundary.
-const SCENE: &str = r#"title = "Falling spheres"
-dimension = 3
-duration_cycles = 60
-gravity = [0.0, 0.0, -10.0]
-domain = { low = [0.0, 0.0, 0.0], high = [10.0, 10.0, 14.0], periodic = [true, false, false] }
-
-[materials.m]
-density = 1.0
-
-[contacts.all]
-between = ["m", "m"]
-normal_stiffness = 2e3
-tangential_stiffness = 1e3
-friction = 0.4
-normal_damping = 40.0
-
-[grains.g]
-material = "m"
-radius = 0.5
-velocity = [0.3, 0.2, -3.0]
-spin = [1.0, 2.0, 3.0]
-lattice = { origin = [0.5, 0.495, 0.49], spacing = [1.0, 0.99, 0.985], count = [10, 10, 12] }
-
-[walls.floor]
-material = "m"
-plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
-[walls.front]
-material = "m"
-plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }
-
-[output]
-every_cycles = 7
-snapshots = 2
-"#;
+const SCENE: &str = include_str!("../scenes/falling.toml");
 
 fn scene(output: &str) -> Scene {
     let source = SceneSource::from_text("falling", Path::new(""), &format!("{SCENE}{output}\n"));
@@ -54,30 +22,10 @@ fn scene(output: &str) -> Scene {
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
 
-/// Watch that keeps the checkpoints of a run on some threads.
-struct Keeper {
-    threads: usize,
-    kept: Vec<Checkpoint>,
-}
-
-impl Watch for Keeper {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn threads(&self) -> usize {
-        self.threads
-    }
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(13)
-    }
-    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.kept.push(checkpoint);
-        Ok(())
-    }
-}
-
 fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
-    let mut keeper = Keeper { threads, kept: Vec::new() };
-    let record = solvers::by_name("dem").unwrap().run(scene, &STEP, &mut keeper).unwrap();
-    (record, keeper.kept)
+    let mut observer = RunObserver { threads, ..RunObserver::with_checkpoints(13) };
+    let record = solvers::by_name("dem").unwrap().run(scene, &STEP, &mut observer).unwrap();
+    (record, observer.checkpoints)
 }
 
 /// Returns V σ of each grain from the contacts of a snapshot. The lever arm ends at the `part` of the overlap; 0.5 is
@@ -176,8 +124,8 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     let solver = solvers::by_name("dem").unwrap();
     assert_eq!(checkpoints.iter().map(Checkpoint::step).collect::<Vec<_>>(), [13, 26, 39, 52]);
     for checkpoint in &checkpoints {
-        let mut keeper = Keeper { threads: 2, kept: Vec::new() };
-        let continued = solver.restart(&scene, &STEP, checkpoint, &mut keeper).unwrap();
+        let mut observer = RunObserver { threads: 2, ..RunObserver::with_checkpoints(13) };
+        let continued = solver.restart(&scene, &STEP, checkpoint, &mut observer).unwrap();
         assert!(bits(&continued) == bits(&whole), "from step {}", checkpoint.step());
     }
     // Output options do not change the run.
@@ -259,29 +207,4 @@ fn fields_says_which_stress_it_read() {
     assert!((of_mean / of_instant - 1.0).abs() > 0.02, "{of_mean} {of_instant}");
     assert_eq!(pressure(&[], "run").1, Some(of_mean), "the first frame has no mean, and takes no other stress for it");
     assert_eq!(pressure(&[], "bare").1, None);
-}
-
-/// An invalid column is an error with its place. A solver without mean stresses reports that.
-#[test]
-fn what_cannot_be_chosen_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    let refusal = |output: &str, solver: &str| {
-        std::fs::write(path.join("scene.toml"), format!("{SCENE}{output}\n")).unwrap();
-        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver]);
-        assert_eq!(answer.code, Some(2), "{output}: {}{}", answer.out, answer.err);
-        answer.err
-    };
-    for (output, solver, says) in [
-        ("columns = ['sprin']", "dem", "sprin"),
-        ("digits = 0", "dem", "1 to 15 digits"),
-        ("digits = 16", "dem", "1 to 15 digits"),
-        ("columns = ['mean-virial']\nmean_every_cycles = 0", "dem", "one cycle or more"),
-        ("mean_every_cycles = 2", "dem", "`mean-virial` among the columns"),
-        ("columns = ['mean-virial']", "rigid", "mean over time"),
-        ("columns = ['mean-virial']", "lammps", "mean over time"),
-    ] {
-        let found = refusal(output, solver);
-        assert!(found.contains(says), "{output}: {found}");
-    }
 }

@@ -1,7 +1,7 @@
 //! The stored runs are those that claims read. They are complete and belong to the present scenes. Messages report
 //! missing stored runs and missing external solvers.
 
-use crate::common::{grainbench, grainbench_alone};
+use crate::common::grainbench_alone;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
 use grainbench::cases::uncertainty::{self, StoredEstimates};
@@ -105,16 +105,4 @@ fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_miss
     let (code, rows) = without(&["reference", "verify", "collision-gamma-zeta.1", "--json"]);
     assert_eq!(code, Some(1), "nothing was judged");
     assert!(rows.len() == 2 && rows.iter().all(|row| row["verdict"] == "not-available"), "{rows:?}");
-}
-
-#[test]
-fn a_name_that_none_has_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &["reference", "verify", "lammps/collision-gamma-zeta"]);
-    assert_eq!(answer.code, Some(2));
-    assert!(
-        answer.err.contains("expected a stored run") && answer.err.contains("collision-gamma-zeta.1"),
-        "{}",
-        answer.err
-    );
 }

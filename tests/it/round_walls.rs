@@ -3,7 +3,7 @@
 use grainbench::cases::solvers;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError};
+use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -101,16 +101,6 @@ fn a_sphere_goes_round_in_a_cone() {
     };
     assert!(spread(1.0) < 1e-4, "{}", spread(1.0));
     assert!(spread(1.02) > 1e-2, "{}", spread(1.02));
-}
-
-#[test]
-fn what_has_no_round_walls_says_so() {
-    let wall = "cylinder = { axis = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.0]], radius = 2.0 }";
-    let scene = scene(0.1, 0.5, "position = [0.0, 0.0, -1.7]", wall);
-    let rigid = solvers::by_name("rigid").unwrap();
-    let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations: 4 };
-    let refused = rigid.run(&scene, &resolution, &mut ());
-    assert!(matches!(&refused, Err(RunError::Unsupported { reason, .. }) if reason.contains("`round`")), "{refused:?}");
 }
 
 /// Grains in a rotating drum, between its ends, and in a funnel above it.

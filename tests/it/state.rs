@@ -1,6 +1,6 @@
 //! A scene that starts from the final state of a run.
 
-use crate::common::{files, grainbench};
+use crate::common::grainbench;
 use std::path::Path;
 
 /// Returns a scene of spheres that are dropped into a box and come to rest with friction.
@@ -139,65 +139,4 @@ fn a_grain_that_spins_is_taken_over_with_its_spin() {
             assert!(off < 1e-12, "{friction}, {name}: off by {off} m/s");
         }
     }
-}
-
-#[test]
-fn what_is_no_state_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    simulate(path, "first", &scene(0.5, DROPPED), &["--state", "heap.state"]);
-    let whole = std::fs::read(path.join("heap.state")).unwrap();
-    std::fs::write(path.join("cut.state"), &whole[..whole.len() / 2]).unwrap();
-    std::fs::write(path.join("empty.state"), "").unwrap();
-    std::fs::write(path.join("text.state"), "ITEM: TIMESTEP\n").unwrap();
-    let mut changed = whole.clone();
-    changed[whole.len() - 3] ^= 8;
-    std::fs::write(path.join("changed.state"), changed).unwrap();
-    let before = files(path);
-    let mut refusals = String::new();
-    let mut refuse = |what: &str, text: &str, solver: &str| {
-        std::fs::write(path.join("scene.toml"), text).unwrap();
-        let answer = grainbench(path, &["simulate", "scene.toml", "--solver", solver, "--out", "out"]);
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{what}: {}", answer.err);
-        std::fs::remove_file(path.join("scene.toml")).unwrap();
-        assert_eq!(files(path), before);
-        // The length of a file depends on its contents.
-        let lengths = |line: &str| line.replace(|digit: char| digit.is_ascii_digit(), "#");
-        let message = if what == "cut off" { lengths(&answer.err) } else { answer.err };
-        refusals += &format!("{what}\n    {message}");
-    };
-    let scene_with_state = |file: &str, further: &str| {
-        scene(1.0, &format!("[grains.g]\nmaterial = 'm'\nstate = {{ path = '{file}' }}\n{further}"))
-    };
-    for (what, file) in [
-        ("nothing there", "none.state"),
-        ("cut off", "cut.state"),
-        ("empty", "empty.state"),
-        ("another kind", "text.state"),
-        ("changed", "changed.state"),
-    ] {
-        refuse(what, &scene_with_state(file, ""), "dem");
-    }
-    refuse("a velocity too", &scene_with_state("heap.state", "velocity = [1.0, 0.0, 0.0]"), "dem");
-    refuse(
-        "two of them",
-        &scene_with_state("heap.state", "[grains.h]\nmaterial = 'm'\nstate = { path = 'heap.state' }"),
-        "dem",
-    );
-    refuse(
-        "springs of another law",
-        &scene_with_state("heap.state", "").replace("friction = 0.4", "friction = 0.0"),
-        "dem",
-    );
-    refuse("a solver without", &scene_with_state("heap.state", ""), "rigid");
-    let flat = scene_with_state("heap.state", "").replace("dimension = 3", "dimension = 2").replace(", -10.0]", "]");
-    let flat = flat.replace(", 0.0]", "]").replace(", 10.0]", "]").replace("false, false]", "false]");
-    refuse("another number of dimensions", flat.split("[walls").next().unwrap(), "dem");
-    std::fs::write(path.join("plain.toml"), scene(0.1, DROPPED)).unwrap();
-    let answer =
-        grainbench(path, &["simulate", "plain.toml", "--solver", "rigid", "--state", "x.state", "--out", "out"]);
-    assert_eq!(answer.code, Some(2));
-    refusals += &format!("a solver without an end state\n    {}", answer.err);
-    assert!(!path.join("x.state").exists());
-    insta::assert_snapshot!(refusals);
 }

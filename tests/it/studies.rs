@@ -193,33 +193,6 @@ fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
 }
 
 #[test]
-fn bad_input_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("damaged.json"), "{\"points\": [{\"case\": 3}]}").unwrap();
-    fs::write(folder.path().join("file"), "").unwrap();
-    for arguments in [
-        &["cost", "no-such-case"][..],
-        &["cost", "squash/no-such-variant"],
-        &["cost", "squash", "--solver", "nobody"],
-        &["cost", "squash", "--against", "missing.json"],
-        &["cost", "squash", "--against", "damaged.json"],
-        &["cost", "squash", "--levels", "some"],
-        &["cost", "squash", "--out", "file"],
-        &["stability", "no-such-case"],
-        &["stability", ""],
-        &["stability", "--solver", "nobody"],
-        &["stability", "--out", "file"],
-        &["effects", "no-such-case"],
-        &["effects", "--out", "file"],
-    ] {
-        let answer = grainbench(folder.path(), arguments);
-        assert_eq!(answer.code, Some(2), "{arguments:?}: {}{}", answer.out, answer.err);
-        assert!(answer.err.starts_with("error: ") && !answer.err.contains("panicked"), "{arguments:?}: {}", answer.err);
-    }
-    assert_eq!(crate::common::files(folder.path()), ["damaged.json", "file"], "nothing is left behind");
-}
-
-#[test]
 fn a_study_is_drawn_again_from_its_directory() {
     let folder = tempfile::tempdir().unwrap();
     let answer = grainbench(

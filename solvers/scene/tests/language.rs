@@ -5,6 +5,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
+/// A scene without its grains. `tests/refusals/placed-grains.toml` has the wrong ones.
 const SCENE: &str = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
     contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3 }\n\
     domain = { low = [0.0, 0.0], high = [40.0, 40.0], periodic = PERIODIC }\n\
@@ -23,10 +24,6 @@ fn axes_are_named_or_told_one_by_one() {
     let by_name = read("['x']", LATTICE).unwrap();
     assert_eq!(by_name, read("[true, false]", LATTICE).unwrap());
     assert_eq!(read("[]", LATTICE).unwrap().domain.unwrap().periodic, [false; 3]);
-    for (wrong, found) in [("['z']", "`z`"), ("[true]", "[true]"), ("['w']", "[\"w\"]"), ("'x'", "x")] {
-        let message = read(wrong, LATTICE).unwrap_err();
-        assert!(message.contains("domain.periodic") && message.contains(found), "{wrong}: {message}");
-    }
 }
 
 #[test]
@@ -37,16 +34,6 @@ fn a_lattice_is_along_the_axes_or_close_packed() {
     let packed = lattice("spacing = 1.0, close_packed = true").unwrap();
     assert_eq!(packed.grains.len(), 9);
     assert!((packed.grains[3].position.y - 1.0 - 0.75_f64.sqrt()).abs() < 1e-12);
-    for (words, key) in [
-        ("spacing = 1.0", "lattice.spacing"),
-        ("spacing = [1.0, 1.0], close_packed = true", "lattice.spacing"),
-        ("spacing = 0.0, close_packed = true", "lattice.spacing"),
-        ("spacing = [1.0, 1.0], perturbation = -0.1", "lattice.perturbation"),
-        ("spacing = [1.0, 1.0], perturbation = 0.1, seed = -1", "lattice"),
-    ] {
-        let message = lattice(words).unwrap_err();
-        assert!(message.contains(key), "{words}: {message}");
-    }
     let moved = |seed: u32| lattice(&format!("spacing = [2.0, 2.0], perturbation = 0.1, seed = {seed}")).unwrap();
     assert!(moved(1) == moved(1) && moved(1) != moved(2), "a seed gives the same grains");
 }
@@ -65,22 +52,6 @@ fn grains_at_random_have_their_radii_and_their_region() {
     }
     let normal = "log_normal = { median = 0.3, deviation = 0.2, range = [0.2, 0.5] }";
     assert!(random(&format!("radii = {{ {normal} }}")).unwrap().grains.iter().any(|grain| grain.radius > 0.3));
-    for (words, key) in [
-        ("radii = {}".to_owned(), "random.radii"),
-        (format!("radii = {{ {normal}, by_mass = [[0.2, 0.0], [0.4, 1.0]] }}"), "random.radii"),
-        (format!("radii = {{ {normal} }}, radius_range = [0.1, 0.2]"), "random"),
-        ("radii = { log_normal = { median = 0.9, deviation = 0.2, range = [0.2, 0.5] } }".to_owned(), "median"),
-        ("radii = { log_normal = { median = 0.3, deviation = 0.2, range = [0.5, 0.2] } }".to_owned(), "range"),
-        ("radii = { log_normal = { median = 0.3, deviation = 0.2, range = [0.3, 0.3] } }".to_owned(), "range"),
-        ("radii = { by_mass = [[0.2, 0.0], [0.4, 0.9]] }".to_owned(), "by_mass"),
-        ("radii = { by_mass = [[0.2, 0.0], [0.1, 1.0]] }".to_owned(), "by_mass"),
-        ("radii = { by_mass = [] }".to_owned(), "by_mass"),
-        ("radius_range = [0.1, 0.2], region = { low = [5.0, 5.0], high = [45.0, 20.0] }".to_owned(), "region"),
-        ("radius_range = [0.1, 0.2], region = { low = [5.0, 5.0], high = [4.0, 20.0] }".to_owned(), "region"),
-    ] {
-        let message = random(&words).unwrap_err();
-        assert!(message.contains(key), "{words}: {message}");
-    }
 }
 
 /// An empty string removes a key, in a variant as with `--set`.

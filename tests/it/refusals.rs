@@ -1,0 +1,321 @@
+//! Errors in the user's input: the tables in `tests/refusals`, run through the command line.
+//!
+//! An entry edits a base, writes it as `file` and runs `command`. The command must end with its exit code and message,
+//! print nothing on the standard output, and leave no file and change none. `[DIR]` in a message is the directory,
+//! `[ROOT]` the repository, `[cases]` and `[solvers]` are the names of the registries, and `[..]` is any text.
+//! `UPDATE_REFUSALS=1` writes the messages of the program into the tables.
+
+use crate::common::{files, grainbench, grainbench_alone, root};
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers;
+use rayon::prelude::*;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+/// Table of one directory.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Table {
+    /// Values for entries that do not state them: `base`, `file`, `command`, `alone`.
+    common: Entry,
+    /// Other files of the directory, by name.
+    files: BTreeMap<String, Entry>,
+    /// Commands that must succeed before the entries.
+    prepare: Vec<String>,
+    /// Files that need the output of these commands, by name.
+    prepared: BTreeMap<String, Entry>,
+    refusal: Vec<Entry>,
+}
+
+/// A file as a base with edits, and the command that refuses it. The edits apply in the order of these fields.
+#[derive(Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Entry {
+    /// Name for failures, if the edit does not say enough.
+    name: Option<String>,
+    /// File of the directory, file in `tests/scenes` or path in the repository.
+    base: Option<String>,
+    /// Whole text instead of a base.
+    text: Option<String>,
+    /// Texts with their replacements. Only the first occurrence is replaced.
+    replace: Vec<[String; 2]>,
+    /// Texts with their replacements, at all occurrences.
+    replace_all: Vec<[String; 2]>,
+    prepend: Option<String>,
+    append: Option<String>,
+    /// Fraction of the bytes that stays, from the start.
+    keep: Option<f64>,
+    /// Number of bytes cut off at the end.
+    cut: usize,
+    /// Changed bytes as position and value; a negative position counts from the end.
+    bytes: Vec<(i64, u8)>,
+    append_bytes: Vec<u8>,
+    /// Name of the edited file in the directory.
+    file: Option<String>,
+    /// Words as in a shell. `[ROOT]` is the repository.
+    command: Option<String>,
+    /// Further words of the command.
+    with: Option<String>,
+    /// True if LAMMPS and LIGGGHTS are hidden from the program.
+    alone: Option<bool>,
+    /// Exit code; 2 if absent.
+    code: Option<i32>,
+    /// Standard error.
+    message: String,
+}
+
+impl Entry {
+    fn or(&self, common: &Self) -> Self {
+        let mut entry = self.clone();
+        if entry.text.is_none() {
+            entry.base = entry.base.or_else(|| common.base.clone());
+        }
+        entry.file = entry.file.or_else(|| common.file.clone());
+        entry.command = entry.command.or_else(|| common.command.clone());
+        entry.alone = entry.alone.or(common.alone);
+        entry
+    }
+
+    /// Returns the name, or the first line of what distinguishes the entry.
+    fn shown(&self) -> &str {
+        let edit = self.replace.first().or(self.replace_all.first()).map(|[_, to]| to);
+        let all = [
+            self.name.as_ref(),
+            edit,
+            self.append.as_ref(),
+            self.with.as_ref(),
+            self.command.as_ref(),
+            self.text.as_ref(),
+        ];
+        all.into_iter().flatten().flat_map(|text| text.lines()).find(|line| !line.is_empty()).unwrap_or_default()
+    }
+
+    /// Returns the edited file. An edit that changes nothing is an error.
+    fn contents(&self, directory: &Path) -> Result<Vec<u8>, String> {
+        let mut bytes = match (&self.base, &self.text) {
+            (Some(base), _) => {
+                let places = [directory.join(base), root("tests/scenes").join(base), root(base)];
+                let place = places.iter().find(|place| place.is_file()).ok_or_else(|| format!("no base {base}"))?;
+                unpacked(fs::read(place).map_err(|error| error.to_string())?)
+            }
+            (None, text) => text.clone().unwrap_or_default().into_bytes(),
+        };
+        let texts =
+            self.replace.iter().map(|pair| (pair, 1)).chain(self.replace_all.iter().map(|pair| (pair, usize::MAX)));
+        for ([from, to], count) in texts {
+            let text = String::from_utf8(bytes).map_err(|_| "the base is no text".to_owned())?;
+            if !text.contains(from) || from == to {
+                return Err(format!("the edit does not apply: the base has no {from:?}, or it stays"));
+            }
+            bytes = text.replacen(from, to, count).into_bytes();
+        }
+        bytes.splice(0..0, self.prepend.iter().flat_map(|text| text.bytes()));
+        bytes.extend(self.append.iter().flat_map(|text| text.bytes()));
+        if let Some(part) = self.keep {
+            bytes.truncate((bytes.len() as f64 * part) as usize);
+        }
+        let rest = bytes.len().checked_sub(self.cut).ok_or("the edit does not apply: the base is too short")?;
+        bytes.truncate(rest);
+        for &(place, value) in &self.bytes {
+            let at = if place < 0 { bytes.len() as i64 + place } else { place };
+            let byte = usize::try_from(at).ok().and_then(|at| bytes.get_mut(at)).filter(|byte| **byte != value);
+            *byte
+                .ok_or_else(|| format!("the edit does not apply: byte {place} is {value} or outside of the base"))? =
+                value;
+        }
+        bytes.extend(&self.append_bytes);
+        Ok(bytes)
+    }
+}
+
+fn unpacked(bytes: Vec<u8>) -> Vec<u8> {
+    let mut whole = Vec::new();
+    match flate2::read::GzDecoder::new(&bytes[..]).read_to_end(&mut whole) {
+        Ok(_) => whole,
+        Err(_) => bytes,
+    }
+}
+
+/// Splits a command line. Quotes are those of a shell.
+fn words(line: &str) -> Vec<String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
+    for letter in line.replace("[ROOT]", env!("CARGO_MANIFEST_DIR")).chars() {
+        match (letter, quote) {
+            ('\'' | '"', None) => {
+                quote = Some(letter);
+                word.get_or_insert_default();
+            }
+            (letter, Some(open)) if letter == open => quote = None,
+            (' ' | '\n', None) => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(letter),
+        }
+    }
+    words.extend(word);
+    words
+}
+
+/// Returns a message without paths, without the names of the registries and without blanks at line ends.
+fn settled(message: &str, directory: &Path) -> String {
+    let lines = |names: Vec<String>| names.iter().map(|name| format!("  {name}\n")).collect::<String>();
+    let cases = lines(CASES.iter().map(|case| case.name.to_owned()).collect());
+    let message = message.replace(&cases, "  [cases]\n").replace(&lines(solvers::names()), "  [solvers]\n");
+    let message =
+        message.replace(&directory.display().to_string(), "[DIR]").replace(env!("CARGO_MANIFEST_DIR"), "[ROOT]");
+    message.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+}
+
+/// Returns true if a message is as expected, where `[..]` stands for any text.
+fn is_as(found: &str, expected: &str) -> bool {
+    let Some((start, rest)) = expected.split_once("[..]") else { return found == expected };
+    found.strip_prefix(start).is_some_and(|found| {
+        found.char_indices().map(|(at, _)| at).chain([found.len()]).any(|at| is_as(&found[at..], rest))
+    })
+}
+
+/// Returns all files of a directory with their contents.
+fn contents(directory: &Path) -> BTreeMap<String, Vec<u8>> {
+    files(directory)
+        .into_iter()
+        .map(|name| (name.clone(), fs::read(directory.join(name)).unwrap_or_default()))
+        .collect()
+}
+
+/// Writes a file of the directory, with its folders. A name that ends with `/` is a folder.
+fn write(directory: &Path, name: &str, bytes: &[u8]) {
+    let path = directory.join(name);
+    if name.ends_with('/') {
+        fs::create_dir_all(path).unwrap();
+    } else {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+}
+
+/// Runs all entries of a table. Returns for each failed entry its number, the failure, and the message found.
+fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let prepare = |files: &BTreeMap<String, Entry>| {
+        files
+            .iter()
+            .for_each(|(name, file)| write(path, name, &file.contents(path).unwrap_or_else(|error| panic!("{error}"))));
+    };
+    prepare(&table.files);
+    for line in &table.prepare {
+        let words = words(line);
+        let answer = grainbench(path, &words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(answer.code, Some(0), "{line}: {}", answer.err);
+    }
+    prepare(&table.prepared);
+    let check = |entry: &Entry| -> Result<(), (String, Option<String>)> {
+        let entry = entry.or(&table.common);
+        let bytes = entry.contents(path).map_err(|error| (error, None))?;
+        let file = entry.file.filter(|_| entry.base.is_some() || entry.text.is_some());
+        let earlier = file.as_ref().and_then(|file| fs::read(path.join(file)).ok());
+        file.iter().for_each(|file| write(path, file, &bytes));
+        let before = contents(path);
+        let line = [entry.command.unwrap_or_default(), entry.with.unwrap_or_default()].join(" ");
+        let words = words(&line);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let answer = if entry.alone == Some(true) { grainbench_alone(path, &words) } else { grainbench(path, &words) };
+        let after = contents(path);
+        match (file, earlier) {
+            (Some(file), Some(bytes)) => write(path, &file, &bytes),
+            (Some(file), None) => fs::remove_file(path.join(file)).unwrap(),
+            _ => {}
+        }
+        let expected = (Some(entry.code.unwrap_or(2)), "");
+        if (answer.code, answer.out.as_str()) != expected {
+            return Err((
+                format!("expected {expected:?}, found {:?}: {}", (answer.code, answer.out), answer.err),
+                None,
+            ));
+        }
+        if before != after {
+            let left: Vec<&String> = after.keys().filter(|name| before.get(*name) != after.get(*name)).collect();
+            return Err((format!("files were left, changed or removed: {left:?}"), None));
+        }
+        let (found, expected) = (settled(&answer.err, path), entry.message.trim_end());
+        if is_as(&found, expected) {
+            Ok(())
+        } else {
+            Err((format!("expected {expected}\n    found {found}"), Some(found)))
+        }
+    };
+    let entries = table.refusal.iter().enumerate();
+    entries.filter_map(|(at, entry)| check(entry).err().map(|(failure, found)| (at, failure, found))).collect()
+}
+
+#[test]
+fn every_refusal_is_as_in_its_table() {
+    let mut tables: Vec<_> = fs::read_dir(root("tests/refusals")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    tables.sort();
+    let run = |file: &std::path::PathBuf| -> (usize, Vec<String>) {
+        let text = fs::read_to_string(file).unwrap();
+        let table: Table = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        let failed = failures(&table);
+        if std::env::var_os("UPDATE_REFUSALS").is_some() {
+            let mut table: toml_edit::DocumentMut = text.parse().unwrap();
+            for (at, found) in failed.iter().filter_map(|(at, _, found)| Some((at, found.as_ref()?))) {
+                table["refusal"][*at]["message"] = toml_edit::value(found);
+            }
+            fs::write(file, table.to_string()).unwrap();
+        }
+        let name = file.file_name().unwrap().to_string_lossy();
+        let shown = failed
+            .into_iter()
+            .map(|(at, failure, _)| format!("{name}, entry {} ({}): {failure}", at + 1, table.refusal[at].shown()));
+        (table.refusal.len(), shown.collect())
+    };
+    let results: Vec<_> = tables.par_iter().map(run).collect();
+    let count: usize = results.iter().map(|(count, _)| count).sum();
+    let failed: Vec<String> = results.into_iter().flat_map(|(_, failed)| failed).collect();
+    assert!(failed.is_empty(), "{} of {count} refusals:\n{}", failed.len(), failed.join("\n"));
+    assert!(count > MANY, "{count}");
+}
+
+/// Control: a wrong message, exit code or file and an edit that does not apply are failures.
+#[test]
+fn a_wrong_entry_of_a_table_is_found() {
+    let table: Table = toml::from_str(
+        r#"
+common = { base = "two-discs.toml", file = "scene.toml", command = "simulate scene.toml --solver dem --out out" }
+[files]
+"kept.toml" = { base = "two-discs.toml", replace = [["Two", "2"]] }
+[[refusal]]
+replace = [["dimension = 2", "dimension = 4"]]
+message = "error: scene.toml:2: dimension: [..]found 4[..]"
+[[refusal]]
+replace = [["dimension = 2", "dimension = 4"]]
+message = "error: scene.toml: dimension: expected 2 or 3, found 5"
+[[refusal]]
+replace = [["dimension = 7", "dimension = 4"]]
+message = "error: scene.toml:2: dimension: [..]found 4[..]"
+[[refusal]]
+replace = [["dimension = 2", "dimension = 4"]]
+code = 1
+message = "error: scene.toml:2: dimension: [..]found 4[..]"
+[[refusal]]
+name = "a scene without an error"
+message = ""
+"#,
+    )
+    .unwrap();
+    let found = failures(&table);
+    let said = [
+        (1, "found error: scene.toml"),
+        (2, "the edit does not apply"),
+        (3, "expected (Some(1)"),
+        (4, "expected (Some(2)"),
+    ];
+    assert_eq!(found.len(), said.len(), "{found:?}");
+    for ((at, failure, _), (entry, words)) in found.iter().zip(said) {
+        assert!(*at == entry && failure.contains(words), "{at}: {failure}");
+    }
+}
+
+/// Fewer entries mean that a table was lost.
+const MANY: usize = 500;
