@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod absent_effects;
+mod allocations;
 mod bad_input;
 mod cache;
 #[cfg(unix)]
