@@ -187,7 +187,7 @@ const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
 fn run() -> &'static (Record, Vec<u8>) {
     static RUN: OnceLock<(Record, Vec<u8>)> = OnceLock::new();
     RUN.get_or_init(|| {
-        let mut observer = RunObserver::with_checkpoints(25);
+        let mut observer = RunObserver::with_checkpoints(25, 1);
         let record = Dem::new(SOLVER).run(&scene(), &RESOLUTION, &mut observer).unwrap();
         (record, observer.checkpoints.pop().unwrap().to_bytes().unwrap())
     })

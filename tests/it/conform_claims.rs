@@ -8,7 +8,7 @@ use grainbench::harness::verdict::{Outcome, Verdict};
 use grainbench::scene::file::GrainShape;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 use nalgebra::Vector3;
 
 const CASES: [&str; 5] = ["unequal-impact", "rolling-off", "carried-grain", "turning-walls", "rocking"];
@@ -58,10 +58,10 @@ impl Solver for MisledSolver {
         "misled".to_owned()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let mut wrong = scene.clone();
         (self.0)(&mut wrong);
-        Dem::new(Convention::DEFAULT).run(&wrong, resolution, watch)
+        Dem::new(Convention::DEFAULT).run(&wrong, resolution, observer)
     }
 }
 

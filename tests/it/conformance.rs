@@ -6,7 +6,7 @@ use grainbench::harness::conformance::ALL;
 use grainbench::harness::verdict::Outcome;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 use grainbench::scene::terms::{Order, Terms};
 
 /// Each property detects its own defect, and does not fail for every other defect.
@@ -55,7 +55,7 @@ fn a_solver_that_runs_nothing_does_not_pass() {
         fn name(&self) -> String {
             "nothing".to_owned()
         }
-        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
             Err(RunError::Unsupported { solver: self.name(), reason: "it runs nothing".to_owned() })
         }
     }

@@ -3,7 +3,7 @@
 use crate::common::bits;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
-use grainbench::scene::solver::{Resolution, Threads};
+use grainbench::scene::solver::{Resolution, RunOptions};
 use rayon::prelude::*;
 
 #[test]
@@ -25,7 +25,8 @@ fn a_rerun_gives_the_same_bits() {
                 _ => Resolution::CriticalFraction(0.05),
             };
             // A run that crashes must crash in the same way.
-            let run = |threads| solver.run(&scene, &resolution, &mut Threads(threads)).map(bits);
+            let run =
+                |threads| solver.run(&scene, &resolution, &mut RunOptions { threads, ..RunOptions::DEFAULT }).map(bits);
             let (first, second) = std::thread::scope(|scope| {
                 let beside = scope.spawn(|| run(3));
                 (run(1), beside.join().unwrap())

@@ -5,7 +5,7 @@ use grainbench::cases::solvers;
 use grainbench::scene::brief::Brief;
 use grainbench::scene::record::Series;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::Resolution;
+use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
@@ -34,7 +34,8 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
 
 fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, RunObserver) {
     let scene: Scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err(String::new())).unwrap();
-    let mut observer = RunObserver { threads, most_rows: Some(most_rows), ..RunObserver::default() };
+    let mut observer =
+        RunObserver::new(RunOptions { threads, most_rows, keep_snapshots: false, ..RunOptions::DEFAULT });
     let resolution = match solver {
         "mpm" => Resolution::Grid { cells: 6.0, points: 2, courant: 0.4 },
         _ => Resolution::CriticalFraction(0.1),

@@ -6,7 +6,7 @@ use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, Threads, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -73,9 +73,9 @@ fn scene(triangles: &[Triangle], text: &str) -> Scene {
     scene_in(directory.path(), text).unwrap()
 }
 
-fn run(scene: &Scene, watch: &mut dyn Watch) -> Record {
+fn run(scene: &Scene, observer: &mut dyn Observer) -> Record {
     let solver = solvers::by_name("dem").unwrap();
-    solver.run(scene, &STEP, watch).unwrap_or_else(|error| panic!("{error}"))
+    solver.run(scene, &STEP, observer).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns the largest distance between the same grains at the end (m).
@@ -183,12 +183,12 @@ fn funnel() -> Scene {
 #[test]
 fn threads_and_restarts_change_no_bit() {
     let scene = funnel();
-    let mut observer = RunObserver::with_checkpoints(700);
+    let mut observer = RunObserver::with_checkpoints(700, 1);
     let straight = run(&scene, &mut observer);
     assert!(straight.snapshots.last().unwrap().grains.len() < 48, "none was taken out");
     let straight = bits(straight);
     for threads in [2, 3] {
-        assert!(bits(run(&scene, &mut Threads(threads))) == straight, "{threads} threads");
+        assert!(bits(run(&scene, &mut RunOptions { threads, ..RunOptions::DEFAULT })) == straight, "{threads} threads");
     }
     let solver = solvers::by_name("dem").unwrap();
     assert!(observer.checkpoints.len() > 5);

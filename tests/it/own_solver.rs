@@ -15,7 +15,7 @@ use grainbench::harness::verdict::Outcome;
 use grainbench::own::JudgementError;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError, Solver, Watch};
+use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
@@ -54,7 +54,7 @@ impl Solver for Panics {
         "panics".to_owned()
     }
 
-    fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
         panic!("index out of bounds")
     }
 }
@@ -99,10 +99,10 @@ impl Solver for Changed {
         "changed".to_owned()
     }
 
-    fn run(&self, scene: &Scene, resolution: &Resolution, watch: &mut dyn Watch) -> Result<Record, RunError> {
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let mut scene = scene.clone();
         (self.1)(&mut scene);
-        self.0.run(&scene, resolution, watch)
+        self.0.run(&scene, resolution, observer)
     }
 }
 

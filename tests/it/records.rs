@@ -23,7 +23,7 @@ fn scene(output: &str) -> Scene {
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
 
 fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
-    let mut observer = RunObserver { threads, ..RunObserver::with_checkpoints(13) };
+    let mut observer = RunObserver::with_checkpoints(13, threads);
     let record = solvers::by_name("dem").unwrap().run(scene, &STEP, &mut observer).unwrap();
     (record, observer.checkpoints)
 }
@@ -124,7 +124,7 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     let solver = solvers::by_name("dem").unwrap();
     assert_eq!(checkpoints.iter().map(Checkpoint::step).collect::<Vec<_>>(), [13, 26, 39, 52]);
     for checkpoint in &checkpoints {
-        let mut observer = RunObserver { threads: 2, ..RunObserver::with_checkpoints(13) };
+        let mut observer = RunObserver::with_checkpoints(13, 2);
         let continued = solver.restart(&scene, &STEP, checkpoint, &mut observer).unwrap();
         assert!(bits(&continued) == bits(&whole), "from step {}", checkpoint.step());
     }

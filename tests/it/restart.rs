@@ -11,7 +11,7 @@ use grainbench::resume::{self, Place};
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::{Cost, Record};
 use grainbench::scene::scene::{Duration, Sampling, Scene};
-use grainbench::scene::solver::{Resolution, RunError};
+use grainbench::scene::solver::{Resolution, RunError, RunOptions};
 use rayon::prelude::*;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -47,7 +47,7 @@ fn every_case_continues_to_the_same_bits() {
         let mut compared = 0;
         for solver in solvers::all().into_iter().filter(|solver| solver.name().starts_with("dem")) {
             let resolution = Resolution::CriticalFraction(0.1);
-            let mut observer = RunObserver::with_checkpoints(19);
+            let mut observer = RunObserver::with_checkpoints(19, 1);
             let whole = match solver.run(scene, &resolution, &mut ()) {
                 // Scenes with only deformable bodies, and scenes whose dashpots need a shorter step.
                 Err(RunError::Unsupported { .. } | RunError::Resolution { .. }) => continue,
@@ -89,7 +89,10 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let path = directory.path().join("run.checkpoint");
     let place = Place { path: &path, every: 300 };
     let go = |from: Option<&Checkpoint>, until: u64| {
-        let mut watch = RunObserver { until: Some(until), ..RunObserver::default() };
+        let mut watch = RunObserver {
+            until: Some(until),
+            ..RunObserver::new(RunOptions { end_state: true, ..RunOptions::DEFAULT })
+        };
         let record = resume::run(solver.as_ref(), &scene, &run.resolution, from, place, &mut watch);
         assert!(record.is_err() || watch.end.is_some(), "the final state of a resumed run");
         record

@@ -4,7 +4,7 @@ use crate::common::grainbench;
 use grainbench::cases::solvers;
 use grainbench::scene::record::{Record, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, Threads};
+use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn scene(text: &str) -> Scene {
 fn run(text: &str, threads: usize) -> Record {
     let solver = solvers::by_name("dem").unwrap();
     solver
-        .run(&scene(text), &Resolution::TimeStep(1e-3), &mut Threads(threads))
+        .run(&scene(text), &Resolution::TimeStep(1e-3), &mut RunOptions { threads, ..RunOptions::DEFAULT })
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
