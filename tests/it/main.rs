@@ -46,6 +46,7 @@ mod round_walls;
 mod state;
 mod states;
 mod stays;
+mod structure;
 mod studies;
 mod tidy;
 mod wrong_flags;

@@ -74,9 +74,10 @@ fn crates_depend_in_one_direction() {
         ("reference", scene),
         ("fields", &["scene", "harness"]),
         ("cases", &["scene", "harness", "dem", "mpm", "rigid", "reference", "fields"]),
-        ("reports", &["scene", "harness", "fields"]),
-        ("studies", &["lanes", "scene", "harness", "reports"]),
-        ("campaign", &["scene", "harness", "cases", "reports", "studies"]),
+        ("store", &[]),
+        ("reports", &["scene", "harness", "fields", "store"]),
+        ("studies", &["lanes", "scene", "harness", "reports", "store"]),
+        ("campaign", &["scene", "harness", "cases", "reports", "studies", "store"]),
         (
             ".",
             &[
@@ -90,6 +91,7 @@ fn crates_depend_in_one_direction() {
                 "fields",
                 "cases",
                 "reports",
+                "store",
                 "studies",
                 "campaign",
             ],

@@ -102,9 +102,12 @@ impl Checker<'_> {
         what: &str,
         mut known: impl Iterator<Item = &'n String> + Clone,
     ) -> Result<usize, SceneError> {
-        let names: Vec<&str> = known.clone().map(String::as_str).collect();
+        let names: Vec<&str> = known.clone().map(String::as_str).filter(|name| !name.is_empty()).collect();
         known.position(|candidate| candidate == name).ok_or_else(|| {
-            let expected = format!("{what}: one of {}", names.join(", "));
+            let expected = match names[..] {
+                [] => format!("{what} (the scene has none)"),
+                _ => format!("{what}: one of {}", names.join(", ")),
+            };
             self.source.error(key, &expected, &format!("`{name}`"), did_you_mean(name, names.iter().copied()))
         })
     }
