@@ -131,7 +131,8 @@ def _line(row: dict[str, Any]) -> str:
     if row.get("value") is None:
         return f"{row['verdict']:<12} {place}: {row.get('detail') or ''}"
     parts = f"{_shown(row['value'])} {row['unit']}, expected {_shown(row['expected'])}"
-    return f"{row['verdict']:<12} {place}: {parts}, off {_shown(row['error'])}, allowed {_shown(row['allowed'])}"
+    detail = f"; {row['detail']}" if row.get("detail") else ""
+    return f"{row['verdict']:<12} {place}: {parts}, off {_shown(row['error'])}, allowed {_shown(row['allowed'])}{detail}"
 
 
 def _snapshots(folder: Path) -> list[dict[str, Any]]:

@@ -23,6 +23,8 @@ class Record:
     """Velocities (m/s), shape (samples, grains, 3)."""
     spin: Floats | None = None
     """Angular velocities (rad/s), shape (samples, grains, 3)."""
+    id: NDArray[np.int64] | None = None
+    """Ids of the grains, shape (grains,) or (samples, grains); by default 1, 2, … in the order of the scene."""
     seconds: float | None = None
     """Time of the solution without start and output (s); None if it was not measured."""
 
@@ -37,10 +39,17 @@ class Record:
             array = getattr(self, name)
             if array is not None and np.shape(array) != shape:
                 raise ValueError(f"{name}: expected the shape {shape} of the positions, found {np.shape(array)}")
+        if self.id is not None and np.shape(self.id) not in (shape[:2], shape[1:2]):
+            raise ValueError(f"id: expected the shape {shape[1:2]} or {shape[:2]}, found {np.shape(self.id)}")
 
     def write(self, folder: str | Path) -> None:
         """Writes `grains.npz` to a directory."""
-        arrays: dict[str, ArrayLike] = {"step": np.asarray(self.step, dtype=np.int64), "position": _floats(self.position)}
+        ids = np.arange(1, np.shape(self.position)[1] + 1) if self.id is None else self.id
+        arrays: dict[str, ArrayLike] = {
+            "step": np.asarray(self.step, dtype=np.int64),
+            "id": np.asarray(ids, dtype=np.int64),
+            "position": _floats(self.position),
+        }
         if self.velocity is not None:
             arrays["velocity"] = _floats(self.velocity)
         if self.spin is not None:

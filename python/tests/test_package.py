@@ -13,6 +13,7 @@ import grainbench as gb
 from grainbench._binary import binary
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "python" / "sphere.py"
+GRAINS = EXAMPLE.with_name("grains.py")
 CASES = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"]
 
 # Lines of the example's physics, each with a defective version.
@@ -36,6 +37,21 @@ SPOILED = [
     ("0.5 * dt / mass", "0.495 * dt / mass"),
     ("0.5 * dt / inertia", "0.495 * dt / inertia"),
     ("x + dt * (v + kick)", "x + 0.999 * dt * (v + kick)"),
+]
+
+# Mistakes in the example with many grains, the case that finds each one, and the hint of the result.
+IMPACT, SLOPE = "unequal-impact", "incline-disc/30deg-mu.5"
+MISTAKES = [
+    ("a, arms[0] * moment), np.add.at(torques, b, arms[1]", "a, arms.mean(0) * moment), np.add.at(torques, b, arms.mean(0)", IMPACT, "(R₁ + R₂)/2"),
+    ("np.add.at(torques, b, arms[1] * moment)", "np.add.at(torques, b, -arms[1] * moment)", IMPACT, None),
+    ("np.minimum(1, mu", "np.minimum(1, 0.5 * mu", IMPACT, "half the friction"),
+    ("torques[:count] / inertia", "torques[:count] / (0.8 * inertia)", IMPACT, None),
+    ("torques[:count] / inertia", "0 * torques[:count]", IMPACT, "grains that do not turn"),
+    ("push = k[:, None] * overlap -", "push = 0.5 * k[:, None] * overlap -", SLOPE, None),
+    ("overlap - (c + beta * k)", "overlap - 0.5 * (c + beta * k)", SLOPE, "half the normal damping"),
+    ("overlap - (c + beta * k)", "overlap - 2 * (c + beta * k)", SLOPE, "twice the normal damping"),
+    ("(ct + beta * kt)", "0 * (ct + beta * kt)", SLOPE, "no tangential damping"),
+    ("kt[:, None] * dt * slip", "0.5 * kt[:, None] * dt * slip", SLOPE, "half the tangential stiffness"),
 ]
 
 REFUSES = """
@@ -82,10 +98,10 @@ def test_each_line_of_the_physics_is_felt(tmp_path: Path, spoiled: tuple[str, st
     raise AssertionError(f"{spoiled[1]}: every row passes")
 
 
-def load(path: Path) -> gb.Solver:
+def load(path: Path, name: str = "sphere") -> gb.Solver:
     from grainbench.worker import load
 
-    return load(f"{path}:sphere")
+    return load(f"{path}:{name}")
 
 
 def test_pytest_says_which_row_is_red_and_why(tmp_path: Path) -> None:
@@ -100,6 +116,23 @@ def test_pytest_names_the_mistake(tmp_path: Path) -> None:
     example(tmp_path, ("0.5 * dt / inertia", "0.4 * dt / inertia"))
     done = by_pytest(tmp_path, cases=CASES[1:2])
     assert done.returncode == 1 and "as if: the inertia of a disc in a sphere" in done.stdout, done.stdout
+
+
+def test_many_grains_are_judged() -> None:
+    judgement = gb.judge(load(GRAINS, "grains"), [IMPACT, "collision", SLOPE])
+    assert judgement.passed, judgement.table(only_red=True)
+    assert sum(row["verdict"] == "pass" for row in judgement.verdicts) >= 19
+
+
+@pytest.mark.parametrize(("line", "wrong", "case", "hint"), MISTAKES, ids=[wrong for _, wrong, _, _ in MISTAKES])
+def test_mistakes_with_many_grains_are_red(tmp_path: Path, line: str, wrong: str, case: str, hint: str | None) -> None:
+    text = GRAINS.read_text(encoding="utf-8")
+    assert text.count(line) == 1, line
+    (tmp_path / "grains.py").write_text(text.replace(line, wrong), encoding="utf-8")
+    judgement = gb.judge(load(tmp_path / "grains.py", "grains"), [case], controls=False)
+    assert not judgement.passed
+    said = judgement.table(only_red=True)
+    assert hint is None or any("as if: " in row and hint in row for row in said.splitlines()), said
 
 
 def test_pytest_fails_where_nothing_is_judged(tmp_path: Path) -> None:

@@ -100,13 +100,55 @@ pub(crate) fn say(kind: &str, message: &str) {
 
 /// Prints text on the standard output. A reader that closes the pipe early, as `head` does, is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Fault> {
-    let mut out = io::stdout().lock();
-    match out.write_all(tamed(text, |character| matches!(character, '\n' | '\t')).as_bytes()).and_then(|()| out.flush())
-    {
+    print_with(|out| out.write_all(text.as_bytes()))
+}
+
+/// Prints what a function writes, in pieces, so that a large output takes no memory.
+pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
+    let mut out = TamedOutput { out: io::stdout().lock(), piece: Vec::new() };
+    match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Fault::input(format!("cannot write the standard output: {error}")))
         }
         _ => Ok(()),
+    }
+}
+
+/// Standard output without control characters other than line feeds and tabs.
+struct TamedOutput {
+    out: io::StdoutLock<'static>,
+    piece: Vec<u8>,
+}
+
+impl TamedOutput {
+    /// Writes the complete characters of the piece.
+    fn write_piece(&mut self) -> io::Result<()> {
+        let end = match std::str::from_utf8(&self.piece) {
+            Err(error) if error.error_len().is_none() => error.valid_up_to(),
+            _ => self.piece.len(),
+        };
+        let text = String::from_utf8_lossy(&self.piece[..end]);
+        self.out.write_all(tamed(&text, |character| matches!(character, '\n' | '\t')).as_bytes())?;
+        self.piece.drain(..end);
+        Ok(())
+    }
+}
+
+impl Write for TamedOutput {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        /// Size of a piece (bytes).
+        const PIECE: usize = 1 << 16;
+        let bytes = &bytes[..bytes.len().min(PIECE)];
+        self.piece.extend_from_slice(bytes);
+        if self.piece.len() >= PIECE {
+            self.write_piece()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.write_piece()?;
+        self.out.flush()
     }
 }
 

@@ -1,6 +1,6 @@
 //! `grainbench scene`: prints the resolved scene that external solvers receive, or the schema of scene files.
 
-use super::exit::{Fault, Outcome, print, print_json};
+use super::exit::{Fault, Outcome, print_json, print_with};
 use super::step::Step;
 use super::subject;
 use super::value::{path_and_value, positive};
@@ -80,6 +80,10 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
         Format::Json => SceneFormat::Json,
         Format::Toml => SceneFormat::Toml,
     };
-    print(&(Resolved::new(&given).text(format).map_err(Fault::input)? + "\n"))?;
+    let resolved = Resolved::new(&given);
+    print_with(|out| {
+        resolved.write(format, out)?;
+        out.write_all(b"\n")
+    })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -12,6 +12,7 @@ use grainbench_scene::solver::Resolution;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::PI;
+use std::io;
 
 /// Version of the file format.
 const FORMAT: u32 = 1;
@@ -306,15 +307,25 @@ impl Resolved {
 }
 
 impl Resolved {
+    /// Writes the content of the file.
+    ///
+    /// # Errors
+    /// When a value cannot be serialized, or a write fails.
+    pub fn write(&self, format: SceneFormat, out: &mut dyn io::Write) -> io::Result<()> {
+        match format {
+            SceneFormat::Json => Ok(serde_json::to_writer(out, self)?),
+            SceneFormat::Toml => out.write_all(toml::to_string(self).map_err(io::Error::other)?.as_bytes()),
+        }
+    }
+
     /// Returns the content of the file.
     ///
     /// # Errors
-    /// If a value cannot be serialized, with the reason.
+    /// When a value cannot be serialized, with the reason.
     pub fn text(&self, format: SceneFormat) -> Result<String, String> {
-        match format {
-            SceneFormat::Json => serde_json::to_string(self).map_err(|error| error.to_string()),
-            SceneFormat::Toml => toml::to_string(self).map_err(|error| error.to_string()),
-        }
+        let mut bytes = Vec::new();
+        self.write(format, &mut bytes).map_err(|error| error.to_string())?;
+        String::from_utf8(bytes).map_err(|error| error.to_string())
     }
 }
 
