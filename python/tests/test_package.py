@@ -282,13 +282,14 @@ def test_a_scene_is_read_as_it_is_printed(tmp_path: Path) -> None:
 
 
 def test_the_guide_shows_what_runs(tmp_path: Path) -> None:
-    """Runs the Python blocks that are typed in the guide and not included.
+    """Runs the Python blocks of the guide that show no file.
 
     They run in a new process, because `sphere` may be a module that another test has changed.
     """
     text = (Path(__file__).parents[2] / "guide" / "src" / "judge.md").read_text(encoding="utf-8")
-    blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
-    typed = [block for block in blocks if "{{#include" not in block]
+    parts = text.split("```python\n")
+    shows_file = [part.rstrip().endswith(".py -->") for part in parts[:-1]]
+    typed = [part.split("```")[0] for part, is_file in zip(parts[1:], shows_file, strict=True) if not is_file]
     assert len(typed) == 1
     example(tmp_path)
     shown = subprocess.run([sys.executable, "-c", typed[0]], cwd=tmp_path, capture_output=True, text=True, check=False)

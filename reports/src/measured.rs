@@ -65,10 +65,16 @@ pub struct Line {
 /// Cost of an error with one solver, over the quantities for which the solver reaches the error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Geometric mean of its time divided by the time of the cheapest solver at the same error.
+    /// Geometric mean of its time divided by the time of the cheapest solver at the same error, over the quantities for
+    /// which another solver reaches the error too; 1 if there is none.
     pub times: f64,
-    /// Geometric mean of its time divided by the time of the cheapest solver at an error of 1 %.
-    pub place: f64,
+    /// Number of these quantities.
+    #[serde(default)]
+    pub compared: usize,
+    /// Geometric mean of its time divided by the time of the cheapest solver at an error of 1 %, over the quantities
+    /// that several solvers reach within 1 %; none if there is none.
+    #[serde(default)]
+    pub place: Option<f64>,
     /// Shortest and longest time (s).
     pub seconds: [f64; 2],
     /// Number of quantities for which the solver reaches the error.
@@ -217,15 +223,23 @@ fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
 
 fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Factor> {
     let reached = || study.diagrams.iter().filter_map(|diagram| Some((diagram, time(diagram, line, target)?)));
+    // A solver alone is the cheapest, which says nothing about its cost.
+    let competes = |diagram: &Diagram, target: f64| {
+        let reaching = lines.iter().filter(|other| time(diagram, other, target).is_some());
+        reaching.filter(|other| **other != line).count() > 0
+    };
     let over = |target: f64| -> Vec<f64> {
-        reached().filter_map(|(diagram, time)| Some(time / cheapest(diagram, lines, target)?)).collect()
+        let compared = reached().filter(|(diagram, _)| competes(diagram, target));
+        compared.filter_map(|(diagram, time)| Some(time / cheapest(diagram, lines, target)?)).collect()
     };
     let over_dem: Vec<f64> =
         reached().filter_map(|(diagram, mine)| Some(mine / time(diagram, "dem", target)?)).collect();
     let seconds: Vec<f64> = reached().map(|(_, time)| time).collect();
+    let times = over(target);
     Some(Factor {
-        times: geometric_mean(&over(target))?,
-        place: geometric_mean(&over(TARGETS[AT]))?,
+        times: geometric_mean(&times).unwrap_or(1.0),
+        compared: times.len(),
+        place: geometric_mean(&over(TARGETS[AT])),
         seconds: ends(&seconds),
         reached: seconds.len(),
         over_dem: geometric_mean(&over_dem).filter(|_| line != "dem").map(|mean| (mean, over_dem.len())),

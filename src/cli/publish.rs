@@ -61,7 +61,10 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> 
 /// Adds the reasons why a run is red although no result is: nothing was judged, or amber results count as red.
 pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
     if is_mute {
-        report.red_because.push("nothing judged: no result describes its quantity".to_owned());
+        let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
+        let reason = rows.find_map(|row| row.detail.clone());
+        let reason = reason.unwrap_or_else(|| "no result describes its quantity".to_owned());
+        report.red_because.push(format!("nothing judged: {reason}"));
     }
     let amber = Headline::of_report(report).amber();
     if strict && amber > 0 {

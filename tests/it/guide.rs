@@ -14,7 +14,7 @@ use grainbench::cases::registry::CASES;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::run::ExpectedOutcome;
 use grainbench::harness::verdict::Outcome;
-use pages::{Chapter, chapters, expanded, lost_links, untold};
+use pages::{Chapter, chapters, lost_links, untold, with_files};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -184,11 +184,14 @@ fn the_words_of_a_row_are_explained() {
     }
 }
 
-/// A chapter includes its files, so that nothing is typed twice.
+/// Chapters show files as they are, also where includes are not expanded.
 #[test]
-fn a_chapter_shows_the_scene_that_is_run() {
-    let chapters = chapters();
-    let scene = chapters.iter().find(|chapter| chapter.name == "scene.md").unwrap();
-    let hopper = fs::read_to_string(root("guide/scenes/hopper.toml")).unwrap();
-    assert!(expanded(scene).unwrap().contains(hopper.trim_end()));
+fn chapters_show_their_files() {
+    for chapter in chapters() {
+        expect_file(&format!("guide/src/{}", chapter.name), &with_files(&chapter.text).unwrap());
+    }
+    let shown = with_files("<!-- file: ../scenes/belt.toml -->\n```toml\nother\n```\nend\n").unwrap();
+    assert!(shown.contains("A disc is set down on a belt") && !shown.contains("other") && shown.ends_with("end\n"));
+    assert!(with_files("<!-- file: ../scenes/nowhere.toml -->\n```toml\n```\n").is_err());
+    assert!(with_files("<!-- file: ../scenes/belt.toml -->\n```toml\n").is_err());
 }

@@ -6,7 +6,6 @@ use maud::{Markup, html};
 
 use super::rows::address;
 use super::rows_of;
-use crate::headline::used_tolerance;
 use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
@@ -61,10 +60,15 @@ fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),
         Outcome::Stale => Some((1, f64::INFINITY)),
-        Outcome::Fail => Some((1, used_tolerance(row))),
-        Outcome::Known => Some((0, used_tolerance(row))),
+        Outcome::Fail => Some((1, size(row))),
+        Outcome::Known => Some((0, size(row))),
         _ => None,
     }
+}
+
+/// Returns the size of an error as a fraction of its scale; infinite if it is no finite number.
+fn size(row: &Verdict) -> f64 {
+    row.error.map_or(f64::INFINITY, f64::abs)
 }
 
 /// Returns one card; `lead` returns the anchor of a result.
@@ -76,6 +80,8 @@ fn card(
 ) -> Markup {
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
+    let is_judged =
+        rows(report, solver).any(|row| !matches!(row.outcome, Outcome::Unsupported | Outcome::NotAvailable));
     let class = match rows(report, solver).map(|row| row.outcome.severity()).max() {
         Some(Severity::Red) => "fail",
         Some(Severity::Amber) => "amber",
@@ -95,21 +101,18 @@ fn card(
     };
     html! {
         div class={ "card " (class) } data-card=(solver) {
-            h3 { (filter(None, html! { (solver) })) span { (pass) "/" (all) } }
+            h3 {
+                (filter(None, html! { (solver) }))
+                span { @if is_judged { (pass) "/" (all) } @else { "none judged" } }
+            }
             dl {
                 (compared(report, solver))
                 @if let Some((_, row)) = worst {
-                    @let times = used_tolerance(row);
                     div {
                         dt { (filter(Some(row.outcome.word()), html! { (count(row.outcome)) " " (row.outcome.word()) })) }
                         dd {
                             "worst "
-                            @match row.error {
-                                // A ratio to a tolerance for rounding says little, so the error itself is shown.
-                                Some(error) if times > 1e3 => { "off " (number::significant(100.0 * error.abs(), 2)) " %, " }
-                                _ if times.is_finite() => { (number::significant(times, 2)) "× allowed, " }
-                                _ => {}
-                            }
+                            @if size(row).is_finite() { "off " (number::significant(100.0 * size(row), 2)) " %, " }
                             a.bad href={ "#" (lead(row)) } title=(row.quantity) { (row.case) }
                         }
                     }
@@ -164,7 +167,10 @@ fn price(costs: &Costs, line: &Line) -> Markup {
             dt { "1 % costs" }
             dd {
                 @if let Some(factor) = line.factors[AT] {
-                    "× " (number::significant(factor.times, 2)) " the cheapest (" (factor.reached) " of " (line.asked) ")"
+                    @if factor.compared > 0 {
+                        "× " (number::significant(factor.times, 2)) " the cheapest (" (factor.compared) " compared)"
+                    } @else { "reached alone" }
+                    ", in " (factor.reached) " of " (line.asked)
                 } @else { "not reached in any of " (line.asked) }
             }
         }

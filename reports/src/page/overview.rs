@@ -61,7 +61,7 @@ fn headline(counts: Headline) -> String {
         return "Nothing was judged".to_owned();
     }
     let colour = |count: usize, word: &str| match count {
-        0 => format!("none is {word}"),
+        0 => format!("no result is {word}"),
         1 => format!("1 is {word}"),
         _ => format!("{count} are {word}"),
     };

@@ -100,8 +100,9 @@ fn drawn(figure: &Figure) -> Markup {
 fn accuracy(report: &Report, costs: &Costs) -> Markup {
     let Some(diagram) = &costs.example else { return html! {} };
     let mut figure = cost::figure(diagram);
-    figure.title = format!("{}, {}", diagram.case, diagram.variant);
     let section = report.sections.iter().find(|section| section.name == diagram.case);
+    let name = section.map_or(diagram.case.as_str(), |section| section.title.as_str());
+    figure.title = format!("{name}, {}", diagram.variant);
     let times: Vec<String> = costs
         .lines
         .iter()
@@ -116,7 +117,8 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
             rows.fold((0, 0), |(pass, all), row| (pass + usize::from(row.outcome == Outcome::Pass), all + 1));
         (all > 0).then(|| format!("{solver} {pass}/{all}"))
     };
-    let solvers = super::cards::solvers(report).into_iter().filter(|solver| !solver.contains('+'));
+    let is_drawn = |solver: &&str| costs.lines.iter().any(|line| line.solver == **solver);
+    let solvers = super::cards::solvers(report).into_iter().filter(is_drawn);
     let passed: Vec<String> = solvers.filter_map(passed).collect();
     html! {
         (drawn(&figure))
@@ -165,7 +167,9 @@ fn steps(stability: &Stability) -> Markup {
                     th scope="row" { (held.len()) " other cases" }
                     @for line in &lines {
                         @let holds = held.iter().filter(|case| found(case, &line.solver) == Some(Hardness::Holds)).count();
-                        td { span.mark.pass { "✓" (holds) } }
+                        @let tried = |standing| !matches!(standing, Hardness::Unsupported | Hardness::NotAvailable);
+                        @let asked = held.iter().filter(|case| found(case, &line.solver).is_some_and(tried)).count();
+                        td { span.mark.pass { "✓" (holds) "/" (asked) } }
                     }
                 }
             }
@@ -204,7 +208,10 @@ fn changes(effects: &Effects) -> Markup {
     let across = |value: f64| FRAME[0] + (FRAME[1] - FRAME[0]) * scale.position(value);
     let bottom = 34.0 + ROW * names.len() as f64;
     let marks = |entries: &[&Entry], worth: EffectResult, y: f64| -> String {
-        let places = entries.iter().filter(|entry| entry.worth == worth).filter_map(|entry| change(median(entry)?));
+        let fails = worth == EffectResult::Needed;
+        let shifts = entries.iter().filter(|entry| entry.worth == worth).filter_map(|entry| median(entry));
+        // A stored entry has one claim, which may be another than the one that fails.
+        let places = shifts.filter(|shift| shift.red == fails).filter_map(change);
         places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
     };
     let mut order = names.clone();
@@ -250,7 +257,7 @@ fn changes(effects: &Effects) -> Markup {
         }
         p { "A claim fails " b { (most) } " scenes." }
         p.note {
-            "One mark per scene: the median over its claims. Cost: median of the processor time with the effect divided by "
+            "One mark per scene: the median over its claims that fail, or over all claims if none fails. Cost: median of the processor time with the effect divided by "
             "the time without it, if it was measured in three scenes or more. Changes below 10⁻⁵ and above 10 are at the ends."
         }
     }

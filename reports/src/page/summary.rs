@@ -49,7 +49,7 @@ fn over_cases(costs: &Costs) -> Graph {
     let mut curves = Vec::new();
     for line in &costs.lines {
         let means =
-            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place, target)));
+            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place?, target)));
         curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
     }
     let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
@@ -76,7 +76,7 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         table {
             thead {
                 tr {
-                    th scope="col" { "Time over the cheapest's, at" }
+                    th scope="col" { "Time over the cheapest at the same error" }
                     @for target in TARGETS { th.n scope="col" { (number::fraction(target)) } }
                 }
             }
@@ -91,8 +91,9 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         }
         (over_dem(costs))
         p.note {
-            "Joined markers: geometric mean over the target quantities for which the solver reaches 10, 1 and 0.1 %; "
-            "their number is in the table. Small markers: settings for which no other setting of this solver is both "
+            "The table has the geometric mean over the target quantities for which the solver and another one reach the error; "
+            "below it, for how many quantities the solver reaches it. The picture divides by the time of the cheapest solver at "
+            "1 %. Joined markers: 10, 1 and 0.1 %. Small markers: settings for which no other setting of this solver is both "
             "faster and more accurate; errors below 10⁻¹⁰ are omitted. Times are of the stepping loop. Measured " "
             "(stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
@@ -107,7 +108,11 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
 
 fn cell(factor: Option<&Factor>, asked: usize) -> Markup {
     html! {
-        @if let Some(factor) = factor { "× " (number::significant(factor.times, 2)) } @else { "—" }
+        @match factor {
+            Some(factor) if factor.compared > 0 => { "× " (number::significant(factor.times, 2)) }
+            Some(_) => "alone",
+            None => "—",
+        }
         span.fine { (factor.map_or(0, |factor| factor.reached)) " of " (asked) }
     }
 }

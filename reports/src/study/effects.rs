@@ -130,9 +130,12 @@ pub(crate) fn change(shift: &Shift) -> Option<f64> {
     Some((shift.without? - shift.with?).abs()).filter(|change| change.is_finite())
 }
 
-/// Returns the claimed quantity with the median change, or one without a value.
+/// Returns the claimed quantity with the median change, or one without a value. If claims fail without the effect, only
+/// these count.
 pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
-    let mut shifts: Vec<&Shift> = entry.shifts.iter().filter(|shift| change(shift).is_some()).collect();
+    let fails = entry.shifts.iter().any(|shift| shift.red && change(shift).is_some());
+    let mut shifts: Vec<&Shift> =
+        entry.shifts.iter().filter(|shift| change(shift).is_some() && (shift.red || !fails)).collect();
     shifts.sort_by(|a, b| change(a).unwrap_or_default().total_cmp(&change(b).unwrap_or_default()));
     shifts.get(shifts.len() / 2).copied().or_else(|| entry.shifts.first())
 }

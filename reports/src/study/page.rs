@@ -63,11 +63,13 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
                 let wins =
                     study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
                 Some(format!(
-                    "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest",
+                    "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest in {} that others \
+                     reach too",
                     line.solver,
                     factor.reached,
                     line.asked,
-                    number::significant(factor.times, 2)
+                    number::significant(factor.times, 2),
+                    factor.compared
                 ))
             })
             .collect();

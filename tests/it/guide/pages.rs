@@ -43,7 +43,7 @@ fn included(path: &str) -> Result<String, String> {
 }
 
 /// Returns a chapter with its includes expanded.
-pub(crate) fn expanded(chapter: &Chapter) -> Result<String, String> {
+fn expanded(chapter: &Chapter) -> Result<String, String> {
     let mut found = String::new();
     let mut rest = chapter.text.as_str();
     while let Some(at) = rest.find("{{#include ") {
@@ -54,6 +54,31 @@ pub(crate) fn expanded(chapter: &Chapter) -> Result<String, String> {
         rest = &from[end + 2..];
     }
     Ok(found + rest)
+}
+
+/// Returns a text in which the block or table after each `<!-- file: PATH -->` has the content of the file. A block ends
+/// with its fence, a table with `<!-- end -->`.
+pub(crate) fn with_files(text: &str) -> Result<String, String> {
+    let (mut found, mut lines) = (Vec::new(), text.lines());
+    while let Some(line) = lines.next() {
+        found.push(line.to_owned());
+        let Some(path) = line.strip_prefix("<!-- file: ").and_then(|rest| rest.strip_suffix(" -->")) else { continue };
+        let first = lines.next().ok_or_else(|| format!("{path}: expected a block, found the end"))?;
+        let is_block = first.starts_with("```");
+        let end = if is_block { "```" } else { "<!-- end -->" };
+        if is_block {
+            found.push(first.to_owned());
+        } else {
+            found.push(String::new());
+        }
+        found.extend(included(path)?.trim().lines().map(str::to_owned));
+        if !is_block {
+            found.push(String::new());
+        }
+        lines.by_ref().find(|line| *line == end).ok_or_else(|| format!("{path}: expected `{end}`, found the end"))?;
+        found.push(end.to_owned());
+    }
+    Ok(found.join("\n") + "\n")
 }
 
 /// Returns the link target of a heading.
@@ -119,7 +144,7 @@ pub(crate) fn untold(chapters: &[Chapter]) -> Vec<String> {
     for folder in ["scenes", "claims"] {
         for entry in fs::read_dir(root("guide").join(folder)).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
-            let include = format!("{{{{#include ../{folder}/{name}}}}}");
+            let include = format!("<!-- file: ../{folder}/{name} -->");
             let command = if folder == "scenes" { format!("simulate {name} ") } else { format!("../{folder}/{name}") };
             let is_told = |chapter: &Chapter| {
                 let is_run = chapter.text.lines().any(|line| line.starts_with("$ ") && line.contains(&command));

@@ -37,7 +37,7 @@ pub struct ProbeSpec {
     #[serde(default)]
     pub driven: Option<String>,
     /// Energy budget. Columns kinetic, elastic, springs, gravitational, work, plastic, friction, damping, transfer,
-    /// contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s); see [`crate::budget::Budget`].
+    /// contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s).
     #[serde(default)]
     pub budget: Option<bool>,
     /// Mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber 1966). The

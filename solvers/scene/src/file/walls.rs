@@ -13,12 +13,12 @@ pub struct WallSpec {
     /// Infinite plane (a line in two dimensions), solid behind its normal.
     #[serde(default)]
     pub plane: Option<PlaneSpec>,
-    /// Segment between two points (m), solid on both sides; two dimensions only. Each wall is a separate surface: a
-    /// grain at the joint of two segments is in contact with both.
+    /// Segment between two points (m), solid on both sides; two dimensions only. Edges that lie on
+    /// another wall are joined: a grain at the joint has one contact.
     #[serde(default)]
     pub segment: Option<[Vec<f64>; 2]>,
-    /// Rectangle, solid on both sides; three dimensions only. A grain at the joint of two rectangles is in contact with
-    /// both.
+    /// Rectangle, solid on both sides; three dimensions only. Edges that lie on another wall are joined: a grain at the
+    /// joint has one contact.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
     /// Lateral surface of a cylinder, without its ends, solid on both sides; three dimensions only. It may rotate about
