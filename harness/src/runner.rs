@@ -197,7 +197,10 @@ impl Runner {
         }
         match self.refused_control(claim) {
             Some(reason) => {
-                let words = format!("its control, {}, cannot be tried: {reason}", claim.control.name);
+                let words = format!(
+                    "the solver cannot run the negative control of this claim, {}: {reason}",
+                    claim.control.name
+                );
                 row.left(Outcome::Unsupported, words)
             }
             None => row,
