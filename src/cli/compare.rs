@@ -79,7 +79,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
 }
 
-/// Columns that name and describe grains and do not change in a run. Their agreement alone does not count as a
+/// Columns that identify or describe grains and contain no motion. Their agreement alone does not count as a
 /// comparison.
 const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
 

@@ -20,7 +20,7 @@ use grainbench::store::refuse_mixed;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench fields`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory written by `simulate`, or a LAMMPS or LIGGGHTS dump of grains.

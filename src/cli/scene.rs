@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     cells: Option<f64>,
 }
 
-/// Formats.
+/// Formats of the resolved scene.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {
     Json,

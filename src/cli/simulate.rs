@@ -99,7 +99,7 @@ pub(crate) struct Arguments {
     /// Print provenance, cost and the final state as JSON; for a sweep, the results.
     #[arg(long)]
     json: bool,
-    /// Write the plan of a sweep to this directory instead of doing the work; `run --resume DIR` does it.
+    /// Write the sweep as a plan to this directory and run nothing. `run --resume DIR` runs the plan.
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     plan: Option<PathBuf>,
     /// Number of shards of the plan; by default each shard lasts about a minute.

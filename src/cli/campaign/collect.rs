@@ -31,7 +31,7 @@ pub(crate) struct CollectOptions {
     /// Treat amber results as red.
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Write `rows.parquet` too, for a plan of `run`; sweeps always do.
+    /// Also write `rows.parquet` for a plan made by `run`. The report of a sweep always contains it.
     #[arg(long)]
     pub(crate) parquet: bool,
     /// Directory for the report; by default inside the plan.
