@@ -16,7 +16,7 @@ const SHEAR: f64 = 0.08;
 const STEPS: f64 = SHEAR * CELLS * 3356.0 / (0.4 * 100.0);
 /// Mean shear after which two slabs that must agree are compared.
 const BEGINNING: f64 = 0.01;
-/// Displacement of the slab along its period: a third, which is a whole number of cells.
+/// Shift of all grains along the periodic axis, as a fraction of the period. 1/3 is 25 cells, so the grid is unchanged.
 const MOVED: f64 = 1.0 / 3.0;
 
 pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains \

@@ -46,7 +46,7 @@ pub struct Row {
     pub allowed: f64,
     /// Outcome of the result.
     pub verdict: Outcome,
-    /// Reason for an outcome other than pass or fail.
+    /// Reason for an outcome other than pass or fail, or details of a failure, such as its first time.
     pub detail: Option<String>,
     /// True if the negative control failed as required; absent if it was not run.
     pub control_red: Option<bool>,

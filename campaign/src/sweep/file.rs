@@ -139,9 +139,9 @@ pub(super) struct SweepClaim {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct QuantityEntry {
-    /// Name of the quantity.
+    /// Name of the recorded quantity, in words.
     pub(super) quantity: String,
-    /// Unit of the quantity.
+    /// Unit of `value`, such as `m/s`.
     pub(super) unit: String,
     /// Arithmetic over record columns and numbers of the scene.
     pub(super) value: String,

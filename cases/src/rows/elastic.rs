@@ -247,7 +247,7 @@ mod tests {
         assert!((u - v - half).abs() < 1e-12);
     }
 
-    /// Rotated loads, and loads of opposite sign, give the same value.
+    /// The added mass does not change if the loads are rotated by 90° or reversed.
     #[test]
     fn what_is_stirred_does_not_depend_on_the_axis() {
         let disc = PressedDisc { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };

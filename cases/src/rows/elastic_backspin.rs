@@ -1,5 +1,5 @@
-//! Backspin of an elastic grain on a rigid plane and on a deformable one: readings of both cases, and reference values
-//! of an independent prototype for the sphere.
+//! Measurements and claims shared by the backspin cases of an elastic grain on a rigid and on a deformable plane. The
+//! reference values of the sphere come from an independent prototype.
 
 use crate::exact::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct Load {
     /// Number of grains.
     pub grains: usize,
-    /// Solver.
+    /// Name of the solver, such as `dem:lammps`.
     pub solver: String,
     /// Resolution.
     pub resolution: String,

@@ -33,7 +33,7 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Returns true if this is a complete list of `grains` grains.
+    /// Returns true if the list has a single partition that is valid for `grains` grains and this layout.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }

@@ -81,7 +81,7 @@ impl ThreadPartition {
         }
     }
 
-    /// Returns true if this is a complete list of `grains` grains.
+    /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { near, across, rows, .. } = self;
         let shifted = across.shift.len() == across.partner.len() || across.len() == 0;

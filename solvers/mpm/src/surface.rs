@@ -293,7 +293,7 @@ impl<S: Space> Tracers<S> {
     }
 }
 
-/// Returns the unit vector.
+/// Normalises a non-zero vector.
 #[inline(always)]
 fn unit<S: Space>(vector: S::Vector) -> S::Vector {
     vector * (1.0 / S::dot(vector, vector).sqrt())

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 pub(crate) struct Stepping {
     /// Time step Δt (s).
     pub(crate) time_step: f64,
-    /// Number of small steps of the constraint solver in a step.
+    /// Substeps of rapier's constraint solver per time step Δt (`num_solver_iterations`).
     pub(crate) iterations: usize,
     /// Length that makes rapier's tolerances absolute (m): the mean radius.
     pub(crate) length: f64,

@@ -53,7 +53,7 @@ pub trait Stepper {
         Brief::of_look(&self.look(false))
     }
 
-    /// Returns the counts so far, without times.
+    /// Returns the work counters so far, such as steps, contact evaluations and neighbour builds.
     fn counts(&self) -> Counts;
 
     /// Returns the state after the last step, as the initial state of another scene; `None` if the solver does not

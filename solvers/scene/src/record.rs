@@ -165,7 +165,7 @@ pub enum Partner {
 pub struct ContactState {
     /// Grain, by id.
     pub grain: u32,
-    /// Partner of the grain.
+    /// Grain, body or wall on the other side of the contact.
     pub partner: Partner,
     /// Contact point (m), in the middle of the overlap.
     pub point: Vector3<f64>,
