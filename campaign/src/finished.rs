@@ -29,7 +29,7 @@ pub struct Entry {
 pub enum TaskResult<T> {
     /// No result yet.
     Nothing,
-    /// Result.
+    /// Result that the task stored.
     Out(T),
     /// Message of a crash of our program.
     Crash(String),

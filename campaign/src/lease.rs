@@ -21,7 +21,7 @@ const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(60), abandoned_af
 /// File extension of leases.
 const ENDING: &str = "json";
 
-/// Contents of a lease.
+/// Contents of a lease file: the worker and its task ranges.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeaseContents {
     /// Name of the worker.

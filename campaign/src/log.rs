@@ -20,7 +20,7 @@ const SYNC: Duration = Duration::from_secs(5);
 /// Hexadecimal digits of a checksum.
 const DIGITS: usize = 16;
 
-/// A worker.
+/// Process that runs tasks of a plan, with its machine and job.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Worker {
     /// Unique name.
@@ -46,7 +46,7 @@ pub struct Worker {
 /// Final state of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// Successful.
+    /// The run ended without an error.
     Done,
     /// Ended in a typed error, which is the result.
     Failed,
@@ -71,7 +71,7 @@ impl State {
 /// Line of a result file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<'a> {
-    /// Task.
+    /// Id of the finished task.
     pub id: Id,
     /// Final state of the task.
     pub state: State,

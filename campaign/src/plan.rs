@@ -101,7 +101,7 @@ impl Head {
     }
 }
 
-/// A plan.
+/// Plan read from its directory.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Directory of the plan.

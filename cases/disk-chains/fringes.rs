@@ -24,7 +24,7 @@ struct Chain {
     seen: &'static str,
 }
 
-/// Figs 9, 10 and 11.
+/// Chains of Figs 9, 10 and 11 of the paper.
 const CHAINS: [Chain; 3] = [
     Chain {
         variant: "line",

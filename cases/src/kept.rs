@@ -79,7 +79,7 @@ pub struct StorableRun {
     pub case: &'static Case,
     /// Claim that reads the run.
     pub claim: Claim,
-    /// Run.
+    /// Run whose result is stored.
     pub run: Run,
     /// True for the run of the negative control.
     pub wrong: bool,

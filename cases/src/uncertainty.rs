@@ -21,7 +21,7 @@ pub struct StoredEstimates {
     pub date: String,
     /// Rule of the estimation.
     pub rule: String,
-    /// Estimates.
+    /// One estimate for each claim with an estimated tolerance.
     #[serde(default)]
     pub estimate: Vec<Estimate>,
 }

@@ -15,7 +15,7 @@ pub struct Grains {
 pub struct Column {
     /// Name in tables.
     pub name: &'static str,
-    /// Description.
+    /// Quantity in words, for summaries and figures.
     pub words: &'static str,
     /// SI unit in three dimensions; `1` for a pure number.
     pub unit: &'static str,

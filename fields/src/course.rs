@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 /// The elements of one snapshot.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Step.
+    /// Step number of the frame.
     pub step: u64,
     /// Time (s); NaN if unknown.
     pub time: f64,

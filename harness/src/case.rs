@@ -36,7 +36,7 @@ pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
 pub struct Case {
     /// Name of the case on the command line, and of its folder.
     pub name: &'static str,
-    /// Title.
+    /// Title of the case in the report.
     pub title: &'static str,
     /// Summary of all claims, in one or two sentences.
     pub claim: &'static str,

@@ -52,7 +52,7 @@ pub enum Expectation {
     Refusal,
 }
 
-/// A claim.
+/// Claim of a case: runs, measured quantity, expectation, tolerance and negative control.
 #[derive(Clone)]
 pub struct Claim {
     /// Measured quantity, in words.
@@ -63,7 +63,7 @@ pub struct Claim {
     pub scope: Scope,
     /// Runs that the claim reads. The first run gives the result its variant, solver and expected outcome.
     pub runs: Vec<Run>,
-    /// Expectation.
+    /// Kind of expectation, such as a value, a bound or an order of convergence.
     pub expectation: Expectation,
     /// Source of the expectation.
     pub source: Source,

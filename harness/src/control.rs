@@ -53,7 +53,7 @@ impl FailureMode {
 pub struct Control {
     /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
-    /// Wrong physics.
+    /// Change of the scene, of the run or of its reading.
     pub wrong: WrongPhysics,
     /// Way in which the claim must fail.
     pub red: FailureMode,

@@ -25,7 +25,7 @@ pub enum Evidence {
 }
 
 impl Evidence {
-    /// All kinds.
+    /// All kinds, from the strongest to the weakest.
     pub const ALL: [Self; 8] = [
         Self::Analytic,
         Self::Experiment,

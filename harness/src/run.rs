@@ -20,7 +20,7 @@ pub struct Run {
     pub data: Option<&'static Data>,
     /// Name of the solver.
     pub solver: &'static str,
-    /// Resolution.
+    /// Time step, substeps or cells of the run.
     pub resolution: Resolution,
     /// A change of the scene that belongs to the claim, such as another stiffness in a sweep. Its name distinguishes
     /// runs.

@@ -3,7 +3,7 @@
 use crate::run::FinishedRun;
 use serde::{Deserialize, Serialize};
 
-/// Origin of a tolerance.
+/// Way in which the size of a tolerance was determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOrigin {
@@ -36,7 +36,7 @@ impl ToleranceOrigin {
     }
 }
 
-/// A tolerance.
+/// Largest |error| that passes, with its origin and reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// Largest |error| that passes. For an estimate, the limit for external solvers; for rounding, the limit per step.

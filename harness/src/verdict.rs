@@ -113,7 +113,7 @@ pub struct Verdict {
     pub unit: String,
     /// Measured value; absent if the run crashed.
     pub value: Option<f64>,
-    /// Expectation.
+    /// Expected value, bound, band or order; absent if it is unknown.
     pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,

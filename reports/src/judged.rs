@@ -26,11 +26,11 @@ pub struct ExternalResults {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// Case.
+    /// Name of the case.
     pub case: String,
     /// Variant of the scene.
     pub variant: String,
-    /// Resolution.
+    /// Resolution in words, such as `dt=.01`.
     pub resolution: String,
     /// Measured quantity, in words.
     pub quantity: String,
@@ -38,7 +38,7 @@ pub struct Row {
     pub unit: String,
     /// Measured value; absent if nothing was measured.
     pub value: Option<f64>,
-    /// Expectation.
+    /// Expected value, bound, band or order; absent if it is unknown.
     pub expected: Option<ExpectedValue>,
     /// Signed error, in units of the result's scale.
     pub error: Option<f64>,
@@ -64,7 +64,7 @@ pub struct Count {
     pub red: usize,
     /// Results that show nothing, or a documented error.
     pub amber: usize,
-    /// Controls.
+    /// Number of negative controls that were run.
     pub controls: usize,
     /// Controls that failed as required.
     pub controls_red: usize,

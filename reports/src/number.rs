@@ -71,7 +71,7 @@ pub fn seconds(seconds: f64) -> String {
     append_unit(significant(seconds * scale, 3), unit)
 }
 
-/// Returns `10ⁿ`.
+/// Returns `10ⁿ` with a superscript exponent.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))

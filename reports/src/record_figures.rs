@@ -24,7 +24,7 @@ const FEWEST: usize = 8;
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
-/// A record and its name.
+/// Record of a run, with the name that distinguishes it in figures.
 pub struct NamedRecord<'a> {
     /// Title of its panels.
     pub name: String,

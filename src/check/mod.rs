@@ -87,7 +87,7 @@ pub enum CheckError {
     },
 }
 
-/// Options of a check.
+/// Accepted incompleteness and time steps, and extent of the power search.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// True if the output may end early or have few samples.

@@ -18,7 +18,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench check`.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or your own scene file.

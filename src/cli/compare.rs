@@ -18,7 +18,7 @@ use grainbench::reports::{Report, Section, number};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench compare`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Reference output: grains in any format that `check` reads, or a CSV table; plain, gzip or zstd.

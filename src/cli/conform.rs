@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench conform`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Solvers, by name or manifest; all built-in solvers by default.

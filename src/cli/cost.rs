@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench cost`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases to measure; all cases with an exact solution by default.

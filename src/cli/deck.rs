@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Default time step of the user's scenes, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Arguments of the command.
+/// Arguments of `grainbench deck`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench effects`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases, or your own scene file; all cases by default.

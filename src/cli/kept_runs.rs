@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Arguments of `keep`.
+/// Arguments of `grainbench reference keep`.
 #[derive(clap::Args)]
 pub(crate) struct KeepArguments {
     /// Cases; all cases with stored results by default.

@@ -37,7 +37,7 @@ const MOST_STEPS: u64 = 600_000;
 /// amplify rounding errors.
 const MOST_TO_COMPARE: u64 = 1000;
 
-/// Arguments of the command.
+/// Arguments of `grainbench race`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scenes of grains, by case or file.

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Subcommands of `grainbench reference`.
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
     /// Make stored runs with the installed programs.

@@ -21,7 +21,7 @@ use grainbench::store::refuse_mixed;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench report`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`, or directory of a plan.

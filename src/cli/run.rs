@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench run`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases, patterns such as 'incline-*' or '*/60deg*', or folders with `scene.toml` and `claims.toml`; all built-in cases by

@@ -8,7 +8,7 @@ use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneForm
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench scene`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.

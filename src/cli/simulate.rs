@@ -30,7 +30,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench simulate`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scene file, or file of a sweep over parameters, which names its solvers.

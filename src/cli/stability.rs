@@ -29,7 +29,7 @@ const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 /// Shortest time between two updates of the report.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Arguments of the command.
+/// Arguments of `grainbench stability`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Assemblies and difficult cases, by name or prefix; all by default.

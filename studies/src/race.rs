@@ -28,7 +28,7 @@ pub struct Track {
     pub name: String,
     /// The scene.
     pub scene: Scene,
-    /// Resolution.
+    /// Time step of all runs.
     pub resolution: Resolution,
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],

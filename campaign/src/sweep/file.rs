@@ -9,7 +9,7 @@ use toml::{Table, Value};
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
-    /// Title.
+    /// Title of the report.
     pub(super) title: String,
     /// Description in one or two sentences.
     #[serde(default)]

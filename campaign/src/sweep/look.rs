@@ -16,7 +16,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// An evaluated quantity.
+/// Quantity that a sweep evaluates at each point.
 pub(super) enum EvaluatedQuantity {
     /// Claim of the case, which is recomputed for the parameters of the scene, and an optional limit of its error.
     Gate(Box<Claim>, Option<f64>),
@@ -37,7 +37,7 @@ pub(super) struct SweepQuantity {
     allowed: Option<f64>,
 }
 
-/// A run that is evaluated.
+/// Finished run of a sweep point, with the scene and the factors of the point.
 pub(super) struct EvaluatedRun<'a> {
     /// Scene text with all keys as set for this point.
     pub(super) source: &'a SceneSource,

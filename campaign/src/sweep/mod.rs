@@ -43,7 +43,7 @@ const PROGRAM: f64 = 4.0;
 /// Duration (s) of the reference timing before and after each timed run.
 const REFERENCE: f64 = 2e-3;
 
-/// A sweep.
+/// Sweep read from its file, with the scene and the design points.
 pub struct Sweep {
     /// Path of the file, for error messages.
     name: String,

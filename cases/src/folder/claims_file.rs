@@ -14,11 +14,11 @@ pub(super) struct ClaimsFile {
     /// Limitations of the test.
     #[serde(default)]
     pub(super) weakness: String,
-    /// Claims.
+    /// Tables `[[claims]]` of the file.
     pub(super) claims: Vec<ClaimEntry>,
 }
 
-/// One claim.
+/// Table `[[claims]]`: value, expectation, source, tolerance and control of one claim.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClaimEntry {

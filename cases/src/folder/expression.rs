@@ -13,10 +13,10 @@ const DEEPEST: usize = 100;
 /// Most numbers and names. A chain of operators is as deep as it is long.
 const MOST_TERMS: usize = 1000;
 
-/// Expression.
+/// Arithmetic expression of a claim or sweep file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// Number.
+    /// Literal number.
     Number(f64),
     /// Named number.
     Name(String),

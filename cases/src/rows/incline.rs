@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 pub(crate) struct Incline {
     /// Case, for its variants.
     pub case: &'static Case,
-    /// Slopes.
+    /// Inclined planes of the case, each a variant of the scene.
     pub slopes: &'static [Slope],
     /// Variants for the solver `rigid` (rapier).
     pub rigid: &'static [Row],
@@ -85,7 +85,7 @@ const COMPLIANCE: ClaimFigure = ClaimFigure {
     logarithmic: true,
 };
 
-/// One slope.
+/// Inclined plane: a variant of the scene with one angle and friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
     /// Variant of the scene.

@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 pub struct Peer {
     /// Name of the run.
     pub name: String,
-    /// Its series.
+    /// Time series of its probes.
     pub series: Series,
     /// Series with half the time step; none if this run was not done.
     pub half_step: Option<Series>,
@@ -22,7 +22,7 @@ pub struct Peer {
 pub struct ColumnComparison<'a> {
     /// Name of the column.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit of the column, such as `m/s`.
     pub unit: &'a str,
     /// Scale that differences are divided by.
     pub scale: f64,

@@ -126,7 +126,7 @@ fn pump(record: &mut Record) {
     }
 }
 
-/// A solver with a flaw.
+/// Solver with an artificial flaw, which a conformance test must detect.
 pub struct FlawedSolver<'a> {
     solver: &'a dyn Solver,
     flaw: Flaw,

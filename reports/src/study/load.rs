@@ -16,9 +16,9 @@ pub struct Load {
     pub grains: usize,
     /// Name of the solver, such as `dem:lammps`.
     pub solver: String,
-    /// Resolution.
+    /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
-    /// Timings.
+    /// Repeated timings; empty if the solver was not measured.
     pub laps: Vec<TimingDifference>,
     /// Reason why the solver was not measured.
     pub absent: Option<String>,

@@ -148,7 +148,7 @@ impl Convention {
         wall_rolling: WallRolling::Surface,
     };
 
-    /// All presets.
+    /// All named conventions, the default first.
     pub const ALL: [Self; 4] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS];
 
     /// Returns the options as text, for a record.

@@ -127,7 +127,7 @@ fn portable_by_four<K: FourKernel>(kernel: K) {
     kernel.run(ScalarBackend::<LANES>);
 }
 
-/// Loop compiled for a processor.
+/// Kernel with the instruction set that it is compiled for.
 #[cfg(target_arch = "x86_64")]
 struct CompiledLoop<L, K> {
     lanes: L,

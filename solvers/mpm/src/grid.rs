@@ -166,7 +166,7 @@ pub(crate) struct RowBasis<N> {
     pub(crate) affine: [N; 2],
 }
 
-/// A node of a stencil.
+/// Node of a stencil, with its index and its weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StencilNode<S: Space> {
     /// Slot of the node.

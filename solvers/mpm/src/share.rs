@@ -42,7 +42,7 @@ pub(crate) struct ThreadPartition<S: Space> {
     pub(crate) failure: Option<Failure>,
 }
 
-/// Batches of a body in a partition.
+/// Particle batches of one body in a partition.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyBatches {
     /// Index of the body.

@@ -219,7 +219,7 @@ const SMALLEST: f64 = 0.5;
 /// With one cell, the energy grew by a factor of 2e7 in 60 periods; with 1.5 cells it is constant within .2 %.
 const BETWEEN_SIDES: f64 = 1.5;
 
-/// A running simulation.
+/// Simulation that the main loop advances step by step.
 struct RunningSimulation<'a, S: Space> {
     simulation: Simulation<S>,
     run: Run<'a>,

@@ -28,7 +28,7 @@ pub(crate) struct State<S: Space> {
     /// Velocities of the points one step before the last observation (m/s), because velocities are half a step behind
     /// positions.
     pub(crate) before: Vec<S::Vector>,
-    /// Thread partitions.
+    /// Partition of the particle batches for each thread.
     pub(crate) shares: Vec<ThreadPartition<S>>,
     /// Threads of the run.
     pub(crate) team: Team,

@@ -28,7 +28,7 @@ pub(crate) trait Transfer: Copy + Send + 'static {
 /// v ← (1 − α)(v + Δv) + α v_grid.
 #[derive(Clone, Copy)]
 pub(crate) struct Flip {
-    /// Fraction α.
+    /// Fraction α of the grid velocity in the update.
     pub(crate) pic: f64,
 }
 

@@ -33,7 +33,7 @@ impl Side {
 /// Parameters of a contact law that a rigid contact uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients {
-    /// Friction μ.
+    /// Friction coefficient μ.
     pub(crate) friction: f64,
     /// Coefficient of restitution e.
     pub(crate) restitution: f64,

@@ -160,7 +160,7 @@ impl Solver for Rigid {
     }
 }
 
-/// A running simulation.
+/// Simulation that the main loop advances step by step.
 struct RunningSimulation<'a> {
     simulation: Simulation<'a>,
     step: u64,

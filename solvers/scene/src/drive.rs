@@ -89,7 +89,7 @@ pub struct Course<'a> {
 pub struct LoopOutput {
     /// Time series.
     pub series: Series,
-    /// Snapshots.
+    /// Snapshots that the observer returned for the record.
     pub snapshots: Vec<Snapshot>,
     /// Counts, and the wall-clock time of all steps, relaxation included (s).
     pub cost: Cost,

@@ -39,7 +39,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// All effects.
+    /// All effects in a fixed order.
     pub const ALL: [Self; 12] = [
         Self::Friction,
         Self::Cohesion,

@@ -20,12 +20,12 @@ use std::sync::Arc;
 pub enum Dimension {
     /// Plane (x, y).
     Two,
-    /// Space.
+    /// Spheres in three dimensions.
     Three,
 }
 
 impl Dimension {
-    /// Returns 2 or 3.
+    /// Returns the number of dimensions, 2 or 3.
     #[must_use]
     pub const fn count(self) -> usize {
         match self {
@@ -281,7 +281,7 @@ pub enum Sampling {
     Count(u64),
 }
 
-/// Target of a probe.
+/// Grain, wall, contact or sum whose quantities a probe records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeTarget {
     /// Grain, by index in [`Scene::grains`].
@@ -333,7 +333,7 @@ pub enum BodyName {
 pub struct Probe {
     /// Name. Columns are called `name.quantity`.
     pub name: String,
-    /// Target.
+    /// Recorded object of the scene.
     pub target: ProbeTarget,
 }
 
@@ -383,7 +383,7 @@ pub struct Scene {
     pub start: Start,
     /// Reference length of the cells of a grid (m).
     pub reference_length: f64,
-    /// Walls.
+    /// Walls in the order of the scene file.
     pub walls: Vec<Wall>,
     /// Groups of grains with prescribed motion.
     pub driven: Vec<Driven>,

@@ -407,13 +407,13 @@ impl fmt::Display for FailedParticle {
 pub struct SimulationFailure {
     /// Time (s).
     pub time: f64,
-    /// Step.
+    /// Step number at the failure.
     pub step: u64,
     /// Particle that broke.
     pub subject: FailedParticle,
     /// Last position (m).
     pub position: Vector3<f64>,
-    /// Cause.
+    /// Detected reason of the failure.
     pub cause: Cause,
     /// Time step (s).
     pub time_step: f64,
@@ -448,11 +448,11 @@ pub enum RunError {
     NotFinite {
         /// Time (s).
         time: f64,
-        /// Step.
+        /// Step number of the sample.
         step: u64,
         /// Column of the time series.
         column: String,
-        /// Value.
+        /// Invalid value: NaN or infinity.
         value: f64,
     },
     /// The resolution is not valid for this solver.
@@ -497,7 +497,7 @@ pub enum RunError {
     Interrupted {
         /// Time (s).
         time: f64,
-        /// Step.
+        /// Number of the last complete step.
         step: u64,
     },
     /// A snapshot could not be stored.
@@ -590,7 +590,7 @@ impl Default for RunOptions {
     }
 }
 
-/// Observer of a run.
+/// Receiver of samples, snapshots and checkpoints during a run.
 pub trait Observer {
     /// Returns the options of the run.
     fn options(&self) -> RunOptions {

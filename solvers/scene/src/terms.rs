@@ -21,7 +21,7 @@ pub struct Terms {
 /// Claimed order of convergence in the time step, for smooth motion without dashpots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// Order.
+    /// Expected order, such as 2.
     pub expected: f64,
     /// Three resolutions; each has half the time step of the previous one. The run lasts ten critical time steps.
     pub levels: [Resolution; 3],

@@ -27,7 +27,7 @@ pub(crate) trait Study: Sync {
     fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
 }
 
-/// Options of a report.
+/// Output directory, format and comparison of a report.
 pub(crate) struct ReportOptions<'a> {
     /// Directory of the report.
     pub(crate) out: &'a Path,

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// Discs along each edge of the square packing.
 const EDGES: [u32; 3] = [1, 10, 100];
-/// Solvers and their resolutions.
+/// Measured solvers, each at one resolution.
 const SOLVERS: [(&str, Resolution); 5] = [
     ("dem", Resolution::CriticalFraction(Resolution::FRACTION)),
     ("rigid", Resolution::substeps(Resolution::SUBSTEPS)),

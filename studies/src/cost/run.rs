@@ -43,7 +43,7 @@ const UNKNOWN: &str = "what no finer step takes away";
 /// Errors below this are rounding errors, not a floor.
 const ROUNDING: f64 = 1e-11;
 
-/// Selection of points.
+/// Points to measure, and extent of the measurement.
 #[derive(Clone, Debug, Default)]
 pub struct PointSelection {
     /// Solvers to measure; all if empty.
@@ -109,7 +109,7 @@ pub struct Meter<'a> {
     pub program: String,
     /// Cache of finished points.
     pub cache: &'a ResultCache,
-    /// Selection of points.
+    /// Points to measure.
     pub wanted: PointSelection,
     /// Finds solvers by name.
     pub solvers: &'a dyn Solvers,

@@ -41,7 +41,7 @@ pub struct Ledger {
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
-    /// Runs without an effect, by effect and run.
+    /// Runs with one effect switched off. The key is the effect, and the run in words.
     without: BTreeMap<(Effect, String), Result<FinishedRun, RunError>>,
 }
 

@@ -17,9 +17,9 @@ pub struct StudyInput<'a> {
     pub name: String,
     /// The scene.
     pub scene: &'a Scene,
-    /// Solver.
+    /// Solver that runs the scene with and without each effect.
     pub solver: &'a dyn Solver,
-    /// Resolution.
+    /// Resolution of all runs.
     pub resolution: Resolution,
     /// Smallest relevant change, relative to the largest value of a probe.
     pub matters: f64,

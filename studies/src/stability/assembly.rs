@@ -51,10 +51,10 @@ enum Judge {
     Energy,
 }
 
-/// An assembly.
+/// Assembly of grains whose largest stable time step is measured.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// Name.
+    /// Name in tables, such as `square lattice of discs`.
     pub name: &'static str,
     /// κ = k_s/k_n of contacts that do not slip; `None` for frictionless assemblies in which κ is not varied.
     pub kappa: Option<f64>,

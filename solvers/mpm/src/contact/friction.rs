@@ -114,11 +114,11 @@ impl<S: Space> Tangential<S> for AbsentEffect {
 /// Maximum number of tangential springs of a tracer.
 const AT_ONCE: usize = 4;
 
-/// A tangential spring.
+/// Tangential contact spring of a tracer to one partner.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Spring<S: Space> {
-    /// Contact partner.
+    /// Body or wall at the other end.
     other: ContactPartner,
     /// Number of the evaluation at which it was last in contact.
     stamp: u64,

@@ -24,9 +24,9 @@ use std::path::Path;
 /// Checks the condition at the end of a run.
 type Check = fn(&Scene, &Record) -> Result<(), Failure>;
 
-/// A hard case.
+/// Hard case: a scene in which solvers may fail, and the required property.
 pub struct HardCase {
-    /// Name.
+    /// Name in tables, such as `mass-ratio-1e6`.
     pub name: String,
     /// Description of the condition.
     pub must: &'static str,
