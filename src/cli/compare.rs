@@ -37,7 +37,8 @@ pub(crate) struct Arguments {
     /// Time step in seconds, one for both or one for each, for files without times.
     #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     time_step: Vec<f64>,
-    /// Accept samples that exist in one file only: amber instead of red. The whole frames of a truncated file are compared.
+    /// Report samples that exist in only one file as amber instead of red. The whole frames of a truncated file are
+    /// compared.
     #[arg(long)]
     partial: bool,
     /// Treat amber results as red.

@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Number of steps of the short run and of the long run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]
     steps: Option<[u64; 2]>,
-    /// Select a solver or program; a manifest adds a program to LAMMPS. Repeatable.
+    /// Select a solver or program. A manifest adds a program to the comparison with LAMMPS. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Directory for `race.json` with each timing, and `race.md`.

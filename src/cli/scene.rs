@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     format: Format,
     #[command(flatten)]
     step: Step,
-    /// Cells of a grid per reference length, instead of a time step, for solvers with deformable bodies.
+    /// Number of cells per reference length, for solvers with deformable bodies. It replaces the time step.
     #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
     cells: Option<f64>,
 }

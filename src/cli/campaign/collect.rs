@@ -24,8 +24,8 @@ pub(crate) struct Arguments {
 /// Options of the report of a plan.
 #[derive(Default, clap::Args)]
 pub(crate) struct CollectOptions {
-    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. A plan of costs compares its times
-    /// with the last one.
+    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. For a plan made by `cost`,
+    /// times are compared with the last of these reports.
     #[arg(long, value_name = "DIR|results.json")]
     pub(crate) against: Vec<PathBuf>,
     /// Treat amber results as red.
