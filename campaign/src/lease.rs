@@ -1,4 +1,4 @@
-//! Leases: which worker is at which tasks.
+//! Leases, which assign tasks to workers.
 //!
 //! A worker renews its lease at intervals. A lease expires if it is not renewed in time or if its process has ended;
 //! other workers may then take its unfinished tasks.
@@ -34,7 +34,7 @@ pub struct LeaseContents {
     pub job: Option<String>,
     /// Ranges of leased task indices: the first index, and one past the last.
     pub tasks: Vec<[usize; 2]>,
-    /// Number of tasks that the worker has done.
+    /// Number of tasks that the worker has finished.
     pub done: usize,
 }
 
@@ -102,7 +102,7 @@ impl Lease {
         self.said.has(place)
     }
 
-    /// Renews the lease and records the number of tasks done.
+    /// Renews the lease and records the number of finished tasks.
     ///
     /// # Errors
     /// When the disk rejects the write.

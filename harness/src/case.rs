@@ -70,10 +70,11 @@ pub struct Home {
     pub made: Option<&'static SceneCache>,
 }
 
-/// Cache of scenes with many grains, by case and variant. Cases read each other's scenes, and parsing one takes time.
+/// Cache of scenes with many grains, by case and variant. Several cases read the same scene, and parsing a scene takes
+/// time.
 pub type SceneCache = Mutex<Vec<(&'static str, String, Scene)>>;
 
-/// Smallest number of grains for which a scene is cached.
+/// Smallest number of grains of a cached scene.
 const MANY: usize = 1000;
 
 impl Case {

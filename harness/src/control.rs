@@ -68,7 +68,7 @@ impl Control {
         Self { name, wrong, red: FailureMode::Value, set: Set::Main, resolution: None }
     }
 
-    /// Repeats stored runs under this control only in the long tier.
+    /// Makes the control repeat stored runs only in the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }

@@ -1,4 +1,4 @@
-//! Claims about curves: a time series that follows an exact solution, or an error that falls with the resolution.
+//! Claims about curves. A time series must follow an exact solution, or an error must decrease with the resolution.
 //!
 //! The figure of such a claim plots the data that the claim compares.
 
@@ -241,7 +241,7 @@ fn thinned(points: Points) -> Points {
     points.into_iter().step_by(every).collect()
 }
 
-/// Returns no figures, for a case whose figures all come from its claims.
+/// Returns an empty list. Cases use it if all their figures come from claims.
 ///
 /// # Errors
 /// Never.

@@ -1,4 +1,4 @@
-//! Target quantities of accuracy studies: a quantity with an exact solution, and the scene for each method.
+//! Target quantities of accuracy studies. Each has an exact solution, and a scene for each method.
 //!
 //! The target quantities of a case come from its claims, so that a new case has its diagram without further input. They
 //! are quantities with an analytic solution, each method with the scene of its claim. A case folder with a `cost.rs`

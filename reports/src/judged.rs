@@ -1,4 +1,4 @@
-//! Stored results of an external solver: results and controls, version and adapter, date and machine.
+//! Stored results of an external solver, with the version of the solver, the hash of its adapter, date and machine.
 
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
@@ -62,7 +62,7 @@ pub struct Count {
     pub pass: usize,
     /// Results that fail, crashed, or have a reference of another scene.
     pub red: usize,
-    /// Results that show nothing, or a documented error.
+    /// Results without a judged value or with a documented error.
     pub amber: usize,
     /// Number of negative controls that were run.
     pub controls: usize,

@@ -59,7 +59,7 @@ pub fn count(count: u64) -> String {
     text
 }
 
-/// Returns a duration with a suitable prefix and three significant digits.
+/// Returns a duration (s) with an SI prefix and three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
     let (scale, unit) = match seconds.abs() {

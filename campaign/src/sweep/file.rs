@@ -27,7 +27,7 @@ pub(super) struct File {
     /// Number of runs of each point; above 1 only for timed sweeps.
     #[serde(default = "once")]
     pub(super) repetitions: u32,
-    /// True to measure times: then nothing else may run at the same time.
+    /// True to measure times. Nothing else may then run at the same time.
     #[serde(default)]
     pub(super) timed: bool,
     /// Factors that are varied.
@@ -157,7 +157,7 @@ pub(super) struct QuantityEntry {
     pub(super) allowed: Option<f64>,
 }
 
-/// A number, or arithmetic.
+/// Number, or arithmetic expression as text.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 pub(super) enum Formula {

@@ -58,7 +58,7 @@ pub struct Sweep {
     line: Option<Expression>,
 }
 
-/// A solver at a level.
+/// Solver with one resolution level and its scene keys.
 struct Level {
     asked: usize,
     resolution: Resolution,
@@ -102,7 +102,7 @@ impl Formula {
 }
 
 impl Sweep {
-    /// Returns true if a file is a sweep: it has a table of factors, which a scene has not.
+    /// Returns true if a file is a sweep, which has a table `factors`. A scene file has none.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
         let table = written(path).ok().and_then(|text| text.parse::<toml::Table>().ok());

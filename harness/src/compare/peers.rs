@@ -129,7 +129,7 @@ pub fn against<'a>(
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
         // Contact conventions differ in free vibration and drift. The difference at one time is therefore not
-        // representative, and the largest over time is used.
+        // representative. The largest difference over time is used.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let values_of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
@@ -166,8 +166,8 @@ impl Envelope {
     /// Computes the envelope of two runs at times that they share (s).
     ///
     /// Each value is the larger of two numbers: the largest difference within a window, and the 90th percentile of all
-    /// differences, which is close to the amplitude of an oscillation. A difference at an impact alone therefore widens
-    /// the allowed error only around that impact.
+    /// differences, which is close to the amplitude of an oscillation. A difference that occurs only at an impact
+    /// therefore increases the allowed error only around that impact.
     fn new(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         let mut sorted = off.clone();

@@ -36,7 +36,7 @@ impl EffectResult {
     }
 }
 
-/// Change of a claimed quantity when an effect is switched off.
+/// Errors of a claimed quantity with an effect and without it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shift {
     /// Claimed quantity, in words.

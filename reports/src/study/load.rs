@@ -29,9 +29,9 @@ pub struct Load {
 pub struct TimingDifference {
     /// Everything except steps: reading, set-up, initial neighbour search, relaxation and output (s).
     pub start_up: f64,
-    /// One step (s).
+    /// Processor time of one step (s).
     pub step: f64,
-    /// One second of simulated time (s).
+    /// Processor time per second of simulated time (s).
     pub second: f64,
 }
 

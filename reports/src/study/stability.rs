@@ -35,7 +35,7 @@ pub struct Limit {
     pub default: Option<f64>,
     /// `found` divided by `default`.
     pub margin: Option<f64>,
-    /// Failure above the limit, or reason why there is no number.
+    /// Description of the failure above the limit, or reason why no limit was found.
     pub detail: String,
 }
 

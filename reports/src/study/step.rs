@@ -13,7 +13,7 @@ pub struct TaskCost {
     pub solver: String,
     /// Task: a grain in space, a listed pair, a contact, a material point, or a node.
     pub piece: String,
-    /// Method by which the cost was found.
+    /// Measurement method, in words.
     pub found: String,
     /// Processor time per task and step, for each timing (ns).
     pub nanoseconds: Vec<f64>,

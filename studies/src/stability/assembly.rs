@@ -3,7 +3,7 @@
 //!
 //! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is compressed, so that no contact
 //! opens. Every degree of freedom is perturbed at random by a millionth of the overlap, because a symmetric start never
-//! excites the critical mode. A run is unstable if the perturbation has grown a thousandfold.
+//! excites the critical mode. A run is unstable if the perturbation has grown by a factor of 1000.
 //!
 //! ```text
 //! grain on a wall     ω² = k/m; with a tangential spring κk that does not slip also κ(k/m)(1 + 1/i), i = I/(mR²)
