@@ -1,4 +1,4 @@
-//! Quantities of an element as columns: one list for tables, image data, means and figures.
+//! Quantities of an element as columns. Tables, image data, means and figures use the same list.
 
 use crate::element::Element;
 

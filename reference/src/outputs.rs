@@ -42,8 +42,8 @@ pub struct Sources {
     pub partial: bool,
     /// If true, steps and times are counted from the first sample.
     pub from_first: bool,
-    /// Steps at which snapshots are due, in order. The first snapshot from each of them on is kept, in addition to the
-    /// first and the last of the files.
+    /// Steps at which snapshots are requested, in ascending order. For each, the first snapshot at or after this step
+    /// is kept. The first and the last snapshot of the files are always kept.
     pub snapshot_steps: Vec<u64>,
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-/// Returns the control for the sliding phase: smaller friction.
+/// Returns the negative control for the sliding phase, in which friction is smaller.
 pub(crate) fn slippery() -> Control {
     Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }

@@ -91,7 +91,7 @@ fn enough(values: Vec<f64>, what: &str) -> Result<Vec<f64>, MissingData> {
     }
 }
 
-/// Returns the mean.
+/// Returns the arithmetic mean of some values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
