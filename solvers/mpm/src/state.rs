@@ -1,4 +1,4 @@
-//! State of a simulation: bodies and their material points.
+//! State of a simulation, which consists of bodies and their material points.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -20,7 +20,7 @@ use std::ops::Range;
 /// With a third more batches a step costs little more, while sorting costs up to a tenth of a step.
 const DISORDER: usize = 3;
 
-/// Bodies and points.
+/// Bodies of a simulation with their points, and the partition of the points among threads.
 #[derive(Clone, Debug)]
 pub(crate) struct State<S: Space> {
     pub(crate) bodies: Vec<Body>,

@@ -58,7 +58,7 @@ impl Pairs {
         }
     }
 
-    /// Returns material and inverse mass.
+    /// Returns the index of the material and the inverse mass (1/kg) of a contact partner.
     fn side(&self, side: Side) -> (u16, f64) {
         match side {
             Side::Grain(at) => (self.grains[at].0, 1.0 / self.grains[at].1),
