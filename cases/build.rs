@@ -1,5 +1,5 @@
 //! Generates the registry of cases from the case folders, so that a new case touches only its folder. Also generates a
-//! handle of each work that expected values come from: one for each reference folder with a provenance.
+//! handle for each reference folder with a provenance. Such a folder contains a work from which expected values come.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -36,8 +36,9 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Hash of all files in some folders except tests, by their paths and texts; comments of Rust sources do not count. A package
-/// has none of them: its version and the checksums in its lock identify its sources.
+/// Returns a hash of the paths and texts of all files in some folders, without tests and without comments of Rust
+/// sources. A package does not contain these files. There, its version and the checksums in its lock file identify the
+/// sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
         return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
@@ -66,7 +67,7 @@ fn fingerprint(root: &Path, folders: &[&str]) -> String {
     hasher.finalize().to_hex()[..16].to_owned()
 }
 
-/// The text of a file; of a Rust source the lines of code without their indentation.
+/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation.
 fn code(file: &Path) -> Vec<u8> {
     let bytes = fs::read(file).unwrap_or_default();
     match (file.extension(), str::from_utf8(&bytes)) {

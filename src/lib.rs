@@ -1,4 +1,4 @@
-//! Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
+//! Benchmarks for the accuracy and the computing cost of solvers for granular mechanics.
 //!
 //! This crate is the public interface for authors of solvers. [`judge`] tests a solver with the claims of cases, and
 //! [`conform`] with the conformance properties. `examples/own_solver.rs` is a complete solver.

@@ -72,8 +72,8 @@ fn names() -> String {
 /// Tests a solver with the solver-independent claims of some cases. The solver replaces the solvers that the claims
 /// name.
 ///
-/// It receives the resolutions of the claims, as fractions of the critical time step of a spring contact, and may
-/// interpret them.
+/// The solver receives the resolutions of the claims as fractions of the critical time step of a spring contact. It may
+/// choose its own step instead.
 ///
 /// # Errors
 /// When a case does not exist or has no solver-independent claim.

@@ -17,7 +17,8 @@ use grainbench_scene::solver::{RunError, Solver};
 /// differently.
 pub const ALLOWED: f64 = 1e-6;
 
-/// Repeats a stored run and compares both: point by point while the run is predictable, and by means after it.
+/// Repeats a stored run and compares both runs. It compares sample by sample while the run is predictable, and means
+/// after that.
 ///
 /// # Errors
 /// When the scene of the case is wrong.
@@ -39,7 +40,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     let ended = |error: &RunError| vec![row.clone().ended(error)];
     let stored = match StoredRun::load(&directory) {
         Ok(stored) => stored,
-        // A damaged file is an error of this project, not of the program.
+        // A damaged stored file is our error, not an error of the external program.
         Err(error) => {
             return Ok(vec![row.left(Outcome::Fail, unusable(reference.program, &error).to_string())]);
         }

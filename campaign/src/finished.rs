@@ -16,7 +16,7 @@ pub struct Entry {
     pub state: State,
     /// Duration (s).
     pub seconds: f64,
-    /// System load during the task: the average number of processes that wanted a core.
+    /// System load during the task: the average number of runnable processes.
     pub load: Option<f64>,
     /// Index of the worker in [`FinishedTasks::workers`].
     pub worker: usize,
@@ -24,12 +24,12 @@ pub struct Entry {
     pub json: Box<str>,
 }
 
-/// Result of a task, read.
+/// Result of a task, deserialised from its JSON text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TaskResult<T> {
     /// No result yet.
     Nothing,
-    /// Result.
+    /// Result that the task stored.
     Out(T),
     /// Message of a crash of our program.
     Crash(String),
@@ -42,9 +42,9 @@ pub struct FinishedTasks {
     pub entries: HashMap<Id, Entry>,
     /// Workers with a result file.
     pub workers: Vec<Worker>,
-    /// Number of lines that are cut off or damaged.
+    /// Number of truncated or damaged lines.
     pub damaged: usize,
-    /// Number of repeated results of tasks that were done already.
+    /// Number of results for tasks that already had a result.
     pub twice: usize,
 }
 
@@ -100,7 +100,7 @@ impl FinishedTasks {
         self.workers.push(worker);
         let mut lines = lines.peekable();
         while let Some(line) = lines.next() {
-            // The text after the last newline is empty or a line that was cut off.
+            // The text after the last newline is empty or a truncated line.
             let is_last = lines.peek().is_none();
             match Line::read(line).filter(|_| !is_last) {
                 Some(line) => self.take(&line, place, with_results),
@@ -110,7 +110,7 @@ impl FinishedTasks {
         }
     }
 
-    /// Adds a line: the first successful result of a task counts. A result of a failed task is replaced by a later one.
+    /// Adds a line. The first successful result of a task counts. A later result replaces the result of a failed task.
     fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
         let Line { id, state, seconds, load, json } = *line;
         let json = if with_results { json } else { "" };

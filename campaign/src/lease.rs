@@ -1,4 +1,4 @@
-//! Leases: which worker is at which tasks.
+//! Leases, which assign tasks to workers.
 //!
 //! A worker renews its lease at intervals. A lease expires if it is not renewed in time or if its process has ended;
 //! other workers may then take its unfinished tasks.
@@ -21,7 +21,7 @@ const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(60), abandoned_af
 /// File extension of leases.
 const ENDING: &str = "json";
 
-/// Contents of a lease.
+/// Contents of a lease file: the worker and its task ranges.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeaseContents {
     /// Name of the worker.
@@ -34,7 +34,7 @@ pub struct LeaseContents {
     pub job: Option<String>,
     /// Ranges of leased task indices: the first index, and one past the last.
     pub tasks: Vec<[usize; 2]>,
-    /// Number of tasks that the worker has done.
+    /// Number of tasks that the worker has finished.
     pub done: usize,
 }
 
@@ -102,7 +102,7 @@ impl Lease {
         self.said.has(place)
     }
 
-    /// Renews the lease and records the number of tasks done.
+    /// Renews the lease and records the number of finished tasks.
     ///
     /// # Errors
     /// When the disk rejects the write.

@@ -1,8 +1,8 @@
 //! Campaigns: many runs from one plan.
 //!
-//! A [`plan`] is a directory with a line for each [`task`]. A worker does a [`shard`] of tasks under a [`lease`] and
-//! appends its results to its own [`log`]. After a crash, each line of the log is either whole or ignored.
-//! [`finished`] tasks are not repeated, whichever worker did them. A batch system ([`slurm`]) only starts workers.
+//! A [`plan`] is a directory with a line for each [`task`]. A worker runs a [`shard`] of tasks under a [`lease`] and
+//! appends the results to its own [`log`]. After a crash, each line of the log is either whole or ignored. [`finished`]
+//! tasks are not repeated by any worker. A batch system ([`slurm`]) only starts workers.
 //!
 //! A plan belongs to a study of this program or to a [`sweep`], a design over scene keys, solvers and levels.
 

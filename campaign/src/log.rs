@@ -1,7 +1,7 @@
 //! Results of one worker: a file to which only this worker appends, one line for each task.
 //!
-//! A line is `ID STATE SECONDS LOAD SUM JSON`, with a checksum over all other fields. The checksum detects cut or
-//! damaged lines; their tasks are repeated. The first line identifies the worker.
+//! A line is `ID STATE SECONDS LOAD SUM JSON`, with a checksum over all other fields. The checksum detects truncated or
+//! damaged lines. The tasks of these lines are repeated. The first line identifies the worker.
 
 use crate::task::Id;
 use grainbench_store::WriteError;
@@ -15,12 +15,12 @@ use std::time::{Duration, Instant};
 const MAGIC: &str = "grainbench-results 1 ";
 /// File extension of result files.
 pub const ENDING: &str = "log";
-/// Longest time between two syncs: a power failure loses at most the results of this time.
+/// Longest time between two syncs. A power failure loses at most the results of this time.
 const SYNC: Duration = Duration::from_secs(5);
 /// Hexadecimal digits of a checksum.
 const DIGITS: usize = 16;
 
-/// A worker.
+/// Process that runs tasks of a plan, with its machine and job.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Worker {
     /// Unique name.
@@ -46,11 +46,11 @@ pub struct Worker {
 /// Final state of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// Successful.
+    /// The run ended without an error.
     Done,
-    /// Ended in a typed error, which is the result.
+    /// The run ended with a typed error, which is the result.
     Failed,
-    /// Our program panicked: there is a message and no result.
+    /// Our program panicked. There is a message and no result.
     Crashed,
 }
 
@@ -71,13 +71,13 @@ impl State {
 /// Line of a result file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<'a> {
-    /// Task.
+    /// Id of the finished task.
     pub id: Id,
     /// Final state of the task.
     pub state: State,
     /// Duration (s).
     pub seconds: f64,
-    /// System load during the task (processes that wanted a core); `None` if unknown.
+    /// System load during the task (average number of runnable processes); `None` if unknown.
     pub load: Option<f64>,
     /// Result as JSON.
     pub json: &'a str,

@@ -1,4 +1,4 @@
-//! Plans: a directory with the tasks (`tasks.jsonl`) and their origin (`plan.toml`).
+//! Plans. A plan is a directory with the tasks (`tasks.jsonl`) and their origin (`plan.toml`).
 
 use crate::fault::Fault;
 use crate::shard;
@@ -54,7 +54,7 @@ pub struct Head {
     pub shards: u32,
     /// Expected time of all tasks on one core (s).
     pub seconds: f64,
-    /// True if wall times are measured: then nothing else may run at the same time.
+    /// True if wall-clock times are measured. Nothing else may then run at the same time.
     pub timed: bool,
     /// Time (s) after which a lease expires if it is not renewed.
     #[serde(default = "lease")]
@@ -101,7 +101,7 @@ impl Head {
     }
 }
 
-/// A plan.
+/// Plan read from its directory.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Directory of the plan.
@@ -135,7 +135,8 @@ impl Plan {
             head.shards = shard::count(&tasks);
         }
         let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
-        // The head is moved first: a directory with a head takes a new plan after a kill between the two moves.
+        // The head is moved first. If the process is killed between the two moves, the directory has a head and can
+        // take a new plan.
         let mut out = StagedDir::new(path)?.without_manifest();
         out.write(HEAD, words)?;
         out.write(TASKS, text)?;
@@ -192,7 +193,7 @@ impl Plan {
         Ok(head)
     }
 
-    /// Checks that the program and the inputs are those that the plan was made with.
+    /// Checks that the program and the inputs have not changed since the plan was made.
     ///
     /// # Errors
     /// The error names the program or the input that differs.

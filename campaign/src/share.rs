@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Returns the number of items that were not started.
 ///
-/// The threads are plain threads because claims wait for shared runs. In a thread pool, a waiting thread may be given
+/// The threads are not from a pool, because claims wait for shared runs. In a thread pool, a waiting thread may get
 /// another claim, and then a run could wait for itself.
 pub fn share(pieces: usize, at_once: usize, goes_on: impl Fn() -> bool + Sync, work: impl Fn(usize) + Sync) -> usize {
     let next = AtomicUsize::new(0);

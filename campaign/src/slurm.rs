@@ -1,4 +1,4 @@
-//! Slurm: a job array over the shards of a plan that have unfinished tasks.
+//! Submission to Slurm: one job array over the shards with unfinished tasks.
 //!
 //! Slurm only starts workers. A task is finished when it has a result; accounting data are not used. If `squeue` does
 //! not answer, the state of the queue is unknown, not empty.

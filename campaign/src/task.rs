@@ -76,11 +76,11 @@ impl<'de> Deserialize<'de> for Id {
     }
 }
 
-/// A task.
+/// One run or measurement of a plan, with the inputs that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Task {
-    /// Id.
+    /// Hash of the inputs, which identifies the task in result files.
     pub id: Id,
     /// Case and variant, or path of the scene file.
     pub scene: String,

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 const BEATS: f64 = 12.0;
 /// Shortest interval between checks of other workers' leases.
 const LOOK: Duration = Duration::from_millis(500);
-/// Ratio of the pause to the duration of a check: checks take at most 1/20 of the time.
+/// Ratio of the pause between checks to the duration of a check. Checks take at most 1/20 of the time.
 const SHARE: u32 = 20;
 
 /// Request for a worker.
@@ -32,9 +32,9 @@ pub struct WorkRequest {
     pub again: bool,
 }
 
-/// Observer of progress, which can also stop the work.
+/// Observer of progress, which can also stop the worker.
 pub trait Watch: Send + Sync {
-    /// Returns true if work should continue.
+    /// Returns true if the worker should start further tasks.
     fn goes_on(&self) -> bool {
         true
     }
@@ -59,7 +59,7 @@ pub struct Summary {
     pub tasks: usize,
     /// Number of tasks that were finished before.
     pub before: usize,
-    /// Number of tasks done by this worker.
+    /// Number of tasks that this worker ran.
     pub done: usize,
     /// Number of failed or crashed tasks among `done`.
     pub failed: usize,

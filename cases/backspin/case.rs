@@ -53,7 +53,7 @@ fn soft(variant: &str) -> Option<(OneGrain, f64)> {
     Some((OneGrain::from_scene(&scene), STEP.steps(&scene).ok()?.0))
 }
 
-/// Returns the tolerance for friction that the first step may lack, halfway through the slide.
+/// Returns the tolerance halfway through the slide: the first step may have no friction.
 fn first_step(variant: &str) -> Tolerance {
     computed(
         soft(variant).map_or(f64::NAN, |(grain, step)| 2.0 * step / sliding(&grain)),
@@ -62,7 +62,7 @@ fn first_step(variant: &str) -> Tolerance {
     )
 }
 
-/// Returns the tolerance for the effect of a soft contact on the displacement.
+/// Returns the tolerance of the displacement: the effect of a soft contact.
 fn fallen_behind(variant: &str) -> Tolerance {
     let behind = |(grain, step): (OneGrain, f64)| {
         (grain.tail() + grain.friction * grain.onto * step * sliding(&grain)) / grain.rigid_backspin(1.0).x

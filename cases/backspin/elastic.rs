@@ -1,6 +1,6 @@
 //! The grain as an elastic body, with the material point method.
 //!
-//! An elastic grain rolls on a flattened side, at a smaller height, and becomes a few per cent faster than a rigid
+//! An elastic grain rolls on a flattened side. Its centre is lower, and it becomes a few per cent faster than a rigid
 //! grain. For the sphere, an independent prototype gives the displacement. For the disc there is no reference, but ten
 //! and a hundred times larger moduli lead to the rigid solution. The mean speed from 0.5 s on averages over the
 //! undamped free vibration of the contact.
@@ -33,8 +33,9 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
 }
 
 /// Returns the flattening of the disc at rest: the decrease of the height of its centre, over R. The load is its weight
-/// W (N per metre), on a grid with `cells` cells a radius. It includes the springs at the surface. K = 10 MPa and G =
-/// 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`PressedDisc::gives`] for the displacement of the disc.
+/// W (N per metre), on a grid with `cells` cells a radius. The flattening includes the compression of the springs at
+/// the surface. K = 10 MPa and G = 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`PressedDisc::gives`] for the
+/// displacement of the disc.
 fn flattened(cells: f64) -> f64 {
     let radius = 0.5;
     let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
@@ -49,7 +50,7 @@ pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     // The deviations were required before the solver existed.
     for (cells, asked) in [(4.0, 0.03), (8.0, 0.01)] {
-        // R/8 takes a minute.
+        // The run with R/8 takes a minute.
         let run = run("sphere", "mpm", cells);
         claims.extend(sphere(&format!("R/{cells}"), asked, if cells > 4.0 { run.long() } else { run.slow() }));
     }
@@ -100,7 +101,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Claims with moduli ten and a hundred times larger: closer to the rigid solution, which needs no reference.
+/// Claims with moduli ten and a hundred times larger. The disc is then closer to the rigid solution, so no reference is
+/// needed.
 fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);

@@ -1,5 +1,5 @@
-//! A grain carried round by two grains with prescribed motion: a contact with a rotating normal, and a contact that
-//! rotates about its normal.
+//! A grain that two grains with prescribed motion carry along a circle. In one variant the contact normals rotate, and
+//! in another the contacts rotate about their normals.
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;

@@ -1,4 +1,4 @@
-//! Impacts of Hertz spheres: the scenes of the eight benchmark tests of Chung & Ooi (2011), against closed forms.
+//! Impacts of Hertz spheres in the eight benchmark tests of Chung & Ooi (2011), compared with closed forms.
 
 #[path = "fair.rs"]
 mod fair;
@@ -61,7 +61,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the contact law of the scene: between two spheres, or between the sphere and the plane.
+/// Returns the contact law between the two spheres, or between the sphere and the plane.
 fn law(scene: &Scene) -> ContactLaw {
     let partner = if scene.grains.len() == 2 { scene.grains[1].material } else { scene.walls[0].material };
     scene.law(scene.grains[0].material, partner).copied().unwrap_or_default()
@@ -200,7 +200,7 @@ fn restitution() -> Vec<Claim> {
 }
 
 /// Returns the force (N) on the sphere of aluminium oxide that hits the plane with e = 0.5, with typed values: k
-/// δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where positive. ζ belongs to a release at zero force.
+/// δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where positive. The damping ratio ζ is that of a contact that ends at zero force.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     let (radius, density, modulus) = (0.0025_f64, 4000.0, 380.0e9 / (1.0 - 0.23 * 0.23));
     let stiffness = 4.0 / 3.0 * modulus * radius.sqrt();

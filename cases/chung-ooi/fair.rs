@@ -95,7 +95,7 @@ fn parted(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(time[last] + (time[last + 1] - time[last]) * overlap[last] / (overlap[last] - next))
 }
 
-/// Claims of tests 1 and 2: an elastic impact.
+/// Claims on the elastic impact of tests 1 and 2.
 fn normal(variant: &'static str) -> [Claim; 3] {
     let run = || Run::new(variant, "dem", STEP.resolution);
     let stiffer = || Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01)));
@@ -126,8 +126,8 @@ fn normal(variant: &'static str) -> [Claim; 3] {
     ]
 }
 
-/// Claims of test 3: the coefficient of restitution, or the coefficient of the same dashpot with a release at zero
-/// force. The scene gives the dashpot. External solvers differ in whether it may pull, and the claim accepts both.
+/// Claims the coefficient of restitution of test 3. The scene gives the dashpot. In some external solvers the dashpot
+/// may pull, and in others the contact ends at zero force. The claim accepts both coefficients.
 fn given_back(run: Run) -> Claim {
     let words = run.adjustment.as_ref().map_or("of the scene", |(name, _)| name);
     claim(format!("rebound velocity over impact velocity, {words}, or of a release at zero force"), "1")
@@ -245,7 +245,7 @@ fn lever(run: Run, times: f64) -> Claim {
         .refuses(wrong_inertia())
 }
 
-/// Claims of test 8: equal and opposite momentum changes, although one sphere is 125,000 times as heavy.
+/// Claims that the momentum changes of test 8 are equal and opposite, although one sphere is 125,000 times as heavy.
 fn momentum(run: &Run) -> [Claim; 2] {
     let momentum_claim = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")
@@ -269,7 +269,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
     ]
 }
 
-/// Claims of test 7: no friction between surfaces of equal velocity.
+/// Claims that test 7 has no friction, because both surfaces have the same velocity.
 fn gears(variant: &'static str) -> [Claim; 3] {
     let gear_claim = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)

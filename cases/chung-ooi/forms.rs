@@ -12,7 +12,7 @@ pub(super) struct ImpactParameters {
     pub(super) slip: f64,
     /// Impulse m* v_n that stops the approach (N s).
     pub(super) stopping: f64,
-    /// Friction μ.
+    /// Friction coefficient μ.
     pub(super) friction: f64,
     /// Coefficient of restitution e for which the law was made.
     pub(super) restitution: f64,

@@ -150,7 +150,7 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     })
 }
 
-/// Returns the control: the other release convention.
+/// Returns a negative control with the other release convention.
 fn other(solver: &'static str) -> Control {
     if solver == "dem" {
         Control::solver("the dashpot may pull", "dem:1979")

@@ -28,7 +28,7 @@ pub(crate) static CASE: Case = Case {
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.
 const FROM: f64 = 2.0;
-/// Time (s) up to which two solvers agree in all relevant digits.
+/// Time (s) up to which the results of two solvers agree in all compared digits.
 const FORETOLD: f64 = 2.01;
 /// End of the controls (s).
 const CONTROL_END: f64 = 5.0;
@@ -108,7 +108,7 @@ fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
 /// Name of the negative control.
 const LIVELIER: &str = "dashpots of e = .92 for .9";
 
-/// Returns the control of claims without another program; its run serves both.
+/// Returns the control of claims without another program. Both of these claims use its run.
 fn deader() -> Control {
     Control::scene("dashpots of e = .86 for .9", |scene| {
         damp(scene, 0.86);
@@ -116,7 +116,7 @@ fn deader() -> Control {
     })
 }
 
-/// Changes the dashpots. The wrong slope shows within half the time.
+/// Changes the dashpots. Half of the run time is enough to detect the wrong slope.
 fn livelier(scene: &mut Scene) {
     damp(scene, 0.92);
     scene.duration = Duration::Seconds(CONTROL_END);

@@ -24,7 +24,7 @@ const FASTER: Source = Source::Printed(
     &bardenhagen_2001::WORK,
     "text to Figs 10 and 11: fringes pass the line, and the glued zig-zag, much faster than the zig-zag that slips",
 );
-/// Ratio below 1 that counts as sooner, because the paper states no ratio.
+/// Largest ratio of arrival times that counts as sooner. The paper states no ratio.
 const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
@@ -145,7 +145,7 @@ fn glued() -> Claim {
         }))
 }
 
-/// Claims the paper's order: force arrives at the fourth disc of a variant sooner than in the slipping zig-zag.
+/// Claims that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the paper.
 fn sooner(variant: &'static str, chain: &str) -> Claim {
     claim(format!("arrival at disc 4 of the {chain}"), "1")
         .run(Run::new(variant, "dem", STEP.resolution))

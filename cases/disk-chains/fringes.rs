@@ -12,7 +12,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::record::Snapshot;
 use std::f64::consts::FRAC_PI_2;
 
-/// A chain of the paper.
+/// Chain of discs in the paper, with the times and observations of its figure.
 struct Chain {
     variant: &'static str,
     title: &'static str,
@@ -24,7 +24,7 @@ struct Chain {
     seen: &'static str,
 }
 
-/// Figs 9, 10 and 11.
+/// Chains of Figs 9, 10 and 11 of the paper.
 const CHAINS: [Chain; 3] = [
     Chain {
         variant: "line",

@@ -1,5 +1,5 @@
-//! Two kinds of spheres in a rotating drum: from the published start if the user has its data, and from a small start
-//! of our own.
+//! Two kinds of spheres in a rotating drum. The large drum starts from the published state if the user has its data. A
+//! small drum starts from our own state.
 
 #[path = "ladder.rs"]
 mod ladder;
@@ -92,7 +92,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the control: counts in the other lower quarter.
+/// Returns a negative control that reads the counts in the other lower quarter.
 fn beside() -> Control {
     Control::misread("counted on the other side, x > 0", zones::on_the_other_side)
 }
@@ -123,8 +123,7 @@ fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
 }
 
-/// Claims the counts of M1 in zone 2 between two times. The worst one decides, against the code with the larger
-/// difference.
+/// Claims the counts of M1 in zone 2 between two times. The largest difference from either code decides.
 fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> ClaimWithTolerance {
     claim(quantity, "1")
         .run(of_paper())

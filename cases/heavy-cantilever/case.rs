@@ -41,7 +41,7 @@ struct Elastica {
     sinking: f64,
     /// Angle of the tip below the horizontal (rad).
     angle: f64,
-    /// Curvature at the tip; zero for the solution.
+    /// Curvature at the tip, which is zero for the solution.
     left: f64,
 }
 

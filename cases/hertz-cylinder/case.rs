@@ -15,7 +15,7 @@ const NO_HALF_SPACE: f64 = 1.0 / 64.0;
 /// Points per cell and axis.
 const POINTS: u32 = 2;
 /// In the best setting, points keep their own velocities and oscillate under a static load, and so do their stresses.
-/// With APIC they come to rest.
+/// With APIC, the points come to rest.
 const SOLVER: &str = "mpm+apic";
 const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");

@@ -66,7 +66,8 @@ const REBOUND: [f64; 2] = [0.038, 0.050];
 /// Time at which depths are compared (s).
 const DEEP: f64 = 0.030;
 
-/// Times between which the ball's whole path is compared with the codes (ms). Before, beds differ mainly by their top.
+/// Interval in which the whole path of the ball is compared with the codes (ms). Before it, beds differ mainly by the
+/// height of their surface.
 const SURE: (f64, f64) = (24.999, 50.001);
 
 /// Reason for the tolerance of one bed, and of the mean of five beds.
@@ -192,7 +193,7 @@ const MEAN: BedCombination = (|values, _| mean(values), |spread| computed(spread
 /// Each of five beds is within the range of one bed of a code.
 const EACH: BedCombination = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
 
-/// Known deviation: from single beds, the ball rebounds more slowly than from those of the codes.
+/// Known deviation. The ball rebounds from single beds more slowly than in the codes.
 const SLOW: &str = "the ball leaves two of five beds at 1.11 and 1.19 m/s, below the range for one more code and bed; the \
                     lowest published bed has 1.14 m/s. Without friction all five are in the range";
 
@@ -242,7 +243,7 @@ fn smooth() -> Control {
     Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
 }
 
-/// Returns the control: ball and walls have the contact law between grains.
+/// Returns a negative control in which ball and walls have the contact law of grains.
 fn pair_of_m1() -> Control {
     Control::scene("the pair of M1 for steel", |scene| {
         let place = |name: &str| scene.materials.iter().position(|known| known == name);

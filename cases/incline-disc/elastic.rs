@@ -1,8 +1,8 @@
 //! The disc as an elastic body that is set down on the plane and released, with the material point method.
 //!
-//! The disc rests on the plane under g cos θ, damped, and is released at t = 0. An elastic disc is not rigid: it sticks
-//! and deforms before it slips, and rolls on a flattened side. Its displacement therefore differs from the rigid one by
-//! a few per cent at any resolution. The expected values are those of an independent prototype, extrapolated from four
+//! The disc rests on the plane under g cos θ, damped, and is released at t = 0. An elastic disc sticks and deforms
+//! before it slips, and rolls on a flattened side. Its displacement therefore differs from that of a rigid disc by a
+//! few per cent at any resolution. The expected values are those of an independent prototype, extrapolated from four
 //! resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli lead to the rigid solution and need
 //! no reference.
 
@@ -191,10 +191,12 @@ fn order(slope: Elastic) -> Claim {
         .refuses(telling(slope))
 }
 
-/// Claims with moduli ten and a hundred times larger: closer to the rigid solution, which needs no reference.
+/// Claims with moduli ten and a hundred times larger. The disc is then closer to the rigid solution, so no reference is
+/// needed.
 fn stiff(slope: Elastic, factor: f64) -> Claim {
     let run = stiffened(slope, "mpm", 8.0, factor);
-    // At tan 60° against 3μ = 1.5, the disc hardly slips: it sticks for long first, and 3.75 % falls by √10 to 1.2 %.
+    // At 60° the disc hardly slips, because tan 60° = 1.73 is close to 3μ = 1.5. It sticks for a long time first. The
+    // deviation of 3.75 % decreases by √10 to 1.2 %.
     let (run, allowed) = match factor > 10.0 {
         true => (run.long(), 8e-3),
         false if slope.variant == "60deg-mu.5" => (run.slow(), 0.016),

@@ -1,6 +1,6 @@
 //! The sphere as an elastic body that is set down on a rigid plane and released, with the material point method.
 //!
-//! As for the disc, elasticity changes the rigid solution: the sphere flattens, rolls at a smaller height and deforms
+//! As for the disc, elasticity changes the rigid solution. The sphere flattens, its centre is lower, and it deforms
 //! before it slips. The expected values are those of an independent prototype (quadratic B-splines, APIC, springs at
 //! the surface), extrapolated from R/2, R/4 and R/8.
 
@@ -42,7 +42,7 @@ pub(super) fn claims() -> Vec<Claim> {
             let run = run(slope, "mpm", cells);
             claims.push(
                 claim(format!("displacement at 1 s over the rigid one, less 1, R/{cells}"), "1")
-                    // R/8 takes half a minute.
+                    // The run with R/8 takes half a minute.
                     .run(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
                         (true, _) => run.long(),
                         (false, true) => run,

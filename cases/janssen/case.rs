@@ -1,4 +1,4 @@
-//! Janssen's silo: the parts of the weight of a column that floor and side wall carry.
+//! Janssen's silo. The floor and the side wall each carry a part of the weight of a column.
 
 #[path = "column.rs"]
 mod column;
@@ -92,7 +92,7 @@ fn on_floor(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 /// Returns the height of the filling (d), from the middle heights of the slices and the weight over height in each. It
-/// is the height of the total weight at the largest weight over height.
+/// is the total weight divided by the largest weight per height.
 fn top(heights: &[f64], weights: &[f64]) -> f64 {
     let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
     weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max)

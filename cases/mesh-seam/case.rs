@@ -1,4 +1,4 @@
-//! A sphere on triangle meshes: across seams of coplanar triangles, and at edges and corners.
+//! A sphere on triangle meshes. It rolls across seams of coplanar triangles, and touches edges and corners.
 
 #[path = "floors.rs"]
 mod floors;

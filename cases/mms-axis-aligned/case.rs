@@ -1,4 +1,4 @@
-//! Manufactured solution along an axis: order of convergence.
+//! Order of convergence for a manufactured solution along an axis.
 
 use crate::exact::manufactured::error;
 use grainbench_harness::measure::slope;
@@ -13,8 +13,8 @@ const HATS: &str = "mpm+linear+flip";
 const POINTS_OF_SPLINES: u32 = 10;
 /// Points per cell and axis for uGIMP, for the same reason.
 const POINTS_OF_GIMP: u32 = 4;
-/// Fraction of the Courant limit at which the error in time is below the error of the cell. With 0.4, both orders fall
-/// to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
+/// Fraction of the Courant limit at which the error of the time step is below the error of the cell. With 0.4, both
+/// orders fall to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
 const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
@@ -39,7 +39,7 @@ fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()
 }
 
-/// Returns runs with such small steps that only the error of the cell matters.
+/// Returns runs with time steps so small that the error of the cell dominates.
 fn in_small_steps(solver: &'static str, points: u32) -> Vec<Run> {
     let resolution = |cells| Resolution::Grid { cells, points, courant: SMALL_STEP };
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, resolution(cells))).to_vec()
@@ -53,7 +53,7 @@ fn order(done: &[FinishedRun]) -> Result<f64, MissingData> {
 }
 
 fn claims() -> Vec<Claim> {
-    // Wrong moduli would have no effect, because the body force follows them and the motion is the same.
+    // Wrong moduli would have no effect, because the body force is computed from them and the motion is unchanged.
     let wrong = || Control::scene("a damping of .3 per second", |scene| scene.global_damping = 0.3);
     let second = |quantity, runs: Vec<Run>| {
         claim(quantity, "1").runs(runs).converges(2.0, SOURCE, order).within(asymptotic(2.0)).refuses(wrong())

@@ -16,7 +16,7 @@ const SOLVERS: [(&str, &str); 3] = [
 const KEEPS_NO_NOISE: &str = "mpm+apic";
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
-/// Returns a level with small steps, because the error in time must be below the error of the grid.
+/// Returns a level with small steps, because the error of the time step must be below the error of the grid.
 const fn level(name: &'static str, cells: f64) -> Level {
     Level { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
 }

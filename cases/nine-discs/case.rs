@@ -110,8 +110,8 @@ fn static_forces() -> Vec<Claim> {
                 }))
                 .fair_to_any()
             } else {
-                // With friction, the forces depend on the history of a contact, so the control is lost history in our
-                // solver.
+                // With friction, the forces depend on the history of a contact. The control is our solver without
+                // contact history.
                 row.refuses(Control::forgets_history())
             });
         }
@@ -232,7 +232,8 @@ fn discrete() -> Vec<Claim> {
     MODAL.map(discrete_claim).to_vec()
 }
 
-/// Claims that the deviation from the linear solution is geometric: it is of first order in the overlap.
+/// Claims that the deviation from the linear solution is of first order in the overlap, as expected from the change of
+/// geometry.
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .runs(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
@@ -276,8 +277,8 @@ fn modal_error(done: &[FinishedRun]) -> Result<Measurement, MissingData> {
 }
 
 /// Errors of the displacement at each level by the phase error of central differences, as fractions of the walls'
-/// travel. The phase is too fast by ω³Δt²/24 per unit of time, from the middle of the ramp to ten periods after it.
-/// Values are for κ = 0, where they are largest, and rounded up.
+/// travel. The phase error grows by ω³Δt²/24 per unit of time, from the middle of the ramp to ten periods after the
+/// ramp. Values are for κ = 0, where they are largest, and rounded up.
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {
@@ -479,7 +480,8 @@ const DISTORTION: [&str; 4] =
 /// Cycle at which the walls begin to rotate.
 const TURN: usize = 1500;
 
-/// Claims the number of slipping contacts in slow compression: the eight at walls and corners at 15°, none at 30°.
+/// Claims the number of slipping contacts in slow compression. At 15° the eight contacts at walls and corners slip, and
+/// at 30° none.
 fn slip_in_compression() -> Vec<Claim> {
     let slip_claim = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {

@@ -1,4 +1,4 @@
-//! A disc hits a frictional wall at an angle and slips throughout: exact final velocities.
+//! A disc hits a frictional wall at an angle and slips throughout. The final velocities have exact values.
 
 use crate::exact::dashpot::lag;
 use crate::rows::incline::stronger_friction;
@@ -158,8 +158,8 @@ fn claims() -> Vec<Claim> {
                     })
                     .within(within_a_step(variant, allowed))
                     .refuses(control.clone());
-                // One solver-independent claim is enough: dashpots of other solvers may have another release and
-                // another Coulomb limit than both external solvers here.
+                // One claim is solver-independent. In the other claims, the results depend on the release of the
+                // dashpot and on its part in the Coulomb limit, which differ between solvers.
                 claims.push(if solver == "dem:lammps" && variant == "elastic" { row.fair_to_any() } else { row });
             }
         }

@@ -37,8 +37,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Packings with the parameters of each table of the paper: of ten packings, those that reach the ratio of stage A
-/// (derivation).
+/// Packings with the parameters of each table of the paper. Ten packings were tried, and these reach the ratio of stage
+/// A (derivation).
 const TABLES: [&[&str]; 3] = [
     &[
         "table-1",
@@ -107,14 +107,14 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the control: walls that move a tenth too far after stage A.
+/// Returns a negative control in which the walls move 10 % too far after stage A.
 fn further_to_b() -> Control {
     Control::scene("walls that go a tenth further from stage A to stage B", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity *= 1.1);
     })
 }
 
-/// Claims that every packing on springs must satisfy; the worst of several decides.
+/// Claims that every packing on springs must satisfy. The worst packing decides.
 fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     let growth: StageReader = |[a, b]| b.vertical / a.vertical - 1.0;
     let mut claims = equilibrium(packings, words);
@@ -237,8 +237,8 @@ fn perturbed(variant: &'static str, disc: usize) -> Run {
     })
 }
 
-/// Claims on both external solvers from the same start, with dashpots that both have: sample by sample up to the
-/// predictability horizon, and at the stages afterwards.
+/// Claims on both external solvers from the same start, with dashpots that both support. Samples are compared up to the
+/// predictability horizon, and the stages afterwards.
 fn programs() -> Vec<Claim> {
     let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
         scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));

@@ -1,4 +1,5 @@
-//! Plane shear of discs under a lid with a prescribed pressure: friction and packing fraction over the inertial number.
+//! Plane shear of discs under a lid with a prescribed pressure. The claims are about friction and packing fraction
+//! against the inertial number.
 
 #[path = "bulk.rs"]
 mod bulk;
@@ -44,7 +45,8 @@ const PACKINGS: &str = include_str!("packings.csv");
 const BECAUSE: &str =
     "a sheared packing is a random sample: 99 % interval of the difference of two packings, from four seeds";
 
-/// Part of the run after which the flow is steady: the walls have then accelerated the middle (derivation).
+/// Part of the run after which the flow is steady, because the walls have accelerated the middle of the layer
+/// (derivation).
 const STEADY: f64 = 0.25;
 
 /// Ratio of the lid's pressure in the comparison runs. The speed of their walls is larger by its square root.
@@ -69,7 +71,7 @@ fn pressed(variant: &'static str) -> Run {
         average(scene);
         press(scene, PRESSED);
         hasten(scene, PRESSED.sqrt());
-        // Its quantities come from its snapshots, so it has no probes.
+        // The quantities come from snapshots, so the scene needs no probes.
         scene.probes.clear();
         if let Duration::Seconds(time) = &mut scene.duration {
             *time /= PRESSED.sqrt();
@@ -182,7 +184,8 @@ fn normal(variant: &'static str, about: &str) -> Claim {
 
 /// Claims that shear stress is uniform through the layer.
 fn shear(variant: &'static str, about: &str) -> Claim {
-    // Left out, they weigh as much as one packing differs from another where the flow is fast. Turned, they weigh twice that.
+    // Reverses the shear stress from tangential forces, for a control. In fast flow, its omission would change the
+    // result only by the difference of two packings. The reversal changes it by twice as much.
     fn turned(tables: &mut [Table]) {
         for table in tables {
             let part = |name: &str| table.column(name).map(<[f64]>::to_vec);
@@ -221,9 +224,9 @@ fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
 
-/// Returns the control: four times the pressure at the same speed, if the quantity depends on the inertial number. If
-/// it hardly does, no friction. If the packings' spread is half of the inertial number, a speed that makes it four
-/// times as large.
+/// Returns a negative control. If the quantity depends on the inertial number, the pressure is four times as large at
+/// the same speed. If it hardly depends on it, there is no friction. If the spread of packings is half of the inertial
+/// number, the speed makes that number four times as large.
 fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     let is_pressed = |scene: &mut Scene| pistons(scene).any(|piston| piston.force > 40.0);
     if is_slow && is_inertia {

@@ -1,5 +1,5 @@
-//! Ten thousand discs in plane shear, against LAMMPS and LIGGGHTS: sample by sample up to the predictability horizon,
-//! by time averages afterwards.
+//! Ten thousand discs in plane shear, compared with LAMMPS and LIGGGHTS. Samples are compared up to the predictability
+//! horizon, and time averages afterwards.
 
 use crate::rows::programs::{PAIRS, row};
 use crate::rows::rigid;
@@ -37,7 +37,7 @@ const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> S
     Sum { column, words, unit, logarithm: false }
 }
 
-/// Quantities with time averages after the horizon. The energy varies by factors as shear waves pass.
+/// Quantities whose time averages are compared after the horizon. The energy varies by factors when shear waves pass.
 const SUMS: [Sum; 5] = [
     Sum { logarithm: true, ..sum(ENERGY, "logarithm of the kinetic energy", "1") },
     sum("packing.sigma_xx", "stress σ_xx", "Pa"),

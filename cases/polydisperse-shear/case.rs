@@ -1,4 +1,4 @@
-//! A slab of 369 grains in shear: plastic grains against grains on springs.
+//! A slab of 369 grains in shear. Plastic grains are compared with grains on springs.
 
 #[path = "chains.rs"]
 mod chains;

@@ -1,4 +1,4 @@
-//! Conservation laws and invariances of deformable grains: a coarse slab with small shear.
+//! Conservation laws and invariances of deformable grains, for a coarse slab with small shear.
 
 use super::measures::{deviator_squared, mean_stress, plastic_strain, with_their_start};
 use super::paper::FIGURE_6;
@@ -12,11 +12,12 @@ use grainbench_scene::scene::Duration;
 const CELLS: f64 = 75.0;
 /// Mean shear of the coarse slab.
 const SHEAR: f64 = 0.08;
-/// Number of steps to that shear: 0.4 of a cell at the speed of sound, 3356 m/s, while the side moves at 100 m/s.
+/// Number of steps to the shear [`SHEAR`]. In one step, a wave of 3356 m/s travels 0.4 of a cell, and the side moves at
+/// 100 m/s.
 const STEPS: f64 = SHEAR * CELLS * 3356.0 / (0.4 * 100.0);
 /// Mean shear after which two slabs that must agree are compared.
 const BEGINNING: f64 = 0.01;
-/// Displacement of the slab along its period: a third, which is a whole number of cells.
+/// Shift of all grains along the periodic axis, as a fraction of the period. 1/3 is 25 cells, so the grid is unchanged.
 const MOVED: f64 = 1.0 / 3.0;
 
 pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains \

@@ -67,8 +67,8 @@ pub(crate) fn profile(done: &FinishedRun, snapshot: &Snapshot) -> Vec<(f64, f64)
     let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
     let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
         .map(|(now, start)| {
-            // The periodic image with the displacement nearest to half of the side's displacement: grains do not move
-            // farther.
+            // The periodic image is the one whose displacement is nearest to half of the displacement of the side,
+            // because no grain moves farther than the side.
             let way = now.position.y - start.position.y;
             way - period * ((way - 0.5 * moved) / period).round()
         })
@@ -113,9 +113,9 @@ const CELLS: usize = 150;
 /// Number of cells across a large void.
 const VOID: usize = 5;
 
-/// Counts the large voids: empty squares of five cells of the paper's grid, 40 µm, at any position of this grid within
-/// the slab. A square is empty if no material point lies in it, or no disc covers the centre of one of its cells.
-/// Squares may overlap.
+/// Counts the large voids. A large void is an empty square of five cells (40 µm) of the paper's grid, at any position
+/// of this grid within the slab. A square is empty if no material point lies in it, or no disc covers the centre of one
+/// of its cells. Squares may overlap.
 pub(crate) fn large_voids(done: &FinishedRun, snapshot: &Snapshot) -> usize {
     let empty = empty_cells(done, snapshot);
     let is_void =

@@ -1,5 +1,5 @@
-//! Results of the paper, over five packings to the end of shear: for grains on springs, and for plastic grains on half
-//! of the paper's grid.
+//! Results of the paper, for five packings to the end of shear. The grains are on springs, or plastic on a grid with
+//! half of the paper's cells.
 
 use super::chains::chains;
 use super::coarse::MAKES_ENERGY;
@@ -13,7 +13,7 @@ use grainbench_harness::statistics::interval;
 use grainbench_scene::record::Snapshot;
 
 const PACKINGS: [&str; 5] = ["seed-1", "seed-2", "seed-3", "seed-4", "seed-5"];
-// The paper prints words; the bounds that follow from them are ours.
+// The paper states the results in words. The bounds are our own interpretation.
 pub(super) const FIGURE_6: Source = Source::Printed(
     &PAPER,
     "Fig. 6, 75 % shear: extensive plastic deformation and large voids without slip, fairly little plastic \
@@ -60,7 +60,7 @@ fn lower_of_ratios(ratios: &[f64]) -> Result<f64, MissingData> {
     Ok(lower(&ratios.iter().map(|ratio| ratio.ln()).collect::<Vec<f64>>())?.exp())
 }
 
-/// Returns the smallest value.
+/// Returns the smallest of the values over packings.
 fn least(values: &[f64]) -> Result<f64, MissingData> {
     Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }

@@ -1,4 +1,4 @@
-//! The same slab with grains on springs: its energy budget, and comparisons with external solvers.
+//! Claims on the slab with grains on springs. They test its energy budget and compare it with external solvers.
 
 use super::{entry, gained, measures, to_shear};
 use crate::rows::programs::{PAIRS, row};
@@ -8,7 +8,7 @@ use grainbench_harness::prelude::*;
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
 /// Time step of the pointwise comparison with external solvers, and the mean shear at its end. LIGGGHTS differs once a
 /// contact closes again, because it keeps the tangential displacement of opened contacts (derivation of `plane-shear`).
-/// Before, sixteen digits agree.
+/// Up to this shear, sixteen digits agree.
 const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
 

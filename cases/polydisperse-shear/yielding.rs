@@ -1,5 +1,5 @@
-//! Plastic grains, one packing sheared as far as in the paper: energy, results of other contact methods, and the effect
-//! of a finer grid.
+//! Claims on one packing of plastic grains, sheared as far as in the paper. They concern energy, other contact methods,
+//! and a finer grid.
 
 use super::coarse::{accounted, makes_none};
 use super::measures::{at, end, large_voids, plastic_strain, rotation_deg};

@@ -1,4 +1,4 @@
-//! A plastic block is compressed between smooth sides.
+//! Compression of a plastic block between smooth sides.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::material::{Constitutive, Deformable};

@@ -1,4 +1,4 @@
-//! A ball rolls off a fixed ball: its position and spin at separation.
+//! A ball rolls off a fixed ball. The claims are about its position and spin at separation.
 
 use grainbench_harness::prelude::*;
 

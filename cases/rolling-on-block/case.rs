@@ -1,4 +1,4 @@
-//! A disc rolls down a deformable block: friction between two deformable bodies.
+//! A disc rolls down a deformable block. The case tests friction between two deformable bodies.
 
 use crate::sources::prototype::elastic_disc;
 use grainbench_harness::prelude::*;

@@ -1,4 +1,5 @@
-//! Rolling resistance: deceleration on a flat plane, and the threshold of rest on a slope.
+//! Rolling resistance. The claims are about deceleration on a flat plane, and about the largest slope at which a grain
+//! rests.
 
 use crate::exact::one_grain::{OneGrain, State, course};
 use crate::rows::incline::wrong_inertia;

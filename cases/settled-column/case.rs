@@ -91,7 +91,7 @@ fn claims() -> Vec<Claim> {
             let columns = COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside());
             claims.push(
                 claim(format!("{quantity}, against {program}"), "1")
-                    // Five runs of one to two seconds each.
+                    // The five runs take one to two seconds each.
                     .runs([run(ours).slow(), run(program)])
                     .runs(columns)
                     .agrees(Source::Program, move |done| {

@@ -1,4 +1,4 @@
-//! A silo discharges through two orifices: the rates of the round robin of bulk processes.
+//! Discharge of a silo through two orifices, compared with the rates of the round robin of bulk processes.
 
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
@@ -63,8 +63,8 @@ fn begins(scene: &Scene) -> Option<f64> {
     scene.walls.iter().find_map(|wall| wall.until)
 }
 
-/// Largest time by which a sample may precede the requested time (s): more than one step, with a negligible effect on
-/// rates.
+/// Largest time by which a sample may precede the requested time (s). It is more than one step, and its effect on rates
+/// is negligible.
 const SLACK: f64 = 1e-5;
 
 /// Returns the number of remaining grains at a time of flow, which begins when the plug is removed; interpolated
@@ -148,7 +148,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the runs of the small silo: ours and LIGGGHTS'.
+/// Returns the runs of the small silo by our solver and by LIGGGHTS.
 fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
     [ours, "liggghts"].map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
@@ -162,7 +162,7 @@ fn near(
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }
 
-/// Returns the control: no friction between grains, unchanged friction on steel.
+/// Returns a negative control without friction between grains, with unchanged friction on steel.
 fn smooth() -> Control {
     Control::scene("no friction between grains", |scene| {
         let Some(m1) = scene.materials.iter().position(|name| name == "m1") else { return };

@@ -1,4 +1,5 @@
-//! A sphere rolls and slips down a deformable plane: contact between deformable bodies in three dimensions.
+//! A sphere rolls and slips down a deformable plane. The case tests contact between deformable bodies in three
+//! dimensions.
 
 #[path = "backspin.rs"]
 mod backspin;

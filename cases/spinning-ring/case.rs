@@ -1,4 +1,4 @@
-//! A rotating ring: Lamé's rotating annulus, for contact laws with and without a history.
+//! Rotating ring, compared with Lamé's solution, for constitutive laws with and without history.
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;

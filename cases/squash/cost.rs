@@ -1,5 +1,5 @@
-//! Target quantity of accuracy: the motion of the disc between the walls in continuous time, without the paper's finite
-//! time step.
+//! Target quantity of accuracy. It is the motion of the disc between the walls in continuous time, without the paper's
+//! finite time step.
 //!
 //! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W =
 //! √(3k/m).

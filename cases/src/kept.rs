@@ -1,6 +1,6 @@
-//! Stored results of runs that take minutes or hours, in the folder of their case: the tables read from snapshots, the
-//! time series and their provenance. The main CI job evaluates claims on them without the run. The run tiers that
-//! contain a run repeat it.
+//! Stored results of runs that take minutes or hours, in the folder of their case. They are the tables read from
+//! snapshots, the time series and their provenance. The main CI job evaluates claims on them without the run. Commands
+//! that select the tier of a run repeat the run.
 
 use crate::registry::CASES;
 use crate::solvers::is_program;
@@ -79,7 +79,7 @@ pub struct StorableRun {
     pub case: &'static Case,
     /// Claim that reads the run.
     pub claim: Claim,
-    /// Run.
+    /// Run whose result is stored.
     pub run: Run,
     /// True for the run of the negative control.
     pub wrong: bool,
@@ -88,7 +88,7 @@ pub struct StorableRun {
 }
 
 impl StorableRun {
-    /// Returns the lowest run tier that does this run.
+    /// Returns the lowest tier that includes this run.
     #[must_use]
     pub fn set(&self) -> Set {
         if self.wrong { self.run.set.max(self.claim.control.set) } else { self.run.set }
@@ -179,7 +179,7 @@ pub(crate) fn load(
 
 /// Reason why a stored result cannot be used.
 enum StoredResultError {
-    /// It belongs to another scene or another reading.
+    /// The result belongs to another scene or another reading.
     Stale(String),
     /// A file is missing, damaged or changed.
     Broken(String),

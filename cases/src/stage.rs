@@ -1,4 +1,4 @@
-//! State of a packing between walls at one moment: wall forces, overlaps, and distance from equilibrium.
+//! Wall forces, overlaps and distance from equilibrium of a packing between walls, at one moment.
 
 use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
@@ -19,8 +19,8 @@ pub struct Stage {
     /// F_V: half of the sum of the normal forces on the walls across y (N; N/m for discs).
     pub vertical: f64,
     /// Mean approach over the mean radius. The mean is over all contacts, including contacts at walls. The approach is
-    /// the decrease of the distance of centres below the distance of undeformed grains in contact: the overlap of rigid
-    /// grains on springs, the flattening of deformable grains.
+    /// the distance of undeformed grains in contact minus the distance of their centres. It is the overlap of rigid
+    /// grains on springs, and the flattening of deformable grains.
     pub overlap: f64,
     /// Largest resultant force on a grain over the largest contact force.
     pub unbalanced: f64,

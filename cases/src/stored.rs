@@ -15,7 +15,7 @@ use grainbench_scene::solver::RunError;
 pub struct Reference {
     /// Case of the claims that read the run.
     pub case: &'static Case,
-    /// Run.
+    /// Scene, variant and resolution of the run.
     pub run: Run,
     /// External solver of the run.
     pub program: Program,

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// Stored estimates of a case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StoredEstimates {
-    /// Name and version of the program that made them.
+    /// Name and version of the program that made the estimates.
     pub program: String,
     /// Commit that the program was built from; empty for old estimates.
     #[serde(default)]
@@ -21,7 +21,7 @@ pub struct StoredEstimates {
     pub date: String,
     /// Rule of the estimation.
     pub rule: String,
-    /// Estimates.
+    /// One estimate for each claim with an estimated tolerance.
     #[serde(default)]
     pub estimate: Vec<Estimate>,
 }

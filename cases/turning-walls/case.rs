@@ -1,4 +1,4 @@
-//! Grains on rotating walls: in a drum, on a tilting tray, and between plates that rotate about their normal.
+//! Grains on rotating walls. The walls are a drum, a tilting tray, and two plates that rotate about their normal.
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;

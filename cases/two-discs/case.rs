@@ -102,7 +102,7 @@ fn claims() -> Vec<Claim> {
                 ))
                 .refuses(Control::scene("one disc faster by a millionth", |scene| {
                     scene.grains[0].velocity *= 1.0 + 1e-6;
-                    // The sum is wrong from the start.
+                    // The sum of the impulses is wrong from the start.
                     if let Duration::Seconds(time) = &mut scene.duration {
                         *time *= 0.1;
                     }
@@ -151,7 +151,7 @@ fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(f64::hypot(x, y), 0.0, scale))
 }
 
-/// Claims on three discs that collide at one point: contacts act in pairs, independent of the number of bodies at a
+/// Claims on three discs that collide at one point. Contacts act in pairs, independent of the number of bodies at a
 /// node.
 fn three() -> Vec<Claim> {
     let momentum_claim = |run: Run, control| {

@@ -1,4 +1,5 @@
-//! A small grain hits a large one at an angle and slips throughout: exact velocities and spins of both.
+//! A small grain hits a large one at an angle and slips throughout. The velocities and spins of both grains have exact
+//! values.
 
 use crate::rows::incline::stronger_friction;
 use grainbench_harness::prelude::*;

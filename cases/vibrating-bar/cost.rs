@@ -1,4 +1,4 @@
-//! Target quantity of accuracy: the period of the bar itself. The effect of the grid is measured, not expected.
+//! Target quantity of accuracy: the exact period of the bar. The effect of the grid counts as an error.
 
 use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use crate::registry;

@@ -13,7 +13,7 @@ const RATIO: f64 = 0.39;
 const OVERLAP: f64 = 1e-3;
 /// F_V at stage B over F_V at stage A.
 const GROWTH: f64 = 1.04348;
-/// Strain at which the search gives up a path.
+/// Largest vertical strain tried at one strain ratio. Beyond it, the ratio has no stage A.
 const FAR: f64 = 0.1;
 
 /// Times (s) of a scene: the walls stop, stage A, the walls stop again, stage B.

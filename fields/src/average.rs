@@ -1,4 +1,4 @@
-//! Means over frames, with confidence intervals.
+//! Time averages over frames, with confidence intervals.
 
 use grainbench_harness::statistics::interval;
 

@@ -1,4 +1,4 @@
-//! Quantities of an element as columns: one list for tables, image data, means and figures.
+//! Quantities of an element as columns. Tables, image data, means and figures use the same list.
 
 use crate::element::Element;
 
@@ -15,7 +15,7 @@ pub struct Grains {
 pub struct Column {
     /// Name in tables.
     pub name: &'static str,
-    /// Description.
+    /// Quantity in words, for summaries and figures.
     pub words: &'static str,
     /// SI unit in three dimensions; `1` for a pure number.
     pub unit: &'static str,

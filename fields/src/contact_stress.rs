@@ -25,7 +25,7 @@ pub enum Stress {
 }
 
 impl Stress {
-    /// Returns a description.
+    /// Returns the kind of stress in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {

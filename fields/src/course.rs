@@ -1,4 +1,4 @@
-//! Series of snapshots as granular elements on one grid, and means over it.
+//! Series of snapshots as granular elements on one grid, and means over time and space.
 
 use crate::average::{Mean, mean};
 use crate::column::{COLUMNS, Column, Grains};
@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 /// The elements of one snapshot.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Step.
+    /// Step number of the frame.
     pub step: u64,
     /// Time (s); NaN if unknown.
     pub time: f64,
@@ -80,7 +80,8 @@ impl Course {
             self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|grain| grain.1.is_finite());
         if self.stress.is_none() && tells_interval(&snapshot) {
             self.stress = Some(Stress::Interval);
-            // All frames must have the same kind of stress: the time average of earlier frames is unknown.
+            // All frames must have the same kind of stress. The time average of earlier frames is unknown, so their
+            // stress is removed.
             self.frames.iter_mut().flat_map(|frame| &mut frame.elements).for_each(|element| element.stress = None);
         }
         let movers = match &self.before {

@@ -46,11 +46,11 @@ pub struct Load {
 pub struct LoadedDisc {
     radius: f64,
     loads: Vec<Load>,
-    /// −ΣF·n/(2πR) (Pa).
+    /// Uniform part of the stress, −ΣF·n/(2πR) (Pa).
     uniform: f64,
-    /// ΣF (N/m).
+    /// Sum of the forces ΣF (N per metre of depth).
     resultant: Vector2<f64>,
-    /// M/(2πR⁴) (Pa/m²).
+    /// Coefficient of the stress due to the torque M of the forces, M/(2πR⁴) (Pa/m²).
     twist: f64,
 }
 

@@ -14,9 +14,9 @@ use nalgebra::{Matrix3, Vector3};
 /// Contents of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
-    /// Filled fraction of the cell.
+    /// Fraction of the cell volume that grains or material fill.
     pub packing_fraction: f64,
-    /// T (Pa), compression negative; `None` if contacts are unknown.
+    /// Stress T (Pa), negative in compression; `None` if contacts are unknown.
     pub stress: Option<Matrix3<f64>>,
     /// Mean velocity and its gradient.
     pub motion: Motion,
@@ -25,7 +25,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// Returns p (Pa).
+    /// Returns the pressure p (Pa); `None` if the stress is unknown.
     #[must_use]
     pub fn pressure(&self) -> Option<f64> {
         self.stress.map(|stress| tensor::pressure(&stress, self.dimension))

@@ -45,9 +45,9 @@ pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) ->
 /// Units of lengths and times.
 #[derive(Clone, Copy)]
 pub struct Units {
-    /// Unit of length.
+    /// Unit of length on scale bars, such as `m`.
     pub length: &'static str,
-    /// Unit of time.
+    /// Unit of time on time axes, such as `s`.
     pub time: &'static str,
 }
 

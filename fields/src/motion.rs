@@ -74,7 +74,7 @@ struct Sums {
     weight: f64,
     place: Vector3<f64>,
     velocity: Vector3<f64>,
-    /// Σ w x⊗x; the next field is Σ w v⊗x.
+    /// Second moments Σ w x⊗x of the positions. The next field contains Σ w v⊗x.
     spread: Matrix3<f64>,
     carried: Matrix3<f64>,
 }

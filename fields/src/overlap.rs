@@ -96,7 +96,7 @@ fn between(a: f64, b: f64) -> f64 {
     acos(-a * b / ((1.0 - a * a) * (1.0 - b * b)).sqrt())
 }
 
-/// Returns Q₂(a, b).
+/// Returns Q₂(a, b), the volume of the unit ball beyond two faces.
 fn edge(a: f64, b: f64) -> f64 {
     if a * a + b * b >= 1.0 {
         return 0.0;
@@ -110,7 +110,7 @@ fn edge(a: f64, b: f64) -> f64 {
     (sphere - a * face(a, b) - b * face(b, a)) / 3.0
 }
 
-/// Returns Q₃(a, b, c).
+/// Returns Q₃(a, b, c), the volume of the unit ball beyond three faces.
 fn corner([a, b, c]: [f64; 3]) -> f64 {
     if a * a + b * b + c * c >= 1.0 {
         return 0.0;

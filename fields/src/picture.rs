@@ -88,7 +88,8 @@ fn title(shot: &Shot<'_>, view: View) -> String {
     }
 }
 
-/// Reduces the grey levels of film frames to a quarter, which is not visible but saves space in a page.
+/// Reduces the number of grey levels of film frames to a quarter. The difference is not visible and saves space in a
+/// page.
 fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     if frames > 1 {
         let values = raster.levels.iter_mut().filter(|level| (LOW..=HIGH).contains(level));

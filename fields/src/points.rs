@@ -1,4 +1,4 @@
-//! The material of a plane snapshot under the pixels of a view.
+//! Material of a plane snapshot at each pixel of a view.
 
 use crate::grid::inside;
 use crate::paint::View;

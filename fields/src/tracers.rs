@@ -13,7 +13,7 @@ use crate::grid::Grid;
 use grainbench_scene::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// A tracer.
+/// Element that moves with the flow: its grains and their mean position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracer {
     /// Current position (m).

@@ -36,7 +36,7 @@ pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
 pub struct Case {
     /// Name of the case on the command line, and of its folder.
     pub name: &'static str,
-    /// Title.
+    /// Title of the case in the report.
     pub title: &'static str,
     /// Summary of all claims, in one or two sentences.
     pub claim: &'static str,
@@ -70,10 +70,11 @@ pub struct Home {
     pub made: Option<&'static SceneCache>,
 }
 
-/// Cache of scenes with many grains, by case and variant. Cases read each other's scenes, and parsing one takes time.
+/// Cache of scenes with many grains, by case and variant. Several cases read the same scene, and parsing a scene takes
+/// time.
 pub type SceneCache = Mutex<Vec<(&'static str, String, Scene)>>;
 
-/// Smallest number of grains for which a scene is cached.
+/// Smallest number of grains of a cached scene.
 const MANY: usize = 1000;
 
 impl Case {

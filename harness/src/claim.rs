@@ -52,7 +52,7 @@ pub enum Expectation {
     Refusal,
 }
 
-/// A claim.
+/// Claim of a case: runs, measured quantity, expectation, tolerance and negative control.
 #[derive(Clone)]
 pub struct Claim {
     /// Measured quantity, in words.
@@ -63,7 +63,7 @@ pub struct Claim {
     pub scope: Scope,
     /// Runs that the claim reads. The first run gives the result its variant, solver and expected outcome.
     pub runs: Vec<Run>,
-    /// Expectation.
+    /// Kind of expectation, such as a value, a bound or an order of convergence.
     pub expectation: Expectation,
     /// Source of the expectation.
     pub source: Source,
@@ -81,7 +81,7 @@ pub struct Claim {
     pub elsewhere: Option<ParameterVariation>,
 }
 
-/// A claim about every scene of one kind, whatever its parameters. The tolerance is computed from the scene.
+/// Form of a claim for scenes of the same kind with other parameters. The tolerance is computed from the scene.
 #[derive(Clone)]
 pub struct ParameterVariation {
     /// Measured quantity, in words.
@@ -261,9 +261,10 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// Expects that the solver rejects the scene as unsupported. The result is then amber, with the solver's reason.
+    /// Expects that the solver rejects the scene as unsupported. If it does, the result is amber, with the solver's
+    /// reason.
     ///
-    /// The control changes the scene to one that the solver can run. The result is then red.
+    /// The control replaces the scene by one that the solver can run. The result must then be red.
     #[must_use]
     pub fn refused(self, because: &'static str, control: Control) -> Claim {
         let refused = |run| Run { standing: ExpectedOutcome::Refused, ..run };
@@ -359,8 +360,7 @@ impl Claim {
         match (self.source, self.expectation) {
             (Source::Program, _) => Evidence::OtherCode,
             (Source::Regression(_), _) => Evidence::Regression,
-            // The method already states its own order. Agreement of a prototype with this order is no stronger
-            // evidence.
+            // The order follows from the method. Agreement of a prototype with this order is no stronger evidence.
             (Source::Printed(..), Expectation::Converges(_)) => Evidence::Convergence,
             (Source::Printed(work, _), _) => match work.kind {
                 Kind::Literature => Evidence::Paper,

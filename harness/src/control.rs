@@ -53,7 +53,7 @@ impl FailureMode {
 pub struct Control {
     /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
-    /// Wrong physics.
+    /// Change of the scene, of the run or of its reading.
     pub wrong: WrongPhysics,
     /// Way in which the claim must fail.
     pub red: FailureMode,
@@ -68,7 +68,7 @@ impl Control {
         Self { name, wrong, red: FailureMode::Value, set: Set::Main, resolution: None }
     }
 
-    /// Repeats stored runs under this control only in the long tier.
+    /// Makes the control repeat stored runs only in the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }

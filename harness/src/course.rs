@@ -1,4 +1,4 @@
-//! Claims about curves: a time series that follows an exact solution, or an error that falls with the resolution.
+//! Claims about curves. A time series must follow an exact solution, or an error must decrease with the resolution.
 //!
 //! The figure of such a claim plots the data that the claim compares.
 
@@ -22,9 +22,9 @@ const DRAWN: usize = 300;
 /// The curves of a claim: measured points, and expected points if the expectation is a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimCurves {
-    /// Measured points.
+    /// Points (x, y) from the runs.
     pub measured: Points,
-    /// Expected points.
+    /// Points (x, y) of the expected curve or of the guide line.
     pub expected: Points,
     /// Power of the expected points, if they are a guide line for resolution levels.
     pub slope: Option<f64>,
@@ -38,7 +38,7 @@ pub type Trace = Arc<dyn Fn(&[FinishedRun]) -> Result<ClaimCurves, MissingData> 
 pub struct ClaimFigure {
     /// Name of the figure.
     pub name: &'static str,
-    /// Title.
+    /// Title above the graph.
     pub title: &'static str,
     /// Caption, which describes the expected result.
     pub caption: &'static str,
@@ -241,7 +241,7 @@ fn thinned(points: Points) -> Points {
     points.into_iter().step_by(every).collect()
 }
 
-/// Returns no figures, for a case whose figures all come from its claims.
+/// Returns an empty list. Cases use it if all their figures come from claims.
 ///
 /// # Errors
 /// Never.

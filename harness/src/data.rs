@@ -1,4 +1,4 @@
-//! Third-party data from which a scene is made. The user supplies the data; the project does not contain them.
+//! Third-party data from which a scene is made. The user supplies this data; it is not part of the project.
 
 use grainbench_scene::scene::Scene;
 use std::path::Path;

@@ -20,12 +20,12 @@ pub enum Evidence {
     Convergence,
     /// A law that holds for every solution: conservation, symmetry, determinism.
     Invariant,
-    /// Today's value, stored to detect changes. It is no evidence that the value is right.
+    /// Value of an earlier version, stored to detect changes. It does not show that the value is right.
     Regression,
 }
 
 impl Evidence {
-    /// All kinds.
+    /// All kinds, from the strongest to the weakest.
     pub const ALL: [Self; 8] = [
         Self::Analytic,
         Self::Experiment,

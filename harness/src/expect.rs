@@ -113,7 +113,7 @@ impl fmt::Display for ExpectedValue {
 pub struct Measurement {
     /// Measured value.
     pub value: f64,
-    /// Expectation.
+    /// Expected value, bound, band or order.
     pub expected: ExpectedValue,
     /// Scale by which the error is divided.
     pub scale: f64,

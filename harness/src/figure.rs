@@ -95,7 +95,7 @@ pub struct ForcePlot {
     pub discs: Vec<([f64; 2], f64, f64)>,
     /// Pairs of end points of the walls (m), clipped to the drawing.
     pub walls: Vec<([f64; 2], [f64; 2])>,
-    /// Contacts.
+    /// Force bars, one for each contact.
     pub bars: Vec<ForceBar>,
 }
 
@@ -128,7 +128,7 @@ pub struct LinePlot {
     pub axes: [String; 2],
     /// True if both axes have the same scale, so that angles are preserved.
     pub to_scale: bool,
-    /// Sheets.
+    /// Graphs from left to right.
     pub sheets: Vec<Sheet>,
 }
 

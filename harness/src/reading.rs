@@ -88,7 +88,7 @@ pub fn run(
     Ok((record, reader.end()))
 }
 
-/// Passes snapshots to a reader and does not keep them. Without a reader it keeps them.
+/// Observer that passes snapshots to a reader and discards them. Without a reader it keeps the snapshots.
 struct Watcher {
     threads: usize,
     reader: Option<Box<dyn Reader>>,

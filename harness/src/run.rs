@@ -20,7 +20,7 @@ pub struct Run {
     pub data: Option<&'static Data>,
     /// Name of the solver.
     pub solver: &'static str,
-    /// Resolution.
+    /// Time step, substeps or cells of the run.
     pub resolution: Resolution,
     /// A change of the scene that belongs to the claim, such as another stiffness in a sweep. Its name distinguishes
     /// runs.
@@ -54,7 +54,7 @@ pub enum Set {
     /// Quick tier: runs of at most a few seconds each.
     #[default]
     Main,
-    /// Standard tier: runs that only the tests add.
+    /// Standard tier: runs of more than a few seconds, in the tests and with `--levels all`.
     Tests,
     /// Long tier: runs that take minutes.
     Long,
@@ -113,10 +113,10 @@ impl Run {
         Self { standing: ExpectedOutcome::Known(reason), ..self }
     }
 
-    /// The run of a known error with a second bound: a larger |error|, in units of the claim's scale, is red.
+    /// Sets the bound of a known error, in units of the claim's scale. A larger |error| is red.
     ///
-    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It covers earlier results, so it
-    /// is evidence of a change and not of an answer.
+    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It follows from earlier results,
+    /// so it detects changes and does not show that the value is right.
     #[must_use]
     pub fn up_to(self, error: f64) -> Self {
         Self { known_up_to: error, ..self }

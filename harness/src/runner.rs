@@ -1,4 +1,4 @@
-//! Runner: does each run of a case once, and judges the claims of the case.
+//! Runner. It performs each run of a case once and judges the claims of the case.
 
 use crate::case::Case;
 use crate::claim::Claim;
@@ -31,7 +31,7 @@ type Runs = BTreeMap<String, (Run, Result<FinishedRun, RunError>)>;
 /// Scenes that were run, with their outputs, by solver and resolution.
 type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 
-/// Does the runs of one case with the solvers that its claims name, or with one external solver instead.
+/// Runner of one case. It uses the solvers that the claims name, or one external solver instead.
 pub struct Runner {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
@@ -152,7 +152,7 @@ impl Runner {
         self.case
     }
 
-    /// Returns a run; does it if it is not yet done.
+    /// Returns a finished run. Performs the run if it has not finished.
     ///
     /// # Errors
     /// When the solver does not support the scene or fails.
@@ -197,7 +197,10 @@ impl Runner {
         }
         match self.refused_control(claim) {
             Some(reason) => {
-                let words = format!("its control, {}, cannot be tried: {reason}", claim.control.name);
+                let words = format!(
+                    "the solver cannot run the negative control of this claim, {}: {reason}",
+                    claim.control.name
+                );
                 row.left(Outcome::Unsupported, words)
             }
             None => row,
@@ -225,7 +228,7 @@ impl Runner {
     /// Returns the reason why an external solver cannot run the wrong physics of a claim.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
         let asked = self.controlled && self.stranger.is_some();
-        // A panic is no refusal: the control is tried and is broken.
+        // A panic does not mean that the scene is unsupported. The control runs, and its outcome is `broken`.
         let wrong = |run: &Run| match unless_panicked(|| self.run_wrong(claim, run)) {
             Ok(Err(error @ RunError::Unsupported { .. })) => Some(error.to_string()),
             _ => None,
@@ -233,8 +236,8 @@ impl Runner {
         if asked { claim.runs.iter().find_map(wrong) } else { None }
     }
 
-    /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs. A
-    /// panic is a control that did not fail by value.
+    /// Judges a claim under its wrong physics. For a known error, another solver without this error performs the runs.
+    /// A panic is a control that did not fail by value.
     #[must_use]
     pub fn control(&self, claim: &Claim) -> Control {
         let start = Instant::now();

@@ -5,8 +5,8 @@ use grainbench_scene::solver::Solver;
 /// Solvers to which a claim applies. Every case states it for each claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// The solvers that its runs name. The claim depends on the convention of a program, its order in Δt, the
-    /// compliance of its contacts, or its agreement with another program.
+    /// Only the solvers named in the claim's runs. The expected value depends on the convention of a program, its order
+    /// in Δt, the compliance of its contacts, or its agreement with another program.
     Named,
     /// Any solver that can run the scene. The scene determines the expectation, and the tolerance allows for
     /// conventions that it leaves open, such as lever arm and limit on the dashpot. The negative control is a wrong

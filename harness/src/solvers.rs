@@ -16,14 +16,14 @@ pub struct StoredResult {
     pub record: Record,
     /// Tables read from the snapshots.
     pub tables: Vec<Table>,
-    /// Provenance.
+    /// Date, program and commit of the result.
     pub made: ResultOrigin,
 }
 
-/// An external solver.
+/// External solver, with the resolutions at which it is run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExternalSolver {
-    /// Its name.
+    /// Name of the solver in its manifest.
     pub name: String,
     /// Time steps to run it with, as fractions of the critical time step; empty for the defaults.
     pub fractions: Vec<f64>,

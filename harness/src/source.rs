@@ -31,7 +31,7 @@ pub enum Kind {
 /// A cited work. Its folder holds its provenance.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Kind of work.
+    /// Paper, measurement or prototype.
     pub kind: Kind,
     /// Folder in the directory of references, such as `literature/bardenhagen-2000`.
     pub id: &'static str,
@@ -39,7 +39,7 @@ pub struct Work {
     pub cited: &'static str,
 }
 
-/// A number from a cited work.
+/// Number from a cited work, with its place in the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CitedNumber {
     /// The work.

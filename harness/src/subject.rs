@@ -1,4 +1,4 @@
-//! Target quantities of accuracy studies: a quantity with an exact solution, and the scene for each method.
+//! Target quantities of accuracy studies. Each has an exact solution, and a scene for each method.
 //!
 //! The target quantities of a case come from its claims, so that a new case has its diagram without further input. They
 //! are quantities with an analytic solution, each method with the scene of its claim. A case folder with a `cost.rs`
@@ -14,7 +14,7 @@ use grainbench_scene::solver::{Method, Resolution};
 /// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]
 pub struct SolverSetup {
-    /// Method.
+    /// Discrete elements, rigid bodies or a grid.
     pub method: Method,
     /// Parameters other than the resolution, in words; empty if there are none.
     pub knobs: String,
@@ -27,19 +27,19 @@ pub struct SolverSetup {
 /// A target quantity with an exact solution.
 #[derive(Clone)]
 pub struct TargetQuantity {
-    /// Case.
+    /// Case that defines the scene.
     pub case: &'static Case,
     /// Variant of its scene.
     pub variant: &'static str,
     /// Quantity in words.
     pub quantity: String,
-    /// Its unit.
+    /// Unit of the quantity; `1` for a pure number.
     pub unit: &'static str,
     /// Source of the exact solution.
     pub source: String,
     /// Reads the measured value from the runs.
     pub measure: Measure,
-    /// Solver setups.
+    /// One setup for each solver or choice of parameters.
     pub lanes: Vec<SolverSetup>,
 }
 

@@ -3,7 +3,7 @@
 use crate::run::FinishedRun;
 use serde::{Deserialize, Serialize};
 
-/// Origin of a tolerance.
+/// Way in which the size of a tolerance was determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOrigin {
@@ -36,14 +36,14 @@ impl ToleranceOrigin {
     }
 }
 
-/// A tolerance.
+/// Largest |error| that passes, with its origin and reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// Largest |error| that passes. For an estimate, the limit for external solvers; for rounding, the limit per step.
     allowed: f64,
     /// Largest value of an estimate. Above it, the limit for external solvers applies as engineering judgement.
     pub(crate) up_to: f64,
-    /// True if it grows with the number of steps of the first run.
+    /// True if the limit grows with the number of steps of the first run.
     each_step: bool,
     /// Origin of the tolerance.
     pub made: ToleranceOrigin,
@@ -68,8 +68,8 @@ impl Tolerance {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 
-    /// Lets the estimate exceed the limit for external solvers, for a value whose numerical uncertainty is larger than
-    /// its error.
+    /// Sets the largest accepted estimate. It may exceed the limit for external solvers if the numerical uncertainty of
+    /// a value is larger than its error.
     #[must_use]
     pub fn up_to(self, most: f64) -> Self {
         Self { up_to: most, ..self }
@@ -107,7 +107,7 @@ pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Estimated, most, because)
 }
 
-/// Returns one confidence interval, which comes from the runs themselves and is the unit of the error.
+/// Returns a tolerance of one confidence interval. The interval is computed from the runs and is the unit of the error.
 #[must_use]
 pub fn one_interval(because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Interval, 1.0, because)

@@ -17,11 +17,11 @@ const LEAST_ORDER: f64 = 0.5;
 pub struct Estimate {
     /// Variant of the claim.
     pub variant: String,
-    /// Solver.
+    /// Name of the solver of the claim.
     pub solver: String,
     /// Resolution of the claim.
     pub resolution: String,
-    /// Quantity.
+    /// Claimed quantity, in words.
     pub quantity: String,
     /// Resolutions of the levels, fine to coarse.
     pub levels: [String; 3],

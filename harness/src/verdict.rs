@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub enum Severity {
     /// The result passes.
     Green,
-    /// The result shows nothing, or a documented error.
+    /// The result has no judged value, or a documented error.
     Amber,
     /// The result fails, its run crashed, or its reference belongs to another scene.
     Red,
@@ -31,7 +31,7 @@ pub enum Outcome {
     Known,
     /// The reference was made from another scene.
     Stale,
-    /// It passes on a stored result of other solver sources.
+    /// The result passes, with a stored result of older solver sources.
     Outdated,
     /// There is no reference to compare with.
     NoReference,
@@ -113,7 +113,7 @@ pub struct Verdict {
     pub unit: String,
     /// Measured value; absent if the run crashed.
     pub value: Option<f64>,
-    /// Expectation.
+    /// Expected value, bound, band or order; absent if it is unknown.
     pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,
@@ -261,7 +261,7 @@ pub struct Control {
     pub turned_red: bool,
     /// Detail of the result, if the claim did not fail in the required way.
     pub detail: Option<String>,
-    /// Elapsed time (s). It includes runs shared with other controls if this control did them.
+    /// Elapsed time (s). It includes runs that this control performed and other controls share.
     pub seconds: f64,
 }
 

@@ -1,4 +1,4 @@
-"""Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
+"""Benchmarks for the accuracy and the computing cost of solvers for granular mechanics.
 
 A solver is a function of a scene. grainbench tests it with the solver-independent claims. Each claim has a negative control with
 wrong physics, for which it must fail::

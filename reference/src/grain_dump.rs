@@ -138,8 +138,8 @@ impl GrainDump {
         }
     }
 
-    /// Returns for each axis if it is periodic. Axes coupled by a tilt are not, because their images are not shifted
-    /// by one box length along one axis.
+    /// Returns true for each periodic axis. Axes coupled by a tilt count as not periodic, because their images are not
+    /// shifted by one box length along one axis.
     fn periodic(&self) -> Result<[bool; 3], ReadError> {
         let [xy, xz, yz] = self.rows.tilt.map(|tilt| tilt != 0.0);
         let tilted = [xy || xz, xy || yz, xz || yz];
@@ -294,7 +294,7 @@ fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -
         overlap,
         normal_force,
         shear_force: force + normal * normal_force,
-        // Dumps do not contain this.
+        // Dumps do not state if a contact slips.
         slipping: false,
     }
 }

@@ -1,4 +1,4 @@
-//! Record of a run of another program, with those probes of the scene that a dump of its grains contains.
+//! Record of a run of another program. It contains the probes of the scene that can be computed from a dump of grains.
 
 use grainbench_scene::record::{GrainState, Series, Snapshot, StepState};
 use grainbench_scene::recorder::Recorder;

@@ -42,8 +42,8 @@ pub struct Sources {
     pub partial: bool,
     /// If true, steps and times are counted from the first sample.
     pub from_first: bool,
-    /// Steps at which snapshots are due, in order. The first snapshot from each of them on is kept, in addition to the
-    /// first and the last of the files.
+    /// Steps at which snapshots are requested, in ascending order. For each, the first snapshot at or after this step
+    /// is kept. The first and the last snapshot of the files are always kept.
     pub snapshot_steps: Vec<u64>,
 }
 
@@ -57,7 +57,7 @@ pub enum OutputError {
     #[error("{0} (--partial judges the whole frames in front of it)")]
     Cut(ReadError),
     /// Files are numbered by frames, and no file contains their times.
-    #[error("{}: expected a column `Time` (s) in the file, or --frame-interval, found numbers of frames only", one_line(.0))]
+    #[error("{}: expected a column `Time` (s) or --frame-interval, found only frame numbers", one_line(.0))]
     NoFrameTime(String),
     /// The given time step differs from that of the files.
     #[error("--time-step: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]

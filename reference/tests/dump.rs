@@ -211,7 +211,7 @@ fn refuses_two_gigabytes_of_nothing_at_once() {
     path.as_file().set_len(2 << 30).unwrap();
     let mut reader = DumpReader::open(path.path()).unwrap();
     let error = reader.read(&mut DumpSnapshot::default()).unwrap_err().to_string();
-    assert!(error.ends_with(":1:1: expected text in UTF-8, found the byte 0x00"), "{error}");
+    assert!(error.ends_with(":1:1: expected plain text (UTF-8), found the byte 0x00"), "{error}");
     let mut reader = DumpReader::new(BufReader::new(File::open(path.path()).unwrap()), "zeros").unwrap();
     assert!(reader.read(&mut DumpSnapshot::default()).is_err());
 }

@@ -6,7 +6,7 @@ use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 
 use crate::report::{Report, Section};
 
-/// All outcomes in the order in which a reader wants to know of them.
+/// All outcomes in the order of the headline.
 pub const OUTCOMES: [Outcome; 9] = [
     Outcome::Pass,
     Outcome::Fail,
@@ -30,7 +30,7 @@ pub struct Headline {
     pub known: usize,
     /// Results whose reference belongs to another scene.
     pub stale: usize,
-    /// Rows that pass on a stored result of other solver sources.
+    /// Results that pass with a stored result of older solver sources.
     pub outdated: usize,
     /// Results without a reference.
     pub no_reference: usize,
@@ -104,7 +104,7 @@ impl Headline {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Returns the number of results that show nothing, or a documented error.
+    /// Returns the number of results without a judged value or with a documented error.
     #[must_use]
     pub fn amber(self) -> usize {
         self.of_severity(Severity::Amber)

@@ -1,4 +1,4 @@
-//! Stored results of an external solver: results and controls, version and adapter, date and machine.
+//! Stored results of an external solver, with the version of the solver, the hash of its adapter, date and machine.
 
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
@@ -26,11 +26,11 @@ pub struct ExternalResults {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// Case.
+    /// Name of the case.
     pub case: String,
     /// Variant of the scene.
     pub variant: String,
-    /// Resolution.
+    /// Resolution in words, such as `dt=.01`.
     pub resolution: String,
     /// Measured quantity, in words.
     pub quantity: String,
@@ -38,7 +38,7 @@ pub struct Row {
     pub unit: String,
     /// Measured value; absent if nothing was measured.
     pub value: Option<f64>,
-    /// Expectation.
+    /// Expected value, bound, band or order; absent if it is unknown.
     pub expected: Option<ExpectedValue>,
     /// Signed error, in units of the result's scale.
     pub error: Option<f64>,
@@ -46,7 +46,7 @@ pub struct Row {
     pub allowed: f64,
     /// Outcome of the result.
     pub verdict: Outcome,
-    /// Reason for an outcome other than pass or fail.
+    /// Reason for an outcome other than pass or fail, or details of a failure, such as its first time.
     pub detail: Option<String>,
     /// True if the negative control failed as required; absent if it was not run.
     pub control_red: Option<bool>,
@@ -62,9 +62,9 @@ pub struct Count {
     pub pass: usize,
     /// Results that fail, crashed, or have a reference of another scene.
     pub red: usize,
-    /// Results that show nothing, or a documented error.
+    /// Results without a judged value or with a documented error.
     pub amber: usize,
-    /// Controls.
+    /// Number of negative controls that were run.
     pub controls: usize,
     /// Controls that failed as required.
     pub controls_red: usize,

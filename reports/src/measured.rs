@@ -19,9 +19,9 @@ pub const AT: usize = 1;
 pub struct Measurements {
     /// Cost of accuracy.
     pub cost: Option<Costs>,
-    /// Stability.
+    /// Largest stable steps and hard cases of each solver.
     pub stability: Option<Stability>,
-    /// Effects.
+    /// Influence of physical effects on the answers.
     #[serde(default)]
     pub effects: Option<Effects>,
 }
@@ -52,7 +52,7 @@ pub struct Costs {
 /// Cost of accuracy of one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
     /// Number of quantities that the solver was run for.
     pub asked: usize,
@@ -111,7 +111,7 @@ pub struct Effects {
 /// Stability of one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hold {
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
     /// Smallest and largest ratio of the largest stable step to the exact limit, and number of assemblies.
     pub limit: Option<([f64; 2], usize)>,

@@ -59,7 +59,7 @@ pub fn count(count: u64) -> String {
     text
 }
 
-/// Returns a duration with a suitable prefix and three significant digits.
+/// Returns a duration (s) with an SI prefix and three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
     let (scale, unit) = match seconds.abs() {
@@ -71,7 +71,7 @@ pub fn seconds(seconds: f64) -> String {
     append_unit(significant(seconds * scale, 3), unit)
 }
 
-/// Returns `10ⁿ`.
+/// Returns `10ⁿ` with a superscript exponent.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))

@@ -24,7 +24,7 @@ const FEWEST: usize = 8;
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
-/// A record and its name.
+/// Record of a run, with the name that distinguishes it in figures.
 pub struct NamedRecord<'a> {
     /// Title of its panels.
     pub name: String,
@@ -77,8 +77,7 @@ pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure
     let Some(first) = records.first() else { return Vec::new() };
     let mut all: Vec<&Snapshot> =
         first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
-    // Final snapshots without points and contacts are left out, because nothing is left to see, for example after an
-    // outflow.
+    // Final snapshots without points and contacts are omitted, because they show nothing, for example after an outflow.
     let shows = |snapshot: &&Snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty();
     if let Some(last) = all.iter().rposition(shows) {
         all.truncate(last + 1);
@@ -178,7 +177,7 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
     }
 }
 
-/// Returns a note with the names of the records that lack the quantity.
+/// Returns a note that names the records without the quantity.
 fn not_told(mute: &[&NamedRecord<'_>]) -> String {
     let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
     if names.is_empty() { String::new() } else { format!(" Not recorded by {}.", names.join(", ")) }

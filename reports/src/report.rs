@@ -12,7 +12,7 @@ use crate::stored_figure;
 /// Report of one run of the harness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// Provenance.
+    /// Version, date, machine and options of the run.
     pub provenance: Provenance,
     /// One section per case, in the order of the registry.
     pub sections: Vec<Section>,
@@ -68,7 +68,7 @@ pub struct Provenance {
     pub date: String,
     /// Processor and operating system.
     pub machine: String,
-    /// Compiler.
+    /// Version of the Rust compiler.
     pub rustc: String,
     /// Options of the run in words.
     pub options: Vec<String>,
@@ -101,7 +101,7 @@ pub struct Section {
     pub runs: Vec<RunCost>,
 }
 
-/// Cost of one run.
+/// Computing cost of one run of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
     /// Variant of the scene.

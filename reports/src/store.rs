@@ -37,7 +37,7 @@ pub enum SaveError {
     Encode {
         /// Name of the file.
         file: &'static str,
-        /// Reason.
+        /// Message of the encoder.
         reason: String,
     },
 }

@@ -26,7 +26,7 @@ pub struct Column {
     name: String,
     commit: String,
     date: String,
-    /// Outcomes by row.
+    /// Outcome of each result, by its key.
     rows: BTreeMap<String, Outcome>,
     /// Counts by run.
     runs: BTreeMap<String, BTreeMap<&'static str, u64>>,

@@ -12,8 +12,8 @@ use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
-/// Evaluates a claim of the case. The tolerance is widened by the change of the quantity due to rounding of the printed
-/// digits.
+/// Evaluates a claim of the case. The tolerance is increased by the change of the quantity that the rounding of the
+/// printed digits can cause.
 pub(super) fn exact(
     claim: &Claim,
     candidate: &Candidate,

@@ -1,4 +1,4 @@
-//! Tolerances of a check: widened by the printed digits, or following the course in time.
+//! Tolerances of a check: constant or over time, increased by the rounding of the printed digits.
 
 use grainbench_harness::compare::peers::{ColumnComparison, DecisiveSample, Sample, WIDE};
 use grainbench_harness::expect::Measurement;
@@ -14,15 +14,15 @@ pub(super) fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measure
 
 /// Allowed error of a column, without the uncertainty of its digits.
 pub(super) struct ErrorAllowance {
-    /// Constant part, as a fraction of the scale.
+    /// Constant part of the tolerance, as a fraction of the scale.
     pub(super) floor: f64,
     /// Factor for the change from halving the time step.
     pub(super) times: f64,
-    /// Name of the runs that differ from each other, in words.
+    /// Description of the runs whose difference sets the tolerance.
     pub(super) conventions: &'static str,
 }
 
-/// Largest fraction of samples that may allow too large an error if the other samples decide the result of a column.
+/// Largest fraction of samples with a tolerance above [`WIDE`]. If more samples have one, a pass becomes inconclusive.
 const FEW: f64 = 0.1;
 
 /// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.

@@ -1,5 +1,5 @@
-//! Checks the output of any program for a case: against exact solutions of its claims, our solvers, and stored runs of
-//! other programs.
+//! Checks the output of any program for a case. It compares the output with the exact solutions of the claims, with our
+//! solvers, and with stored runs of other programs.
 
 mod covered;
 mod exact;
@@ -40,7 +40,7 @@ use thiserror::Error;
 /// Reasons why output cannot be checked.
 #[derive(Debug, Error)]
 pub enum CheckError {
-    /// The files are damaged or lack something.
+    /// The files are damaged or incomplete.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The case's scene is wrong.
@@ -82,12 +82,12 @@ pub enum CheckError {
         case: String,
         /// Expected value of the first grain that differs.
         expected: String,
-        /// Its value in the output.
+        /// Value of this grain in the output.
         found: String,
     },
 }
 
-/// Options of a check.
+/// Accepted incompleteness and time steps, and extent of the power search.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// True if the output may end early or have few samples.

@@ -82,7 +82,8 @@ impl Plan {
     }
 }
 
-/// Runs a scene with each of our contact conventions over the time of the output, and once more with finer time steps.
+/// Runs a scene over the time of the output with each of our contact conventions, and once more with smaller time
+/// steps.
 pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {

@@ -130,8 +130,8 @@ impl CheckInputs<'_> {
         rows
     }
 
-    /// Finds the smallest revealed change, from the largest to smaller ones. Output that hides a large change hides a
-    /// smaller one too.
+    /// Finds the smallest revealed change, from the largest to smaller ones. If the output hides a large change, it
+    /// also hides a smaller one.
     fn find(&self, family: &Family, left: &mut u64) -> SearchOutcome {
         let mut smallest = None;
         for size in family.sizes.iter().rev() {

@@ -1,4 +1,4 @@
-//! Start of the output of another program: the first sample against the scene.
+//! Comparison of the first sample of a program's output with the initial state of the scene.
 
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::{Origin, Outputs};
@@ -17,7 +17,7 @@ struct Start {
     unit: &'static str,
     /// Value in the scene.
     expected: f64,
-    /// Difference of the sample from the scene. Along a periodic axis it does not count whole periods.
+    /// Difference of the sample from the scene. Along a periodic axis, whole periods are removed.
     off: f64,
     /// Uncertainty of the sample due to its printed digits.
     open: f64,

@@ -16,8 +16,8 @@ use grainbench_reports::number;
 use grainbench_scene::record::Series;
 
 /// Ratio of the uncertainty of a stored run to its change from halving the time step. It is the grid convergence index
-/// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). F_s = 3 applies to two steps, with r = 2. The order is p = 1, as
-/// where contacts begin and end.
+/// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). F_s = 3 applies to two steps, with r = 2. The order is p = 1,
+/// because contacts begin and end within steps.
 const SAFETY: f64 = 6.0;
 /// Allowed error of a program beyond the measured ones: a millionth of the scale.
 const FLOOR: f64 = 1e-6;

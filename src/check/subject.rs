@@ -1,4 +1,4 @@
-//! Scene of the output: a case with its own or with changed parameters, or a scene of the user.
+//! Scene that the output is compared with: a case with its own or with changed parameters, or a scene of the user.
 
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::{Claim, ParameterVariation};
@@ -85,7 +85,7 @@ impl DeclaredScene<'_> {
 pub(super) struct Candidate {
     pub(super) variant: String,
     pub(super) scene: Scene,
-    /// The scene without changed keys. It says how far apart samples may be.
+    /// The scene without changed keys. It determines the longest interval between samples.
     pub(super) own: Option<Scene>,
     /// Claims about this scene.
     pub(super) claims: Vec<Claim>,

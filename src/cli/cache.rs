@@ -1,4 +1,4 @@
-//! Folder of the cache of finished runs, outside the tree.
+//! Folder of the cache of finished runs, outside the source tree.
 //!
 //! The key of a run is a plain hash, so a user who can write the folder can change the results. A folder that another
 //! user owns, or that every user can write, is not used.
@@ -20,8 +20,8 @@ const VARIABLE: &str = "GRAINBENCH_CACHE";
 /// Largest size of the cache (bytes).
 const MOST: u64 = 2 << 30;
 
-/// Opens the cache. Returns `None` if it is off, if it has no folder, or if the folder cannot be written or trusted.
-/// Under `CI=true` it is off unless the variable names a folder.
+/// Opens the cache. Returns `None` if the cache is off, if it has no folder, or if the folder cannot be written or
+/// trusted. Under `CI=true` the cache is off unless the variable names a folder.
 pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
     let is_ci = env::var_os("CI").is_some_and(|word| word == "true");
     let folder = match env::var_os(VARIABLE) {

@@ -18,14 +18,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench check`.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or your own scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
     scene: Option<String>,
-    /// Override one key of the scene if your run has other parameters than the case; exact solutions are adjusted.
-    /// Repeatable.
+    /// Override one key of the scene if your run has other parameters than the case. Exact solutions are computed for
+    /// the new value. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Output files, plain, gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at the same steps;
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     /// Time step in seconds, if neither dump nor log contains it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     time_step: Option<f64>,
-    /// Time between files or frames in seconds, if their numbers count frames and nothing gives their times.
+    /// Time between frames in seconds, if the files are numbered by frame and contain no times.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     frame_interval: Option<f64>,
     /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first
@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     /// angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Accept incomplete output: amber instead of red. The output may end early, and the time between samples may
+    /// Report incomplete output as amber instead of red. The output may end early, and the time between samples may
     /// exceed both a tenth of the run and the sampling interval of the scene. The whole frames of a truncated file are
     /// judged.
     #[arg(long)]
@@ -62,8 +62,8 @@ pub(crate) struct Arguments {
     /// Accept a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
-    /// Search for changes of the scene that the output would not reveal: none, within three times the work of the comparison, or
-    /// all.
+    /// Determine which changes of the scene the output would reveal: `off` skips this, `limited` takes at most three
+    /// times the work of the comparison, and `full` tries all changes.
     #[arg(long, value_name = "HOW", default_value = "limited", value_parser = ["off", "limited", "full"])]
     power: String,
     /// Treat amber results as red.

@@ -18,7 +18,7 @@ use grainbench::reports::{Report, Section, number};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench compare`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Reference output: grains in any format that `check` reads, or a CSV table; plain, gzip or zstd.
@@ -37,7 +37,8 @@ pub(crate) struct Arguments {
     /// Time step in seconds, one for both or one for each, for files without times.
     #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     time_step: Vec<f64>,
-    /// Accept samples that exist in one file only: amber instead of red. The whole frames of a truncated file are compared.
+    /// Report samples that exist in only one file as amber instead of red. The whole frames of a truncated file are
+    /// compared.
     #[arg(long)]
     partial: bool,
     /// Treat amber results as red.
@@ -79,7 +80,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
 }
 
-/// Columns that name and describe grains and do not change in a run. Their agreement alone does not count as a
+/// Columns that identify or describe grains and contain no motion. Their agreement alone does not count as a
 /// comparison.
 const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
 

@@ -8,11 +8,11 @@ use std::process::ExitCode;
 /// Arguments of `completions`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Shell.
+    /// Shell that reads the script.
     shell: clap_complete::Shell,
 }
 
-/// Arguments of `man`.
+/// Arguments of `grainbench man`.
 #[derive(clap::Args)]
 pub(crate) struct ManArguments {
     /// Directory for the pages of all commands; by default the page of `grainbench` is printed.

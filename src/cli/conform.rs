@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench conform`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Solvers, by name or manifest; all built-in solvers by default.
@@ -60,15 +60,16 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     publish(&report, &Output::new(&arguments.out, arguments.json, arguments.strict))
 }
 
-/// Solver with the terms of its conformance.
+/// Solver with its conformance properties and limitations.
 pub(crate) struct ConformingSolver {
     pub(crate) solver: Arc<dyn Solver>,
     terms: Terms,
-    /// True if it is built in. An external solver may have the name of a built-in one.
+    /// True if the solver is built in. An external solver may have the name of a built-in one.
     is_ours: bool,
 }
 
-/// Returns the named solvers and external solvers with their terms; all our solvers if none is named.
+/// Returns the named solvers and external solvers with their conformance properties. If none is named, returns all
+/// built-in solvers.
 pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench cost`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases to measure; all cases with an exact solution by default.
@@ -31,11 +31,11 @@ pub(crate) struct Arguments {
     /// Select a solver, by name or manifest; repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Include points that take more than twenty seconds.
+    /// Resolution levels: `all` includes points that take more than twenty seconds.
     #[arg(long, value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     pub(crate) levels: String,
-    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains. Without named
-    /// cases these are always measured.
+    /// Also measure the cost of the parts of a step, and of a step with one and with ten thousand grains. If no case is
+    /// named, these costs are always measured.
     #[arg(long)]
     pub(crate) prices: bool,
     /// Measure finished points again.
@@ -44,7 +44,8 @@ pub(crate) struct Arguments {
     /// Compare with an earlier `results.json`: counts exactly, times within their spread.
     #[arg(long, value_name = "OLD.json", conflicts_with = "plan")]
     against: Option<PathBuf>,
-    /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
+    /// Store the results in the source tree, for the first screen of the report. Requires all cases and all built-in
+    /// solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     update_stored: bool,
     /// Directory for the report and the finished points.
@@ -53,7 +54,7 @@ pub(crate) struct Arguments {
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
-    /// Measure only errors and counts in a plan; without timing, tasks can share a machine.
+    /// Measure only errors and operation counts in a plan. Without timing, tasks can share a machine.
     #[arg(long, requires = "plan", conflicts_with = "prices")]
     counts: bool,
     #[command(flatten)]

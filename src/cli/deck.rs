@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Default time step of the user's scenes, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Arguments of the command.
+/// Arguments of `grainbench deck`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.
@@ -21,8 +21,8 @@ pub(crate) struct Arguments {
     /// Program: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
-    /// Use the scene for which the exact solution holds for any solver, for example with a stiffer contact; `check` recognizes it
-    /// by its initial state.
+    /// Use the scene for which the exact solution holds for any solver, for example with a stiffer contact. `check`
+    /// recognizes this scene by its initial state.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
     /// Override one key of the scene; repeatable.

@@ -64,7 +64,7 @@ impl EarlierReport {
         rows.into_iter().any(is_red) || controls.iter().any(|control| !control.turned_red)
     }
 
-    /// Returns true if an interrupted run left out a claim of a case, or its control.
+    /// Returns true if an interrupted run omitted a claim of a case or its control.
     pub(crate) fn was_left_out(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
         self.is_interrupted() && (rows.is_empty() || with_controls && controls.is_empty())

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench effects`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases, or your own scene file; all cases by default.
@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     /// Repeat finished parts.
     #[arg(long)]
     no_cache: bool,
-    /// Store the values for the first screen of the page in the source tree: all cases.
+    /// Store the results in the source tree, for the first screen of the report. Requires all cases.
     #[arg(long, conflicts_with = "cases")]
     update_stored: bool,
     /// Directory for the report and the finished parts.
@@ -165,7 +165,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     tell(&study, arguments, "")
 }
 
-/// Returns true if an absent effect with a neutral value changes a result.
+/// Returns true if an effect that is off changes a result when it is compiled in with a neutral value.
 pub(crate) fn is_red(study: &Study) -> bool {
     study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
 }

@@ -20,13 +20,14 @@ use grainbench::store::refuse_mixed;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench fields`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory written by `simulate`, or a LAMMPS or LIGGGHTS dump of grains.
     #[arg(value_name = "DIR|DUMP")]
     source: PathBuf,
-    /// Cell size (m), one number for all axes or one for each axis; it is adjusted to fill the box.
+    /// Cell size (m), one number for all axes or one for each axis. The size is adjusted so that whole cells fill the
+    /// box.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive, required = true)]
     cell: Vec<f64>,
     /// Dump of the contacts (`dump local`) at the same steps.
@@ -45,7 +46,7 @@ pub(crate) struct Arguments {
     /// Time step (s), for a dump without times.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_step: Option<f64>,
-    /// Use the whole frames of a truncated dump; the cut is reported.
+    /// Use the whole frames of a truncated dump and report the truncation.
     #[arg(long)]
     partial: bool,
     /// 2 for discs in the plane z = 0, 3 for spheres; by default the dimension of the stored run.
@@ -63,7 +64,7 @@ pub(crate) struct Arguments {
     /// Last time of the analysis (s).
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     to: Option<f64>,
-    /// Compute velocities from the displacement since the previous frame instead of the instantaneous ones.
+    /// Compute velocities from the displacements since the previous frame instead of using instantaneous velocities.
     #[arg(long)]
     between: bool,
     /// Stress of grains: instantaneous, or the mean since the previous frame, which is the default if the run contains
@@ -94,7 +95,7 @@ pub(crate) struct Arguments {
     /// Directory for tables, image data and figures.
     #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]
     out: PathBuf,
-    /// Write Parquet tables too.
+    /// Also write Parquet tables.
     #[arg(long)]
     parquet: bool,
     /// Print the summary as JSON.

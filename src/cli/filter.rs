@@ -11,7 +11,7 @@ use grainbench::reports::headline::OUTCOMES;
 const LOOSE: MatchOptions =
     MatchOptions { case_sensitive: false, require_literal_separator: false, require_literal_leading_dot: false };
 
-/// Keys of filters.
+/// Keys accepted by `--filter KEY=WHAT`.
 const KEYS: [&str; 4] = ["quantity", "source", "evidence", "outcome"];
 
 /// Filter `KEY=WHAT`.

@@ -1,4 +1,5 @@
-//! Ctrl-C: the first ends external programs and stops the work after the current items, and the second ends our program.
+//! Ctrl-C. The first one ends external programs and stops the run after the current items. The second one ends
+//! grainbench.
 
 use grainbench::reference::end_programs_at;
 use signal_hook::consts::{SIGINT, SIGTERM};

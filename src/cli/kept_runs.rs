@@ -1,4 +1,4 @@
-//! `grainbench reference keep`: does the runs whose results are stored with their cases.
+//! `grainbench reference keep`: runs the simulations whose results are stored with their cases.
 
 use super::checkpoint::read;
 use super::cores::MOST_THREADS;
@@ -19,19 +19,19 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Arguments of `keep`.
+/// Arguments of `grainbench reference keep`.
 #[derive(clap::Args)]
 pub(crate) struct KeepArguments {
     /// Cases; all cases with stored results by default.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Repeat also the runs with a valid stored result.
+    /// Also repeat the runs with a valid stored result.
     #[arg(long)]
     no_cache: bool,
     /// Include full-scale runs, which take hours.
     #[arg(long)]
     paper_size: bool,
-    /// Select runs whose name contains these letters; the command prints the names.
+    /// Select runs whose name contains this text. The command prints the names.
     #[arg(long, value_name = "LETTERS")]
     run: Option<String>,
     /// Directory with your copy of third-party data; without it the runs that need the data are skipped.
@@ -50,7 +50,7 @@ pub(crate) struct KeepArguments {
 /// Number of steps between checkpoints.
 const EVERY: u64 = 20_000;
 
-/// Does the runs and stores their results. Each result is complete before the next run begins.
+/// Performs the runs and stores their results. Each result is complete before the next run begins.
 pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     let known = kept::cases();
     let names = || known.iter().map(|case| case.name);
@@ -129,7 +129,7 @@ struct StorageTask<'a> {
 }
 
 impl StorageTask<'_> {
-    /// Does the run, stores the result, and then deletes the checkpoint.
+    /// Performs the run, stores the result, and then deletes the checkpoint.
     fn done(&self) -> Result<(), Fault> {
         let Self { wanted, runner, .. } = self;
         // A snapshot reader receives each snapshot once, and checkpoints do not contain its state.
@@ -164,7 +164,7 @@ impl StorageTask<'_> {
         self.arguments.checkpoints.join(format!("{}-{id}.checkpoint", case.name))
     }
 
-    /// Does the run, from its checkpoint if there is one.
+    /// Performs the run, starting from its checkpoint if there is one.
     fn resumed(&self) -> Result<FinishedRun, Fault> {
         let run = &self.wanted.run;
         let solver = solvers::by_name(run.solver)

@@ -8,7 +8,7 @@ use grainbench::harness::case::Case;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench list`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases whose claims are listed; all by default.

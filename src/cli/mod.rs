@@ -49,7 +49,7 @@ use std::process::ExitCode;
 /// Version, and the commit that the program is built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")");
 
-/// Benchmarks for solvers of granular mechanics: accuracy, and its computing cost.
+/// Benchmarks for the accuracy and the computing cost of solvers for granular mechanics.
 ///
 /// `grainbench run` runs benchmark cases, judges their claims and writes a report.
 #[derive(Parser)]
@@ -69,7 +69,7 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Write the LAMMPS or LIGGGHTS input for a case or a scene.
     Deck(deck::Arguments),
-    /// Judge the output of any program for a case or a scene: dumps, VTK files, arrays or a CSV table.
+    /// Judge the output of any program for a case or a scene. Formats are dumps, VTK files, arrays and CSV tables.
     Check(check::Arguments),
     /// Compute continuum fields cell by cell: packing fraction, stress, friction, shear rate.
     Fields(fields::Arguments),
@@ -146,7 +146,7 @@ fn grouped() -> clap::Command {
     command.help_template(template)
 }
 
-/// Writes a plan if one is requested; otherwise does the work.
+/// Writes a plan if one is requested; otherwise calls `work`.
 fn planned_or(planned: Option<campaign::arguments::Arguments>, work: impl FnOnce() -> exit::Outcome) -> exit::Outcome {
     match planned {
         Some(arguments) => campaign::plan::plan(&arguments),

@@ -22,7 +22,7 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
 fn machine() -> String {
     let cores = cores();
     let plural = if cores == 1 { "" } else { "s" };
-    format!("{}, {cores} core{plural}, {}, loops for {}", processor(), system(), Processor::new().name())
+    format!("{}, {cores} core{plural}, {}, loops compiled for {}", processor(), system(), Processor::new().name())
 }
 
 /// Returns the value of the first line `key … separator value` in a system file.

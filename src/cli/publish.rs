@@ -13,15 +13,15 @@ use std::process::ExitCode;
 /// Place and form of a report.
 pub(crate) struct Output<'a> {
     pub(crate) out: &'a Path,
-    /// Writes `rows.parquet` too.
+    /// True to write `rows.parquet` in addition to `rows.csv`.
     pub(crate) parquet: bool,
-    /// Prints the results as JSON.
+    /// True to print the results as JSON instead of text.
     pub(crate) json: bool,
-    /// Prints only the counts and the failed rows.
+    /// True to print only the counts and the failed results.
     pub(crate) quiet: bool,
     /// Text to print before the place of the page; by default the summary.
     pub(crate) text: Option<String>,
-    /// Treats amber results as red.
+    /// True to treat amber results as red.
     pub(crate) strict: bool,
 }
 
@@ -92,13 +92,14 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
-/// Returns true if a result describes its quantity. An unsupported scene counts, and a missing solver does not.
+/// Returns true if the outcome is a statement about the solver. An unsupported scene is one, and a missing solver is
+/// not.
 pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
     use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
     matches!(verdict.outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
 }
 
-/// Returns true if no result describes its quantity. Here, an unsupported scene does not count.
+/// Returns true if no result is a statement about the measured quantity. Here, an unsupported scene does not count.
 pub(crate) fn says_nothing(report: &Report) -> bool {
     let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
     rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))

@@ -37,7 +37,7 @@ const MOST_STEPS: u64 = 600_000;
 /// amplify rounding errors.
 const MOST_TO_COMPARE: u64 = 1000;
 
-/// Arguments of the command.
+/// Arguments of `grainbench race`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scenes of grains, by case or file.
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Number of steps of the short run and of the long run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]
     steps: Option<[u64; 2]>,
-    /// Select a solver or program; a manifest adds a program to LAMMPS. Repeatable.
+    /// Select a solver or program. A manifest adds a program to the comparison with LAMMPS. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Directory for `race.json` with each timing, and `race.md`.

@@ -21,14 +21,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Subcommands of `grainbench reference`.
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
     /// Make stored runs with the installed programs.
     Build(Build),
     /// Run the programs again and compare with the stored runs.
     Verify(Verify),
-    /// Do the long runs and store their results next to the cases, where `run` judges them.
+    /// Run the long simulations and store their results next to the cases. `run` judges the stored results.
     Keep(KeepArguments),
     /// Estimate discretization errors from three levels of resolution, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
@@ -40,7 +40,7 @@ pub(crate) struct Uncertainty {
     /// Cases; all by default.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Include claims that take minutes; otherwise their stored estimates stay unchanged.
+    /// Include claims that take minutes. Without this option, their stored estimates stay unchanged.
     #[arg(long)]
     long: bool,
 }

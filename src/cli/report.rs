@@ -21,17 +21,17 @@ use grainbench::store::refuse_mixed;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench report`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`, or directory of a plan.
     dir: PathBuf,
-    /// Show the finished, running and failed tasks of a plan instead.
+    /// Show the numbers of finished, running and failed tasks of a plan.
     #[arg(long)]
     progress: bool,
     #[command(flatten)]
     collect: CollectOptions,
-    /// Another directory written by `simulate`, compared with the first one at equal times; repeatable.
+    /// Another directory written by `simulate`, compared with DIR at equal times; repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
     /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in figures of a simulation; three fringes by default.

@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of the command.
+/// Arguments of `grainbench run`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Cases, patterns such as 'incline-*' or '*/60deg*', or folders with `scene.toml` and `claims.toml`; all built-in cases by
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     options: ClaimOptions,
     #[command(flatten)]
     plan: PlanOptions,
-    /// Do the unfinished tasks of a plan.
+    /// Run the unfinished tasks of a plan.
     #[arg(
         long,
         value_name = "DIR",
@@ -50,7 +50,7 @@ pub(crate) struct Arguments {
     work: WorkOptions,
 }
 
-/// Runs the cases, plans their runs, or does the tasks of a plan.
+/// Runs the cases, writes a plan, or runs the tasks of a plan.
 pub(crate) fn command(arguments: &Arguments) -> Outcome {
     let Arguments { cases, options, plan, resume, work } = arguments;
     if let Some(plan) = resume {
@@ -176,8 +176,8 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     Ok(())
 }
 
-/// Does all tasks in memory. Returns the sections of the finished tasks, and the number of tasks that an interrupt left
-/// out.
+/// Performs all tasks in this process. Returns the sections of the finished tasks, and the number of tasks that an
+/// interrupt left out.
 fn perform(
     tasks: &ClaimTasks,
     options: &ClaimOptions,

@@ -8,7 +8,7 @@ use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneForm
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench scene`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.
@@ -26,12 +26,12 @@ pub(crate) struct Arguments {
     format: Format,
     #[command(flatten)]
     step: Step,
-    /// Cells of a grid per reference length, instead of a time step, for solvers with deformable bodies.
+    /// Number of cells per reference length, for solvers with deformable bodies. It replaces the time step.
     #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
     cells: Option<f64>,
 }
 
-/// Formats.
+/// Formats of the resolved scene.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {
     Json,

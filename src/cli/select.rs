@@ -91,7 +91,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
-    // A selection without claims would end green without any check.
+    // Without claims, the run would be green although nothing was checked.
     if selected.is_empty() {
         return Err(Fault::input("expected at least one claim for the selected cases, solvers and levels, found none"));
     }

@@ -30,7 +30,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the command.
+/// Arguments of `grainbench simulate`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Scene file, or file of a sweep over parameters, which names its solvers.
@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
     /// Allow a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
-    /// Threads of `dem` and `mpm`; all cores by default. The record has the same bits for any number.
+    /// Number of threads of `dem` and `mpm`; all cores by default. It does not change the record.
     #[arg(long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     threads: Option<u16>,
     /// Write a checkpoint to this file at regular intervals; each one replaces the previous one.
@@ -80,7 +80,8 @@ pub(crate) struct Arguments {
         requires = "checkpoint"
     )]
     checkpoint_every: u64,
-    /// Continue from this checkpoint of the same run; apart from times, the record has the bits of an uninterrupted run.
+    /// Continue the run from this checkpoint. Except for run times, the record equals that of an uninterrupted run to
+    /// the bit.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
     /// Write the final state with the contact history, as initial state of another scene (`grains.NAME.state`).
@@ -96,10 +97,10 @@ pub(crate) struct Arguments {
     /// if the scene requests snapshots in addition to the first and the last, else none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
     write: Option<Vec<SnapshotOption>>,
-    /// Print provenance, cost and the final state as JSON; for a sweep, the results.
+    /// Print provenance, cost and the final state as JSON. For a sweep, print the results.
     #[arg(long)]
     json: bool,
-    /// Write the plan of a sweep to this directory instead of doing the work; `run --resume DIR` does it.
+    /// Write the sweep as a plan to this directory and run nothing. `run --resume DIR` runs the plan.
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     plan: Option<PathBuf>,
     /// Number of shards of the plan; by default each shard lasts about a minute.
@@ -261,7 +262,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Plans a sweep. Without `--plan`, the plan is in `--out`, and its tasks are done and collected at once.
+/// Plans a sweep. Without `--plan`, writes the plan to `--out`, runs all tasks and makes the report.
 fn sweep(arguments: &Arguments) -> Outcome {
     let given = [
         ("--solver", !arguments.solver.is_empty()),

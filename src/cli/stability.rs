@@ -29,7 +29,7 @@ const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 /// Shortest time between two updates of the report.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Arguments of the command.
+/// Arguments of `grainbench stability`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Assemblies and difficult cases, by name or prefix; all by default.
@@ -41,7 +41,8 @@ pub(crate) struct Arguments {
     /// Repeat finished parts.
     #[arg(long)]
     no_cache: bool,
-    /// Store the values for the first screen of the page in the source tree: all cases and built-in solvers.
+    /// Store the results in the source tree, for the first screen of the report. Requires all cases and all built-in
+    /// solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     update_stored: bool,
     /// Directory for the report and the finished parts.
@@ -69,7 +70,7 @@ pub(crate) enum WorkItem<'a> {
     Hard(&'a HardCase, &'a str),
 }
 
-/// Finds the limits, runs the hard cases and writes the report. The report is updated from time to time.
+/// Finds the limits, runs the hard cases and writes the report. The report is updated at intervals of [`EVERY`].
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let assemblies = assembly::all()?;
     let hard = hard::all();
@@ -129,8 +130,8 @@ pub(crate) fn sources_of(study: &Study) -> BTreeMap<String, String> {
     sources(&asked)
 }
 
-/// Returns true if nothing was measured, or if a solver ends quietly wrong. LAMMPS, LIGGGHTS and `rigid` do not count, because
-/// their errors are documented.
+/// Returns true if nothing was measured, or if a solver ends with a wrong result and no error. LAMMPS, LIGGGHTS and
+/// `rigid` do not count, because their errors are documented.
 pub(crate) fn is_red(study: &Study) -> bool {
     let red = |solver: &str| !grainbench::cases::solvers::is_program(solver) && solver != "rigid";
     measures_nothing(study) || study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver))

@@ -25,7 +25,7 @@ pub(crate) struct NamedSolvers {
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
     /// results.
     read: String,
-    /// True if the contents of its files identify an external solver, and not the time of reading.
+    /// True if an external solver is identified by the contents of its files; false if by the time of reading.
     by_content: bool,
 }
 

@@ -321,7 +321,7 @@ fn refuse_foreign(directory: &Path, names: &[&str]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// Returns the first link between a directory and a folder inside it.
+/// Returns the first symbolic link on the path from a directory to a folder inside it.
 fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
     let mut parts: Vec<&Path> = folder.ancestors().filter(|part| !part.as_os_str().is_empty()).collect();
     parts.reverse();

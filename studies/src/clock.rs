@@ -27,10 +27,10 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Measures the processor time (s) of a fixed reference task: the mean of as many runs as fill `lasting` seconds, at
-/// least one.
+/// Measures the mean processor time (s) of a fixed reference task. The task is repeated for `lasting` seconds, at least
+/// once.
 ///
-/// No change of the solvers affects the reference task. Times of two sessions are divided by it before they are
+/// Changes of the solvers do not affect the reference task. Times of two sessions are divided by it before they are
 /// compared, so that a temporarily slow machine is not mistaken for a slow program.
 ///
 /// A program on the other thread of the same core slows solvers down by half for some milliseconds. Dependent

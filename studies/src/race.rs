@@ -1,7 +1,7 @@
-//! Throughput benchmark: solvers and external programs on the same scenes in turn, in particle-steps per second of
-//! processor time, and their ratios.
+//! Throughput benchmark of solvers and external programs on the same scenes. It reports particle-steps per second of
+//! processor time, and ratios of these rates.
 //!
-//! A timing is the processor time of a long run less that of a short run, so that start, set-up and output cancel. In
+//! A timing is the processor time of a long run minus that of a short run, so that start, set-up and output cancel. In
 //! every round each solver is timed once, and rates are divided within the round. A temporarily slow machine affects
 //! all solvers of a round alike.
 
@@ -28,7 +28,7 @@ pub struct Track {
     pub name: String,
     /// The scene.
     pub scene: Scene,
-    /// Resolution.
+    /// Time step of all runs.
     pub resolution: Resolution,
     /// Steps of the short and of the long run.
     pub steps: [u64; 2],

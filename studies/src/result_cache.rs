@@ -1,4 +1,4 @@
-//! Cache of finished results, each in its own file; the file name is a hash of the task.
+//! Cache of finished results. Each result has its own file, whose name is a hash of the task.
 
 use grainbench_store::{WriteError, remove_leftovers, write_file};
 use serde::Serialize;

@@ -424,7 +424,8 @@ fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     for row in results["verdicts"].as_array().unwrap() {
         let says = row["detail"].as_str().unwrap_or_default();
         assert!(
-            row["verdict"] == "unsupported" && says.contains("its control, friction ×1.05, cannot be tried"),
+            row["verdict"] == "unsupported"
+                && says.contains("cannot run the negative control of this claim, friction ×1.05"),
             "{row}"
         );
     }

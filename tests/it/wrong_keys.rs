@@ -1,5 +1,5 @@
-//! Wrong values for every key of a scene file. Each is an error with file, line, key, expected value and its shape. The
-//! keys come from the schema, so that none is missing.
+//! Sets each key of the scene schema to a value of a wrong type. Each error names file, line, key and expected type.
+//! Boolean keys accept `true`. Keys below `variants` are skipped.
 
 use grainbench::cases::registry::read_grains;
 use grainbench::scene::source::SceneSource;

@@ -73,7 +73,8 @@ fn at(factor: &Factor, part: f64) -> Value {
         Spacing::Linear => from + (to - from) * part,
         Spacing::Log => (from.ln() + (to.ln() - from.ln()) * part).exp(),
     };
-    // Ends are exact. Values between them are rounded to twelve digits, so that tables do not show 0.30000000000000004.
+    // Both ends of the range are exact. Values between them are rounded to twelve digits, so that tables do not show
+    // 0.30000000000000004.
     let value = if part <= 0.0 {
         from
     } else if part >= 1.0 {

@@ -9,7 +9,7 @@ use toml::{Table, Value};
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
-    /// Title.
+    /// Title of the report.
     pub(super) title: String,
     /// Description in one or two sentences.
     #[serde(default)]
@@ -27,7 +27,7 @@ pub(super) struct File {
     /// Number of runs of each point; above 1 only for timed sweeps.
     #[serde(default = "once")]
     pub(super) repetitions: u32,
-    /// True to measure times: then nothing else may run at the same time.
+    /// True to measure times. Nothing else may then run at the same time.
     #[serde(default)]
     pub(super) timed: bool,
     /// Factors that are varied.
@@ -139,9 +139,9 @@ pub(super) struct SweepClaim {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct QuantityEntry {
-    /// Name of the quantity.
+    /// Name of the recorded quantity, in words.
     pub(super) quantity: String,
-    /// Unit of the quantity.
+    /// Unit of `value`, such as `m/s`.
     pub(super) unit: String,
     /// Arithmetic over record columns and numbers of the scene.
     pub(super) value: String,
@@ -157,7 +157,7 @@ pub(super) struct QuantityEntry {
     pub(super) allowed: Option<f64>,
 }
 
-/// A number, or arithmetic.
+/// Number, or arithmetic expression as text.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 pub(super) enum Formula {

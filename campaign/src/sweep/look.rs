@@ -16,11 +16,11 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// An evaluated quantity.
+/// Quantity that a sweep evaluates at each point.
 pub(super) enum EvaluatedQuantity {
     /// Claim of the case, which is recomputed for the parameters of the scene, and an optional limit of its error.
     Gate(Box<Claim>, Option<f64>),
-    /// Arithmetic of the sweep file.
+    /// Quantity that the sweep file defines by arithmetic.
     Own(Box<SweepQuantity>),
 }
 
@@ -37,9 +37,9 @@ pub(super) struct SweepQuantity {
     allowed: Option<f64>,
 }
 
-/// A run that is evaluated.
+/// Finished run of a sweep point, with the scene and the factors of the point.
 pub(super) struct EvaluatedRun<'a> {
-    /// Scene text with all keys as set for this point.
+    /// Scene text with the keys of this point.
     pub(super) source: &'a SceneSource,
     pub(super) done: &'a FinishedRun,
     /// Returns the value of a factor by name.
@@ -165,7 +165,7 @@ impl EvaluatedQuantity {
         Ok(())
     }
 
-    /// Returns a text that differs for quantities with different results.
+    /// Returns a text that identifies the quantity and its inputs.
     pub(super) fn identity(&self) -> String {
         match self {
             Self::Gate(..) => format!("{:?}", self.quantity()),

@@ -43,7 +43,7 @@ const PROGRAM: f64 = 4.0;
 /// Duration (s) of the reference timing before and after each timed run.
 const REFERENCE: f64 = 2e-3;
 
-/// A sweep.
+/// Sweep read from its file, with the scene and the design points.
 pub struct Sweep {
     /// Path of the file, for error messages.
     name: String,
@@ -58,7 +58,7 @@ pub struct Sweep {
     line: Option<Expression>,
 }
 
-/// A solver at a level.
+/// Solver with one resolution level and its scene keys.
 struct Level {
     asked: usize,
     resolution: Resolution,
@@ -102,7 +102,7 @@ impl Formula {
 }
 
 impl Sweep {
-    /// Returns true if a file is a sweep: it has a table of factors, which a scene has not.
+    /// Returns true if a file is a sweep, which has a table `factors`. A scene file has none.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
         let table = written(path).ok().and_then(|text| text.parse::<toml::Table>().ok());

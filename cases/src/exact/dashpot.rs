@@ -26,7 +26,7 @@ fn arc(damping_ratio: f64) -> f64 {
 }
 
 /// Returns the damping ratio that gives a coefficient of restitution, for a contact that ends when its force is zero.
-/// By bisection.
+/// It is found by bisection.
 #[must_use]
 pub fn no_tension_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 / restitution);

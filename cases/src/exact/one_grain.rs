@@ -30,7 +30,7 @@ pub struct OneGrain {
     pub along: f64,
     /// Gravity onto the plane g_n (m/s²).
     pub onto: f64,
-    /// Friction μ.
+    /// Friction coefficient μ.
     pub friction: f64,
     /// Tangential stiffness k_t (N/m), at the static overlap.
     pub tangential_stiffness: f64,

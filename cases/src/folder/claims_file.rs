@@ -14,11 +14,11 @@ pub(super) struct ClaimsFile {
     /// Limitations of the test.
     #[serde(default)]
     pub(super) weakness: String,
-    /// Claims.
+    /// Tables `[[claims]]` of the file.
     pub(super) claims: Vec<ClaimEntry>,
 }
 
-/// One claim.
+/// Table `[[claims]]`: value, expectation, source, tolerance and control of one claim.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClaimEntry {
@@ -60,7 +60,7 @@ pub(super) struct ClaimEntry {
     pub(super) printed: Option<Place>,
     /// Measurement on real grains.
     pub(super) measured: Option<Place>,
-    /// Result of an independent program, which is not the solver.
+    /// Result of an independent program other than the solver.
     pub(super) prototype: Option<Place>,
     /// Largest error that passes, in units of the scale.
     pub(super) allowed: Formula,
@@ -92,7 +92,7 @@ pub(super) enum Tier {
     /// `run` judges the claim.
     #[default]
     Quick,
-    /// The tests judge the claim, and `run --levels all`.
+    /// The tests and `run --levels all` judge the claim.
     Standard,
 }
 
@@ -113,7 +113,7 @@ pub(super) struct ResolutionParameters {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum SampleReduction {
-    /// Each sample; the worst one decides.
+    /// Each sample is compared. The sample with the largest error decides.
     Course,
     /// Largest sample.
     Max,

@@ -3,20 +3,20 @@
 //! Operators are `+ - * /` and `^`. `^` binds more tightly than a sign before it and associates to the right: −2^2 =
 //! −4, 2^3^2 = 512. There are parentheses, `pi` and named functions. A name is a path of keys such as
 //! `grains.ball.radius`; a name with other characters is in braces, `{contacts.ball-plane.friction}`. Angles are in
-//! radians. The crates that were tried read −2^2 as 4 or cannot read `1e-3`.
+//! radians. We use no crate for this, because those that we tried read −2^2 as 4 or cannot read `1e-3`.
 
 use std::f64::consts::PI;
 use std::fmt;
 
 /// Largest depth of nesting.
 const DEEPEST: usize = 100;
-/// Most numbers and names. A chain of operators is as deep as it is long.
+/// Largest number of numbers and names. The depth of a chain of operators equals its length.
 const MOST_TERMS: usize = 1000;
 
-/// Expression.
+/// Arithmetic expression of a claim or sweep file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expression {
-    /// Number.
+    /// Literal number.
     Number(f64),
     /// Named number.
     Name(String),

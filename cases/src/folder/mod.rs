@@ -117,7 +117,8 @@ pub(crate) const EMPTY: Case = Case {
     home: &HOME,
 };
 
-/// Returns the claims of a case in the registry from the text of its file. A wrong file has one claim, which is red.
+/// Returns the claims of a case in the registry from the text of its file. An invalid file yields one claim, which is
+/// red.
 pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
     let claims = toml::from_str(text).map_err(|error| error.message().replace('\n', " "));
@@ -181,7 +182,7 @@ mod tests {
     use crate::registry::{CASES, runner};
     use grainbench_harness::verdict::Outcome;
 
-    /// A case whose file of claims cannot be read is red, and not without claims.
+    /// If the claims file of a case cannot be read, the case has a red result.
     #[test]
     fn claims_that_cannot_be_read_are_red() {
         let case = CASES[0];

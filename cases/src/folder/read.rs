@@ -1,4 +1,4 @@
-//! Reading a number from a record: at one time, reduced over the samples, or at each sample.
+//! Reads a number from a record. The number is read at one time, reduced over the samples, or read at each sample.
 
 use super::claims_file::SampleReduction;
 use super::expression::Expression;

@@ -80,8 +80,7 @@ impl Reader<'_> {
             }
             _ => claim,
         };
-        // An external solver can run a claim of `dem`, because `dem` alone implies no contact convention of one
-        // program.
+        // External solvers can run a claim of `dem`, because the name `dem` implies no contact convention of a program.
         Ok(if claimed.solver == DEM { claim.fair_to_any_springs() } else { claim })
     }
 

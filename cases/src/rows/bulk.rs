@@ -1,5 +1,5 @@
-//! Claims on a bulk of grains. Against an external solver: one grain until rounding errors have grown, and time
-//! averages afterwards. Against codes that share one packing: the mean over our own packings.
+//! Claims on a bulk of grains. Comparison with an external solver uses one grain until rounding errors have grown, and
+//! time averages afterwards. Comparison with codes that share one packing uses the mean over our own packings.
 
 use crate::rows::programs::row;
 use grainbench_harness::claim::ClaimWithTolerance;

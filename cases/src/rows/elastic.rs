@@ -1,5 +1,5 @@
-//! An elastic grain on a plane: its relaxation before the run, and the factor on its stiffness that leads to the rigid
-//! solution. An elastic disc under diametral compression.
+//! Elastic grains. One grain on a plane is relaxed before the run, and its stiffness is multiplied to approach the
+//! rigid solution. A disc is compressed across its diameter.
 
 use crate::exact::one_grain::{OneGrain, last};
 use grainbench_harness::prelude::*;
@@ -93,7 +93,7 @@ impl PressedDisc {
     }
 
     /// Returns the displacements of a disc, compressed by a force at two opposite contacts, due to a small increase ΔF
-    /// at one contact. In units of ΔF/(πE'): u is the mean displacement relative to that contact. v is the displacement
+    /// at one contact. The unit is ΔF/(πE'). u is the mean displacement relative to that contact. v is the displacement
     /// of the opposite point relative to the mean.
     ///
     /// Its inertia balances ΔF as a uniform body force −ΔF/(πR²). The axis x points along ΔF from the centre; r and θ
@@ -124,8 +124,8 @@ impl PressedDisc {
     }
 
     /// Returns the mean square of the displacement about its mean, in units of (1/πE')², for forces at left, right,
-    /// bottom and top that inertia balances. It gives the added mass of a disc: the inertia of its deformation. By
-    /// quadrature of the displacement field of [`Self::gives`].
+    /// bottom and top that inertia balances. It gives the added mass of a disc: the inertia of its deformation. It is
+    /// computed by quadrature of the displacement field of [`Self::gives`].
     #[must_use]
     pub fn stirred(&self, loads: [f64; 4]) -> f64 {
         self.stirred_by(100, loads)
@@ -247,7 +247,7 @@ mod tests {
         assert!((u - v - half).abs() < 1e-12);
     }
 
-    /// Rotated loads, and loads of opposite sign, give the same value.
+    /// The added mass does not change if the loads are rotated by 90° or reversed.
     #[test]
     fn what_is_stirred_does_not_depend_on_the_axis() {
         let disc = PressedDisc { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };

@@ -1,5 +1,5 @@
-//! Backspin of an elastic grain on a rigid plane and on a deformable one: readings of both cases, and reference values
-//! of an independent prototype for the sphere.
+//! Measurements and claims shared by the backspin cases of an elastic grain on a rigid and on a deformable plane. The
+//! reference values of the sphere come from an independent prototype.
 
 use crate::exact::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};
@@ -27,7 +27,7 @@ pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-/// Returns the control for the sliding phase: smaller friction.
+/// Returns the negative control for the sliding phase, in which friction is smaller.
 pub(crate) fn slippery() -> Control {
     Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }

@@ -1,5 +1,5 @@
-//! A grain released from rest on an inclined plane, for a disc and for a sphere. Each of the two cases has its own
-//! scene, slopes and elastic body.
+//! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
+//! Each case has its own scene, slopes and elastic body.
 
 use super::programs;
 use super::rigid::{self, Row};
@@ -8,11 +8,11 @@ use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-/// Parameters of one of the two cases.
+/// Parameters of `incline-disc` or `incline-sphere`.
 pub(crate) struct Incline {
     /// Case, for its variants.
     pub case: &'static Case,
-    /// Slopes.
+    /// Inclined planes of the case, each a variant of the scene.
     pub slopes: &'static [Slope],
     /// Variants for the solver `rigid` (rapier).
     pub rigid: &'static [Row],
@@ -85,7 +85,7 @@ const COMPLIANCE: ClaimFigure = ClaimFigure {
     logarithmic: true,
 };
 
-/// One slope.
+/// Inclined plane: a variant of the scene with one angle and friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
     /// Variant of the scene.
@@ -108,7 +108,7 @@ pub const NEARLY_RIGID: f64 = 1e-5;
 /// Damping ratio of the damped runs.
 pub const DAMPING: f64 = 0.5;
 
-/// Sets a wrong inertia: the inertia of the other shape.
+/// Sets the moment of inertia of the other shape.
 pub fn wrong_inertia(scene: &mut Scene) {
     let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };
     let grain = &mut scene.grains[0];
@@ -120,13 +120,13 @@ pub fn more_friction(scene: &mut Scene) {
     scene.change_laws(|law| law.friction *= 1.05);
 }
 
-/// Returns the control for sliding grains: friction 5 % larger.
+/// Returns the negative control for sliding grains, in which friction is 5 % larger.
 #[must_use]
 pub fn stronger_friction() -> Control {
     Control::scene("friction ×1.05", more_friction)
 }
 
-/// Returns the control for rolling grains: the inertia of the other shape.
+/// Returns the negative control for rolling grains, the moment of inertia of the other shape.
 #[must_use]
 pub fn other_inertia() -> Control {
     Control::scene("the inertia of the other shape", wrong_inertia)
@@ -289,7 +289,8 @@ fn exponent(slope: Slope) -> Claim {
         .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
 }
 
-/// Returns wrong physics that affects the result: inertia for a rolling grain, friction for a slipping one.
+/// Returns a negative control that affects the result. It changes inertia for a rolling grain and friction for a
+/// slipping grain.
 fn telling(slope: Slope) -> Control {
     if slope.sticks { other_inertia() } else { stronger_friction() }
 }

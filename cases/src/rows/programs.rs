@@ -51,8 +51,8 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     claims
 }
 
-/// Returns the control: a slightly wrong tangential spring. It affects the Coulomb limit of a slipping grain and every
-/// start of rolling.
+/// Returns a negative control with a slightly wrong tangential spring. The spring affects the Coulomb limit of a
+/// slipping grain and every start of rolling.
 fn telling() -> Control {
     Control::ours("tangential stiffness × 1.001 in ours", |scene| {
         scene.change_laws(|law| law.scale_tangential(1.001));

@@ -108,8 +108,8 @@ fn order(row: Row) -> Claim {
 }
 
 /// Claims the displacement of a rolling grain minus h/t. The lever arm of friction is R until the overlap is reached,
-/// and R − δ/2 afterwards. A finer step takes longer to reach it: half a second at 256 substeps. The remainder has no
-/// order.
+/// and R − δ/2 afterwards. With a finer step, the overlap is reached later: after half a second with 256 substeps. The
+/// remaining error has no order in the time step.
 fn between_arms(case: &Case, row: Row) -> Claim {
     let (overlap, i) = arm(case, row);
     let width = overlap * i / (1.0 + i);
@@ -246,7 +246,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
         let mut points = Vec::new();
         for substeps in LEVELS {
             let done = match runner.run(&run(row.variant, Resolution::substeps(substeps))) {
-                // Too coarse for a grain that rotates so fast: no point.
+                // The step is too coarse for a grain that rotates this fast, so there is no point.
                 Err(RunError::Broken(_)) => continue,
                 done => done?,
             };

@@ -1,6 +1,6 @@
 //! Elastic discs between walls that move in by a small distance and stop: the force at rest, the frequency of free
-//! vibration and the apparent spring stiffness. Without friction, compared with rigid discs on springs that have the
-//! same force at rest.
+//! vibration and the apparent spring stiffness. The runs have no friction. They are compared with rigid discs on
+//! springs that have the same force at rest.
 
 use crate::rows::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
@@ -168,7 +168,7 @@ impl FreeVibration {
                 .run(self.rigid().aside())
                 .equals(exact, move |done| {
                     let VibrationParameters { force, restoring, stirred, .. } = self.exact(&done[0])?;
-                    // m cancels. k_n is the stiffness at which the springs have this force.
+                    // The mass cancels. k_n is the stiffness at which the springs have this force.
                     let spring = force / (self.share * self.squeeze);
                     let expected = (restoring / (self.springs * spring * (1.0 + stirred))).sqrt();
                     Ok(Measurement::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))

@@ -65,19 +65,19 @@ const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median"
 const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the difference of two deposits, from ten of our \
                         own";
 
-/// Returns the control: half the friction.
+/// Returns a negative control with half the friction.
 fn half_the_friction() -> Control {
     Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
 }
 
-/// Returns the control: no tangential springs.
+/// Returns a negative control without tangential springs.
 pub(crate) fn no_springs() -> Control {
     Control::scene("tangential springs a millionth as stiff", |scene| {
         scene.change_laws(|law| law.scale_tangential(1e-6))
     })
 }
 
-/// Returns the control: the ratio of shear to normal stress, tan φ, read as sin φ.
+/// Returns a negative control that reads the ratio of shear to normal stress, tan φ, as sin φ.
 fn tangent_for_sine() -> Control {
     Control::misread("tan φ taken for sin φ", |tables| {
         for table in tables {
@@ -90,7 +90,7 @@ fn tangent_for_sine() -> Control {
     })
 }
 
-/// Returns the control: gravity turned by ten degrees about y.
+/// Returns a negative control with gravity rotated by ten degrees about y.
 fn turned_gravity() -> Control {
     Control::scene("gravity turned by 10°", |scene| {
         let (sine, cosine) = 10.0_f64.to_radians().sin_cos();
@@ -284,7 +284,7 @@ impl Silo {
             claim(mean_off, "1")
                 .run(self.run.clone())
                 .equals(bins[0].source(), move |done| {
-                    // From the second bin to the last but one: the ten packings were read in these bins.
+                    // These are the bins from the second to the last but one, in which the ten packings were read.
                     let middle = cited().skip(1).take(bins.len() - 2);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia_flowing(&done[0])?, middle)?;
                     let off: Vec<f64> = pairs.iter().map(|[found, expected]| found - expected).collect();
@@ -316,8 +316,8 @@ impl Silo {
         })
     }
 
-    /// Claims agreement with LAMMPS until chaotic trajectories separate. The other claims may be judged on stored runs;
-    /// this one runs our solver.
+    /// Claims agreement with LAMMPS until chaotic trajectories separate. Other claims may use stored runs. This claim
+    /// runs our solver.
     fn beginning(&self) -> Claim {
         let run = |solver| Run::new("beginning", solver, self.run.resolution);
         let time = if self.run.set == Set::Long { 0.05 } else { 0.2 };

@@ -1,5 +1,5 @@
-//! Comparison of the elements of several flows, which lie on one curve according to the paper: a run against stored
-//! results of other silos.
+//! Comparison of the elements of a run with stored results of other silos. According to the paper, all flows lie on one
+//! curve.
 
 use super::ensemble::{self, STRAIN};
 use crate::kept;
@@ -7,7 +7,7 @@ use crate::registry::by_name;
 use grainbench_harness::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A flow of this size: its case, the variant that is read as elements, and its label in figures.
+/// Stored flow of the same size. It has a case, the variant that is read as elements, and a label in figures.
 pub(crate) struct ComparedFlow {
     pub(crate) case: &'static str,
     pub(crate) variant: &'static str,

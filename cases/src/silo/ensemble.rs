@@ -1,5 +1,5 @@
-//! Statistics over the elements of a silo: means over elements in steady flow, correlations, φ over the inertial number
-//! and over strain, and the largest sin φ before an element dilates.
+//! Statistics of silo elements: means in steady flow, correlations, packing fraction φ against inertial number and
+//! against strain, and the largest sine of the friction angle before an element dilates.
 
 use super::reader::STEADY;
 use grainbench_harness::reading::Table;
@@ -91,7 +91,7 @@ fn enough(values: Vec<f64>, what: &str) -> Result<Vec<f64>, MissingData> {
     }
 }
 
-/// Returns the mean.
+/// Returns the arithmetic mean of some values.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn axes_are_as_long_as_the_roots_of_the_deviator() {
-        // p = 3, so the deviator is diag(−2, 0.9, 1.1): the middle and the largest axis are distinct.
+        // The pressure is p = 3, so the deviator is diag(−2, 0.9, 1.1). The middle and the largest axis are distinct.
         let stress = Matrix3::from_diagonal(&Vector3::new(-5.0, -2.1, -1.9));
         let [smallest, middle, largest] = long(&stress).map(|axis| axis.abs());
         assert!((smallest - Vector3::new(2.0_f64.sqrt(), 0.0, 0.0)).norm() < 1e-12);

@@ -1,8 +1,8 @@
-//! Claims on silos at the paper's size: the paper's own values, or the prototype's values at a tenth of that size if
-//! the paper prints none. There is one deposit of this size, so no tolerance comes from the spread over deposits. Each
-//! tolerance was required before the first run of this size. The paper's value of 0.6 for sin φ before dilation was
-//! required too and was not met. The claim uses the prototype's value with the tolerance of a tenth of the size; the
-//! derivation states this.
+//! Claims on silos at the paper's size. The expected values are printed in the paper. If the paper prints none, they
+//! are the prototype's values at a tenth of that size. There is one deposit of this size, so no tolerance comes from
+//! the spread over deposits. Each tolerance was required before the first run of this size. The paper's value of 0.6
+//! for sin φ before dilation was required too and was not met. The claim uses the prototype's value with the tolerance
+//! of a tenth of the size; the derivation states this.
 
 use super::ELEMENTS;
 use super::collapse::{self, ComparedFlow};
@@ -45,7 +45,7 @@ pub(crate) struct DrainExpectations {
     pub(crate) others: &'static [ComparedFlow],
 }
 
-/// Returns the control: sin φ read as its tangent, which matches the paper's wording for μ.
+/// Returns a negative control that reads sin φ as its tangent, as the paper's wording for μ suggests.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
 }
@@ -88,7 +88,7 @@ fn asked(allowed: f64, what: &str) -> Tolerance {
 }
 
 impl PaperSize {
-    /// Returns the run: a few minutes on two cores.
+    /// Returns the run, which takes a few minutes on two cores.
     pub(crate) fn run(&self) -> Run {
         Run::new(self.variant, "dem", self.step.resolution).read_by(ELEMENTS).kept().paper_size()
     }

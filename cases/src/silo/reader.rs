@@ -82,8 +82,9 @@ const QUANTITIES: [&str; 8] = [
 ];
 /// Columns of the table of all frames, which contains only elements away from the sides and the surface.
 const RATES: [&str; 6] = ["time", "side", "surface", "shear_rate", "inertial_number", "packing_fraction"];
-/// Columns of the table of blocks of 5 d: the number of averaged frames, the angles between the axes of T and D, and
-/// the angle to the axis of T of another block.
+/// Columns of the table of blocks with edge 5 d (d: grain diameter). `frames` is the number of averaged frames.
+/// `largest` and `smallest` are angles between the principal axes of the stress T and of the strain rate D.
+/// `largest_elsewhere` is a negative control: it uses the stress of a distant block.
 const BLOCKS: [&str; 13] = [
     "time",
     "frames",

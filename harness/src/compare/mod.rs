@@ -1,4 +1,4 @@
-//! Comparison of two runs: sample by sample until a perturbed run diverges, and by means after that.
+//! Comparison of two runs. Samples are compared until a perturbed run diverges, and means after that.
 
 pub mod peers;
 pub mod perturbed;

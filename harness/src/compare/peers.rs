@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 pub struct Peer {
     /// Name of the run.
     pub name: String,
-    /// Its series.
+    /// Time series of its probes.
     pub series: Series,
     /// Series with half the time step; none if this run was not done.
     pub half_step: Option<Series>,
@@ -22,7 +22,7 @@ pub struct Peer {
 pub struct ColumnComparison<'a> {
     /// Name of the column.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit of the column, such as `m/s`.
     pub unit: &'a str,
     /// Scale that differences are divided by.
     pub scale: f64,
@@ -129,7 +129,7 @@ pub fn against<'a>(
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
         // Contact conventions differ in free vibration and drift. The difference at one time is therefore not
-        // representative, and the largest over time is used.
+        // representative. The largest difference over time is used.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let values_of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
@@ -166,8 +166,8 @@ impl Envelope {
     /// Computes the envelope of two runs at times that they share (s).
     ///
     /// Each value is the larger of two numbers: the largest difference within a window, and the 90th percentile of all
-    /// differences, which is close to the amplitude of an oscillation. A difference at an impact alone therefore widens
-    /// the allowed error only around that impact.
+    /// differences, which is close to the amplitude of an oscillation. A difference that occurs only at an impact
+    /// therefore increases the allowed error only around that impact.
     fn new(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         let mut sorted = off.clone();

@@ -1,9 +1,9 @@
-//! Comparison of chaotic runs: sample by sample up to the predictability horizon, and by means with confidence
+//! Comparison of chaotic runs. Samples are compared up to the predictability horizon, and means with confidence
 //! intervals after it.
 //!
-//! The horizon is measured. Up to the horizon, a run with one position perturbed by one unit in the last place remains
-//! within [`PARTED`] of the original run. Two programs that sum in another order differ by many such units at once;
-//! [`ALLOWED`] leaves room for that.
+//! The horizon is measured with a second run, in which one position is perturbed by one unit in the last place. Up to
+//! the horizon, this run remains within [`PARTED`] of the original run. Two programs that sum in another order differ
+//! by many units in the last place at once. [`ALLOWED`] is larger for this reason.
 //!
 //! The runs of a claim have a fixed order: our run, the other program's run, our run again, and its perturbed run.
 

@@ -1,5 +1,5 @@
-//! Deliberate defects for solvers. Most change one thing by about 1e-9. Larger defects are used if a property does not
-//! detect smaller ones.
+//! Deliberate defects for solvers. Most change one quantity by a fraction of about 1e-9. Larger defects are used if a
+//! property does not detect smaller ones.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
@@ -13,13 +13,13 @@ const SIZE: f64 = 1e-9;
 /// Size of a larger flaw, for material points and for free fall. If a solver claims no second order, its error in free
 /// fall may be gΔt/2.
 const LARGE: f64 = 1e-2;
-/// Fraction by which walls turn slower, or grains if no wall turns.
+/// Fraction by which the rotation of walls is reduced, or of grains if no wall rotates.
 const SLOWER: f64 = 0.05;
 
 /// A deliberate defect of a solver.
 ///
-/// `Pumped` and `FirstOrder` change the record, and `Restarted` the record after a restart. `SlowerWalls` changes spins
-/// and material points. All others change the initial velocities, which any solver can express.
+/// `Pumped` and `FirstOrder` change the record, and `Restarted` changes the record after a restart. `SlowerWalls`
+/// changes spins and material points. All other flaws change the initial velocities, which any solver can express.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// Every grain is slower by 1e-9, as if by drag in a medium at rest.
@@ -126,7 +126,7 @@ fn pump(record: &mut Record) {
     }
 }
 
-/// A solver with a flaw.
+/// Solver with an artificial flaw, which a conformance test must detect.
 pub struct FlawedSolver<'a> {
     solver: &'a dyn Solver,
     flaw: Flaw,

@@ -1,4 +1,4 @@
-//! Mirror invariance: the mirror image of a collision ends as the mirror image of its end.
+//! Mirror invariance: the final state of a mirrored collision is the mirror image of the final state.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;

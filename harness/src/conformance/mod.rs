@@ -1,4 +1,5 @@
-//! Conformance properties, which every solver must satisfy: conservation, symmetries, free flight, order, determinism.
+//! Conformance properties, which every solver must satisfy. They are conservation, symmetries, free flight, order of
+//! accuracy and determinism.
 //!
 //! A property runs its own scenes, in two and three dimensions, with and without friction. Its results have the form of
 //! claim results: measured value, tolerance and reason. Every property has a [`Flaw`] that it must detect in the
@@ -60,8 +61,8 @@ impl Property {
         self.check_again(solver, solver, terms)
     }
 
-    /// Returns one result for each scene. `solver` may return finished runs; `again` does the runs that must be done
-    /// now.
+    /// Returns one result for each scene. `solver` may return finished runs. `again` performs runs that must not come
+    /// from a cache.
     fn check_again(&self, solver: &dyn Solver, again: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         (self.check)(&Rows { solver, again, terms, property: self })
     }
@@ -90,8 +91,8 @@ pub const ALL: [Property; 11] = [
 
 /// Returns the results of all properties, and a control for each result that passes.
 ///
-/// A control checks that the property detects its flaw. A result that fails within a stated exception is no pass, and
-/// has no control.
+/// A control checks that the property detects its flaw. A result that fails within a stated limitation does not pass
+/// and has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     judge_kept(solver, solver, terms)
@@ -99,7 +100,7 @@ pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>)
 
 /// Returns the results and the controls of all properties. `kept` may return finished runs.
 ///
-/// The solver `itself` repeats runs and does the runs that are observed.
+/// The solver `itself` performs repeated and observed runs.
 #[must_use]
 pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! Conservation of momentum in collisions, and of angular momentum without friction.
 //!
-//! With friction, the angular momentum depends on the contact convention. Lever arms R about centres that are less than
-//! R₁ + R₂ apart do not conserve it. The case `collision` distinguishes these conventions.
+//! With friction, the angular momentum depends on the contact convention. Lever arms R₁ and R₂ do not conserve it if
+//! the centres are closer than R₁ + R₂. The case `collision` distinguishes these conventions.
 
 use super::end::End;
 use super::row::{PropertyValue, Rows};

@@ -1,4 +1,4 @@
-//! A solver wrapper that does each run once, because several properties read the same run.
+//! Solver wrapper that performs each run once, because several properties read the same run.
 
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;

@@ -1,4 +1,4 @@
-//! Passivity: no energy gain in undamped collisions, or in a closed cycle of a driven contact.
+//! Passivity: undamped collisions gain no energy, and a closed cycle of a driven contact yields no work.
 
 use super::end::{End, NoEnd};
 use super::objectivity::is_rigid;
@@ -134,7 +134,7 @@ fn levels(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     Ok(gained(worst, most))
 }
 
-/// Returns the number of contacts of a grain between two planes. It crosses the gap, and turns back within half a
+/// Returns the number of contacts of a grain between two planes. The grain crosses the gap and turns back within half a
 /// period of the spring.
 fn contacts(scene: &Scene) -> f64 {
     let time = scene.duration.seconds().unwrap_or(f64::NAN);

@@ -1,4 +1,4 @@
-//! Rotation invariance: a rotated collision ends as its end rotated.
+//! Rotation invariance: the final state of a rotated collision is the rotated final state.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;

@@ -35,7 +35,7 @@ enum Course {
     Sprung(f64),
 }
 
-/// A rotating scene.
+/// Scene in which all bodies rotate as one rigid body.
 pub(super) struct RotatingScene {
     pub(super) named: NamedScene,
     /// Angular velocity Ω of all bodies (rad/s).

@@ -150,8 +150,8 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
     let can: Vec<[bool; 2]> = judged.iter().map(|judged| limits(&plain, judged.claim)).collect();
-    // Errors without a mistake. A mistake that changes no error explains nothing, and neither does a solver that fails
-    // without it.
+    // Errors without a mistake. A mistake that changes no error explains nothing. A solver that fails without the
+    // mistake cannot show its effect.
     let is_tried = |judged: &ClaimResult<'_>, can: &[bool; 2]| {
         can[0] || judged.row.outcome == Outcome::Fail && is_own(judged.claim)
     };

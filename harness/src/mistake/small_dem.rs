@@ -65,7 +65,7 @@ pub enum MethodMistake {
 }
 
 impl MethodMistake {
-    /// All mistakes.
+    /// All mistakes, in a fixed order.
     pub const ALL: [Self; 22] = [
         Self::SpringNotTurned,
         Self::TwistNotFollowed,

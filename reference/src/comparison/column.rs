@@ -110,7 +110,7 @@ impl Column {
         let extents = [column_extent(0), column_extent(1)];
         let extent = extents.into_iter().find(|extent| *extent > 0.0);
         self.difference.scale = extent.unwrap_or(1.0);
-        // Numbers that are printed alike throughout are equal, however few digits they have.
+        // Columns whose printed numbers are all equal have no difference, even if they have few digits.
         let [a, b] = self.printed;
         let is_alike = a.digits == b.digits && a.scale == b.scale && interpolated == 0.0;
         let is_equal = extent.is_none() || is_alike && self.difference.course.iter().all(|sample| sample.off == 0.0);

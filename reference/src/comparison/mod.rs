@@ -32,7 +32,7 @@ pub struct Options {
 /// Quantity by which samples of two outputs are matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
-    /// Step.
+    /// Samples are paired by step number.
     Step,
     /// Time. The second output is interpolated.
     Time,

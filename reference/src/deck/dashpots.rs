@@ -1,9 +1,9 @@
-//! Dashpots in the form that both programs use: proportional to the effective mass of the contact.
+//! Dashpots proportional to the effective mass of the contact, as both programs define them.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-/// Coefficients γ of c = γ m_eff (1/s).
+/// Coefficients γ (1/s) of dashpots c = γ m_eff, along the normal and the tangent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Dashpots {
     pub(crate) normal: f64,

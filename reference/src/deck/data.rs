@@ -13,7 +13,7 @@ use super::outline::is_flat;
 /// Returns the lower and upper corner of the box (m). Periodic axes have the bounds of the scene. Other axes have
 /// room around the grains.
 ///
-/// The box is never smaller, because neighbour lists need some room. It grows with the grains.
+/// The box never becomes smaller, because neighbour lists need some room. It becomes larger if grains reach its sides.
 pub(crate) fn box_of(scene: &Scene) -> (Vector3<f64>, Vector3<f64>) {
     let states: Vec<GrainState> = (1..).zip(&scene.grains).map(|(id, grain)| GrainState::start(id, grain)).collect();
     let (mut low, mut high) = bounds(scene, &states);
@@ -33,7 +33,7 @@ fn largest_radius(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max)
 }
 
-/// Returns for each axis if it is periodic in the programs. In two dimensions, z is periodic.
+/// Returns true for each axis that is periodic in the programs. In two dimensions, z is periodic.
 fn periodic(scene: &Scene) -> [bool; 3] {
     let [x, y, z] = scene.domain.map_or([false; 3], |domain| domain.periodic);
     [x, y, z || is_flat(scene)]

@@ -24,7 +24,7 @@ pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'sta
     }
     lines.push(format!("group free subtract {grains}{groups}"));
     if scene.laws.iter().flatten().any(ContactLaw::has_damping) {
-        // To dashpots, a frozen grain is as heavy as a wall. `fix move` moves it nevertheless.
+        // Dashpots treat a frozen grain like a wall, with infinite mass. `fix move` moves the grain nevertheless.
         lines.push(format!("group heavy union{groups}"));
         lines.push("fix heavy heavy freeze".to_owned());
     }

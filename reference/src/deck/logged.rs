@@ -1,4 +1,4 @@
-//! Quantities read from the log of a run: sums over all contacts, which dumps of grains do not contain.
+//! Quantities read from the log of a run. They are sums over all contacts, which dumps of grains do not contain.
 
 use grainbench_scene::record::Series;
 use grainbench_scene::scene::{ProbeTarget, Scene};

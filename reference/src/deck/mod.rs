@@ -1,7 +1,7 @@
 //! Input decks for LAMMPS and LIGGGHTS, written from the scene that our own solvers run.
 //!
-//! Each deck uses a convention that the program implements. A scene that a program cannot express is refused with the
-//! reason and never approximated.
+//! Each deck uses a convention that the program implements. A scene that a program cannot express is an error with the
+//! reason. Scenes are not approximated.
 
 mod dashpots;
 mod data;

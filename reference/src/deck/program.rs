@@ -33,7 +33,7 @@ impl Program {
     pub const LAMMPS: Self = Self(&Lammps);
     /// LIGGGHTS, `model hooke/stiffness tangential history` and related models.
     pub const LIGGGHTS: Self = Self(&Liggghts);
-    /// All programs.
+    /// All programs for which decks can be written.
     pub const ALL: [Self; 2] = [Self::LAMMPS, Self::LIGGGHTS];
 
     pub(crate) const fn peer(self) -> &'static dyn Peer {

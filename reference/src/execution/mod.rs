@@ -1,7 +1,7 @@
-//! Runs of external programs: input files in a scratch folder, one process, its output and the record.
+//! Runs an external program: writes the input files to a scratch folder, starts one process and reads its output.
 //!
-//! LAMMPS and LIGGGHTS ([`crate::live`]) and programs with a manifest ([`crate::outside`]) have the same run. They
-//! differ in the data of [`Launch`] and in the readers of their output.
+//! LAMMPS and LIGGGHTS ([`crate::live`]) and programs with a manifest ([`crate::outside`]) share this code. They differ
+//! only in the data of [`Launch`] and in the readers of their output.
 
 mod deadline;
 pub(crate) mod process;

@@ -77,7 +77,8 @@ impl LiveProgram {
     /// Returns the hash of the executable, or an empty text if there is none.
     #[must_use]
     pub fn edition(&self) -> String {
-        /// Hashes by path and time of change, because a plan asks for each of its tasks.
+        /// Hashes of executables by path and time of change. They are stored because a plan requests a hash for each
+        /// task.
         static KNOWN: Mutex<BTreeMap<(PathBuf, SystemTime), String>> = Mutex::new(BTreeMap::new());
         let Ok(path) = &self.executable else { return String::new() };
         let changed = fs::metadata(path).and_then(|about| about.modified()).unwrap_or(SystemTime::UNIX_EPOCH);

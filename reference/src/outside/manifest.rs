@@ -192,7 +192,7 @@ impl Default for Limits {
     }
 }
 
-/// Error in a manifest.
+/// Error in a manifest: file, key, expected and found content.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{file}: {place}expected {expected}, found {found}")]
 pub struct ManifestError {

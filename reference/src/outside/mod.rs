@@ -327,8 +327,8 @@ impl ExternalProgram {
     }
 }
 
-/// Returns true if a folder has no source of an adapter: it is hidden, a cache, an environment of Python, or an output
-/// or a plan of this program.
+/// Returns true for a folder that contains no sources of an adapter. Such folders are hidden folders, caches, Python
+/// environments, and outputs and plans of grainbench.
 fn is_derived(folder: &Path) -> bool {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let has = |file: &str| folder.join(file).is_file();

@@ -353,7 +353,7 @@ fn law(between: [String; 2], law: &ContactLaw) -> Law {
         stiffness_damping: law.stiffness_damping,
         normal_damping: law.normal_damping,
         tangential_damping: law.tangential_damping,
-        // Inverse of ζ = −ln e/√(π² + ln² e).
+        // Coefficient of restitution e from ζ = −ln e/√(π² + ln² e).
         restitution: (damping > 0.0).then(|| (-PI * damping / (1.0 - damping * damping).sqrt()).exp()),
         rolling_friction: law.rolling_friction,
         rolling_damping: law.rolling_damping,

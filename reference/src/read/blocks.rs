@@ -159,7 +159,7 @@ fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
     if !before.is_empty() {
         found = format!("{found} after {}", quoted(&last_characters(&before)));
     }
-    ReadError::at(file, number, "text in UTF-8", found).with_column(before.chars().count() + 1)
+    ReadError::at(file, number, "plain text (UTF-8)", found).with_column(before.chars().count() + 1)
 }
 
 /// Returns the last characters of `text`, enough to identify the position.

@@ -14,7 +14,7 @@ use crate::read::read_error::{ReadError, quoted};
 enum Section {
     Atoms,
     Velocities,
-    /// Section without data of grains.
+    /// Section that is skipped, because it contains no data of grains.
     PassedOver,
 }
 

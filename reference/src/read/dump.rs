@@ -52,7 +52,7 @@ impl<'r> DumpReader<'r> {
         Self { most_rows: rows, ..self }
     }
 
-    /// Sets if NaN and infinity are accepted. By default they are errors.
+    /// Sets the treatment of NaN and infinity. By default they are errors.
     #[must_use]
     pub fn not_finite(mut self, not_finite: NonFiniteNumbers) -> Self {
         self.form.not_finite = not_finite;

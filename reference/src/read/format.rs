@@ -12,9 +12,9 @@ pub(crate) type OpenSnapshots = Result<Box<dyn Moments>, ReadError>;
 pub(crate) struct Format {
     /// Name of the format as text.
     pub(crate) words: &'static str,
-    /// Criterion for a file of this format.
+    /// Test that identifies a file of this format.
     pub(crate) told_by: FormatCriterion,
-    /// Numbering of the snapshots, unless the file contains another one.
+    /// Default numbering of the snapshots, if the file contains none.
     pub(crate) numbering: Numbering,
     /// Returns the kind of content of a file.
     pub(crate) holds: fn(&Path) -> Result<FileContent, ReadError>,

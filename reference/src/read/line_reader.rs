@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn names_the_byte_that_is_no_text() {
-        assert_eq!(fault(b"fine\nab\xffcd\n"), "f:2:3: expected text in UTF-8, found the byte 0xff after `ab`");
-        assert_eq!(fault(b"\x00ELF"), "f:1:1: expected text in UTF-8, found the byte 0x00");
+        assert_eq!(fault(b"fine\nab\xffcd\n"), "f:2:3: expected plain text (UTF-8), found the byte 0xff after `ab`");
+        assert_eq!(fault(b"\x00ELF"), "f:1:1: expected plain text (UTF-8), found the byte 0x00");
         assert_eq!(fault("tab\tand é\r\n".as_bytes()), "none");
     }
 

@@ -34,7 +34,8 @@ pub(crate) struct Course {
     name: String,
     /// Step of each moment. If the file has no steps, it is the index of the moment.
     steps: Vec<u64>,
-    /// Numbering of the moments. Steps beside times are steps of the run; otherwise they may count frames.
+    /// Numbering of the moments. If the file also contains times, the steps are steps of the run. Otherwise they may
+    /// count frames.
     numbering: Numbering,
     /// Times (s), if the file contains them.
     times: Option<Vec<f64>>,

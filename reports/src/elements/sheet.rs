@@ -9,7 +9,7 @@ pub(super) enum Cell {
     Whole(u64),
     /// A number; none means unknown, not zero.
     Number(Option<f64>),
-    /// A word.
+    /// Text without line breaks.
     Word(String),
 }
 

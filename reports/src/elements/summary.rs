@@ -52,7 +52,7 @@ pub struct ElementMean {
     pub quantity: &'static str,
     /// Quantity in words.
     pub words: &'static str,
-    /// Its unit.
+    /// Unit of the quantity; `1` for a pure number.
     pub unit: &'static str,
     /// The mean.
     #[serde(flatten)]

@@ -1,4 +1,5 @@
-//! Size limit of a page. Parts move to files next to the page, least important and largest first, until the rest fits.
+//! Size limit of a page. Parts are moved to files next to the page until the rest fits. The least important and largest
+//! parts are moved first.
 
 use maud::{PreEscaped, html};
 

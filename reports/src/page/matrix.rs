@@ -24,8 +24,7 @@ struct Cell<'a> {
     solver: &'a str,
 }
 
-/// Returns the rank of an outcome. The order is red, known error, outdated, pass, and last outcomes that
-/// show nothing.
+/// Returns the rank of an outcome: red first, then known error, outdated, pass, and outcomes without a judged value.
 const fn order(outcome: Outcome) -> u8 {
     match outcome {
         Outcome::Broken => 6,

@@ -17,7 +17,7 @@ use crate::study::{cost, effects, stability};
 
 /// Size of a graph of the first screen (drawing units).
 const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
-/// Least and largest change of an answer in the picture of the effects; others are at its ends.
+/// Smallest and largest change of an answer on the axis of the effects figure. Other changes are plotted at the ends.
 const CHANGES: [f64; 2] = [1e-5, 10.0];
 
 /// Anchors and headings of the questions.
@@ -50,7 +50,7 @@ pub(crate) fn render(report: &Report) -> Markup {
     }
 }
 
-/// Renders the sections with all numbers on stability and effects. Those on costs stand beside the matrix.
+/// Renders the sections with all numbers on stability and effects. The section on costs is next to the matrix.
 ///
 /// # Errors
 /// When a figure cannot be drawn.

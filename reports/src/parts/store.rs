@@ -1,4 +1,4 @@
-//! Store of the snapshots of a run: some in memory, all others in closed parts on disk.
+//! Store of the snapshots of a run. The latest ones are in memory, and all others are in closed parts on disk.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -76,7 +76,7 @@ pub struct SnapshotStore {
     /// True if no snapshot format is requested. If the run exceeds [`READABLE`] rows, only its last state is kept, and
     /// only if that state is small enough.
     in_short: bool,
-    /// True if snapshots were left out for this reason.
+    /// True if `in_short` was the reason that snapshots were omitted.
     left_out: bool,
     /// Columns of grains that parts leave out.
     without: Vec<&'static str>,
@@ -124,7 +124,7 @@ impl SnapshotStore {
         }
     }
 
-    /// Leaves out the columns of grains that the snapshots of this run lack.
+    /// Omits the grain columns that the snapshots of this run do not contain.
     #[must_use]
     pub fn holding(self, columns: &Columns) -> Self {
         Self { without: left_out(columns), ..self }

@@ -26,7 +26,7 @@ pub(crate) const FONTS: &str =
 pub struct DrawError {
     /// Name of the figure.
     pub figure: String,
-    /// Reason.
+    /// Property of the figure that cannot be drawn.
     pub reason: String,
 }
 

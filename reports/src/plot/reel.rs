@@ -1,5 +1,5 @@
-//! Fields in a size that suits a page: pictures with fewer pixels, and films as differences between frames. A script
-//! unpacks the films.
+//! Reduction of fields to a size that suits a page. Pictures get fewer pixels, and films are stored as differences
+//! between frames. A script in the page unpacks the films.
 
 use std::io::{self, Write};
 

@@ -36,12 +36,12 @@ impl EffectResult {
     }
 }
 
-/// Change of a claimed quantity when an effect is switched off.
+/// Errors of a claimed quantity with an effect and without it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shift {
-    /// Quantity.
+    /// Claimed quantity, in words.
     pub quantity: String,
-    /// Solver.
+    /// Name of the solver of the claim.
     pub solver: String,
     /// Signed error with the effect.
     pub with: Option<f64>,
@@ -56,7 +56,7 @@ pub struct Shift {
 /// An effect in a scene of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// Case.
+    /// Name of the case.
     pub case: String,
     /// Variant of the scene.
     pub variant: String,
@@ -66,7 +66,7 @@ pub struct Entry {
     pub on: bool,
     /// Key of the scene file that switches it on.
     pub key: String,
-    /// Result.
+    /// Conclusion about the effect in this scene.
     pub worth: EffectResult,
     /// Changes of all claimed quantities without the effect.
     pub shifts: Vec<Shift>,

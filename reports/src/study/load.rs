@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 pub struct Load {
     /// Number of grains.
     pub grains: usize,
-    /// Solver.
+    /// Name of the solver, such as `dem:lammps`.
     pub solver: String,
-    /// Resolution.
+    /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
-    /// Timings.
+    /// Repeated timings; empty if the solver was not measured.
     pub laps: Vec<TimingDifference>,
     /// Reason why the solver was not measured.
     pub absent: Option<String>,
@@ -29,9 +29,9 @@ pub struct Load {
 pub struct TimingDifference {
     /// Everything except steps: reading, set-up, initial neighbour search, relaxation and output (s).
     pub start_up: f64,
-    /// One step (s).
+    /// Processor time of one step (s).
     pub step: f64,
-    /// One second of simulated time (s).
+    /// Processor time per second of simulated time (s).
     pub second: f64,
 }
 

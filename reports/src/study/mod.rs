@@ -23,7 +23,7 @@ pub use store::{STUDY_FILE, kept_text, load_study, points_of, study_json, write_
 /// Data of a study. They suffice to write every output again without a solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Study {
-    /// Provenance.
+    /// Version, date, machine and options of the measurement.
     pub provenance: Provenance,
     /// Cost of accuracy by quantity.
     #[serde(default)]
@@ -43,7 +43,7 @@ pub struct Study {
     /// Largest stable steps.
     #[serde(default)]
     pub limits: Vec<Limit>,
-    /// Hard cases.
+    /// One result for each hard case and solver.
     #[serde(default)]
     pub hard: Vec<HardCaseResult>,
     /// Entries of the study of effects.

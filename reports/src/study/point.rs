@@ -3,7 +3,7 @@
 use grainbench_scene::record::Cost;
 use serde::{Deserialize, Serialize};
 
-/// Status of a point.
+/// Status of a point: measured, failed, or without a usable solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointStatus {
@@ -88,7 +88,7 @@ pub struct Point {
     pub case: String,
     /// Variant of the scene.
     pub variant: String,
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
     /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
@@ -98,7 +98,7 @@ pub struct Point {
     pub quantity: String,
     /// Unit of `value` and `expected`.
     pub unit: String,
-    /// Status.
+    /// Measured or failed, or the reason why there is no measurement.
     pub standing: PointStatus,
     /// Measured value.
     pub value: Option<f64>,
@@ -150,15 +150,15 @@ impl Point {
 /// Points of one quantity for all solvers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagram {
-    /// Case.
+    /// Name of the case.
     pub case: String,
     /// Variant of the scene.
     pub variant: String,
-    /// Quantity.
+    /// Target quantity, in words.
     pub quantity: String,
     /// Source of the exact value.
     pub source: String,
-    /// Points.
+    /// One point for each solver and setting.
     pub points: Vec<Point>,
 }
 

@@ -19,7 +19,7 @@ pub struct Limit {
     pub knob: String,
     /// Value of the parameter.
     pub at: Option<f64>,
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
     /// Unit of the steps, such as `√(m/k)`.
     pub unit: String,
@@ -27,7 +27,7 @@ pub struct Limit {
     pub found: Option<f64>,
     /// Smallest step that was unstable.
     pub unstable: Option<f64>,
-    /// Exact limit.
+    /// Exact stability limit, in the same unit; none if it is unknown.
     pub exact: Option<f64>,
     /// (found − exact)/exact.
     pub error: Option<f64>,
@@ -35,7 +35,7 @@ pub struct Limit {
     pub default: Option<f64>,
     /// `found` divided by `default`.
     pub margin: Option<f64>,
-    /// Failure above the limit, or reason why there is no number.
+    /// Description of the failure above the limit, or reason why no limit was found.
     pub detail: String,
 }
 
@@ -79,9 +79,9 @@ pub struct HardCaseResult {
     pub case: String,
     /// Required property.
     pub must: String,
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Outcome.
+    /// Outcome at the default step and at smaller steps.
     pub standing: Hardness,
     /// Resolution at which the property holds, or the default resolution.
     pub resolution: String,

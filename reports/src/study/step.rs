@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 /// Cost of a task with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TaskCost {
-    /// Solver.
+    /// Name of the solver, such as `dem`.
     pub solver: String,
     /// Task: a grain in space, a listed pair, a contact, a material point, or a node.
     pub piece: String,
-    /// Method by which the cost was found.
+    /// Measurement method, in words.
     pub found: String,
     /// Processor time per task and step, for each timing (ns).
     pub nanoseconds: Vec<f64>,

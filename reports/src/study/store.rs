@@ -36,7 +36,7 @@ struct Results<'a> {
     loads: &'a [Load],
 }
 
-/// Results on stability.
+/// Limits and hard cases in `results.json`.
 #[derive(Serialize)]
 struct Stability<'a> {
     limits: &'a [Limit],

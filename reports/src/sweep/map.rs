@@ -195,7 +195,7 @@ fn panel(
     }
 }
 
-/// Returns the line on a panel in pieces, because it is cut where it leaves the panel.
+/// Returns the line on a panel. The line consists of several pieces if it leaves the panel.
 fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2]) -> Vec<String> {
     let mut runs: Vec<Vec<String>> = vec![Vec::new()];
     for (x, y) in sweep.line.iter().flat_map(|line| &line.points) {

@@ -20,11 +20,11 @@ use std::path::Path;
 /// Data of a sweep. They suffice to write every output.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// Provenance.
+    /// Version, date, machine and options of the sweep.
     pub provenance: Provenance,
-    /// Title.
+    /// Title of the page.
     pub title: String,
-    /// Description.
+    /// Introductory text of the page.
     pub about: String,
     /// Case and variant, or scene file.
     pub scene: String,
@@ -63,9 +63,9 @@ pub struct Factor {
 /// A measured quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Quantity in words.
+    /// Description of the quantity, such as `displacement at .3 s`.
     pub words: String,
-    /// Its unit.
+    /// Unit of the quantity; `1` for a pure number.
     pub unit: String,
     /// Tolerance for all points; none if each point has its own.
     pub allowed: Option<f64>,
@@ -86,7 +86,7 @@ pub struct Point {
     pub left: PointOutput,
 }
 
-/// Output of a point.
+/// Record counts, results and timings of one point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointOutput {
     /// Counts and times of the run; none if there is no record.
@@ -118,12 +118,12 @@ pub struct RunCounts {
     pub wall_seconds: f64,
 }
 
-/// Result for a quantity.
+/// Measured and expected value of a quantity at one point, with the outcome.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct QuantityResult {
     /// Measured value.
     pub value: Option<f64>,
-    /// Expectation.
+    /// Expected value, bound, band or order; none if the quantity is only recorded.
     pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,

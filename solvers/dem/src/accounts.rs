@@ -13,7 +13,7 @@ use grainbench_scene::scene::{Driven, Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Sums since the start, and the last forces, which the next step needs.
+/// Sums of the energy budget since the start, and the forces at the last evaluation, which the next step needs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Accounts {
     /// Work of walls and grains with prescribed motion (J).

@@ -44,7 +44,7 @@ impl Cells {
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
         let mut cells = Self { low, width, reach, count, start: Vec::new() };
-        // Grains without a cell are sorted as if they had a further cell before all others.
+        // Grains without a cell are sorted as if they had one additional cell before all other cells.
         let last = count.iter().product::<usize>();
         let cell = |grain: &Quad| if has_cell(&grain) { 1 + cells.index(S::vector_in_space(grain)) } else { 0 };
         let cell_of: Vec<u32> = place.iter().map(|grain| cell(grain) as u32).collect();

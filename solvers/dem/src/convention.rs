@@ -1,4 +1,5 @@
-//! Conventions in which discrete element codes differ for the same scene: named options, and presets.
+//! Conventions in which discrete element codes differ for the same scene. Each is a set of named options, and some sets
+//! have names.
 
 use std::fmt;
 
@@ -37,7 +38,7 @@ pub enum TorqueArm {
 /// Treatment of a normal dashpot that pulls on separating grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tension {
-    /// Tension is allowed: the contact ends with the overlap.
+    /// Tension is allowed. The contact ends when the overlap is zero.
     Allowed,
     /// The normal force is never negative (LAMMPS `limit_damping`, LIGGGHTS `limitForce on`).
     Clipped,
@@ -48,8 +49,9 @@ pub enum Tension {
 pub enum History {
     /// The springs rotate with the normal of the contact, and about the normal with the mean spin of both bodies. In
     /// the plane, the spring displacement is a scalar along the tangent (Cundall & Strack 1979). If its stiffness
-    /// grows, a tangential spring keeps its force; if it falls, the spring keeps its displacement. Then no closed cycle
-    /// yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology 233 (2013) 30-46).
+    /// increases, a tangential spring keeps its force. If its stiffness decreases, the spring keeps its displacement.
+    /// No closed cycle then yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology 233
+    /// (2013) 30-46).
     Turned,
     /// The spring displacement is a vector without its normal part (LAMMPS, LIGGGHTS). The force is stiffness times
     /// displacement.
@@ -148,7 +150,7 @@ impl Convention {
         wall_rolling: WallRolling::Surface,
     };
 
-    /// All presets.
+    /// All named conventions, the default first.
     pub const ALL: [Self; 4] = [Self::DEFAULT, Self::CUNDALL_STRACK, Self::LAMMPS, Self::LIGGGHTS];
 
     /// Returns the options as text, for a record.

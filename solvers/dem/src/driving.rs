@@ -5,7 +5,7 @@ use crate::simulation::DemSimulation;
 use grainbench_scene::scene::Driven;
 use nalgebra::Vector3;
 
-/// Returns two flags: motion is prescribed over the previous step, and over this step.
+/// Returns true for each of the previous step and this step if motion is prescribed over it.
 fn moved_before_and_at(driven: &Driven, step: u64, time_step: f64) -> [bool; 2] {
     [step - 1, step].map(|step| driven.is_moved_at(step as f64 * time_step))
 }
@@ -20,7 +20,8 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Gives grains an infinite mass when their prescribed motion starts, and their own mass when it ends.
+    /// Sets the mass of grains to infinity when their prescribed motion starts, and back to their own mass when it
+    /// ends.
     pub(crate) fn begin_and_end_driving(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {

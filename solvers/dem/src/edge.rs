@@ -28,7 +28,7 @@ pub trait Simulation: Send {
     /// # Errors
     /// When the checkpoint belongs to another run or is damaged.
     fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
-    /// Returns the space and the stages for which the loops over contacts were compiled, as text.
+    /// Returns the number of dimensions and the stages for which the loops over contacts were compiled, as text.
     fn layout(&self) -> &'static str;
     /// Returns the counts of steps, pairs and contacts so far, without times.
     fn counts(&self) -> Counts;

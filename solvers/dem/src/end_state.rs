@@ -1,4 +1,5 @@
-//! Final state of a run, and start from such a state: grains at the time of their positions, and contact history.
+//! Final state of a run, and start of a run from a final state. The state contains grains at the time of their
+//! positions, and contact history.
 
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;

@@ -67,7 +67,7 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
     fn springs(&self) -> [usize; 3];
     /// Returns true if tangential forces rotate the grains.
     fn turn(&self) -> bool;
-    /// Returns the space and the stages as text.
+    /// Returns the number of dimensions and the stages as text.
     fn words(&self) -> &'static str;
 }
 

@@ -370,7 +370,7 @@ impl Geometry for Solid {
 mod tests {
     use super::*;
 
-    /// Both spaces give the same slip, force and torque for the same contact in the plane.
+    /// For a planar contact, the formulas in two and three dimensions give the same slip, force and torque.
     #[test]
     fn plane_agrees_with_solid() {
         let (angle, velocity, rolling, tangent) = (0.7_f64, [0.3, -1.1], 2.5, -0.4);

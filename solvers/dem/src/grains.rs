@@ -1,5 +1,5 @@
-//! Grains in memory: quads of numbers, sorted by cell, so that neighbours in space are close in memory, and a grain
-//! needs only a few aligned loads.
+//! Grains in memory, as quads of numbers. Grains are sorted by cell, so that neighbours in space are close in memory. A
+//! grain needs only a few aligned loads.
 //!
 //! Without tangential forces at contacts there are no torques. Grains then do not rotate, and data needed only for
 //! rotation are neither stored nor computed.
@@ -99,7 +99,8 @@ impl<S: Geometry> Grains<S> {
         grains
     }
 
-    /// Sets the inverse mass of grains with prescribed motion to zero, as for a wall, or back to its own value.
+    /// Sets the inverse mass of grains to zero, as for a wall, if their motion is prescribed. Otherwise sets it to the
+    /// value of the scene.
     pub(crate) fn weigh(&mut self, scene: &Scene, driven: &Driven, is_moved: bool) {
         for &grain in &driven.grains {
             let slot = self.slot[grain] as usize;

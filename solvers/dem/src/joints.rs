@@ -1,5 +1,5 @@
-//! Joints of walls: edges of segments and rectangles that lie on another wall. A grain at such an edge touches both walls
-//! at one point and has one contact there.
+//! Joints of walls, which are edges of segments and rectangles that lie on another wall. A grain at such an edge
+//! touches both walls at one point and has one contact there.
 
 use crate::contact::MEMORY;
 use crate::geometry::Geometry;
@@ -37,8 +37,8 @@ impl Joints {
         if edge_lists.iter().all(Vec::is_empty) { Self::default() } else { Self { of: edge_lists } }
     }
 
-    /// Finds the grains at joined edges whose contact belongs to another wall, and passes their springs on to it, so
-    /// that a grain that moves over a joint keeps them.
+    /// Finds the grains at joined edges whose contact belongs to another wall. It moves their springs to that wall, so
+    /// that a grain keeps its springs when it moves over a joint.
     pub(crate) fn look<S: Geometry>(&self, walls: &mut [MovingWall], grains: &Grains<S>) {
         for (number, edges) in self.of.iter().enumerate().filter(|(_, edges)| !edges.is_empty()) {
             let mut near = std::mem::take(&mut walls[number].near);
@@ -60,8 +60,8 @@ impl Joints {
     }
 }
 
-/// Returns the wall that has the contact of a grain at `at` instead of wall `number`: the nearer of two joined walls, or
-/// at the same distance the one with the smaller index.
+/// Returns the wall that has the contact of a grain at `at` instead of wall `number`. It is the nearer of two joined
+/// walls. If both are at the same distance, it is the wall with the smaller index.
 fn owner(walls: &[MovingWall], number: usize, edges: &[(usize, Vec<usize>)], at: Vector3<f64>) -> Option<usize> {
     let wall = &walls[number];
     let distance = wall.facing(at).distance;

@@ -1,4 +1,4 @@
-//! Contact laws of a scene in the form that kernels read: one row of numbers per pair of materials.
+//! Contact laws of a scene in the form that kernels read. There is one row of numbers per pair of materials.
 
 use crate::contact::Options;
 use grainbench_lanes::{Lanes, Quad, SimdPack, WIDEST};
@@ -160,8 +160,8 @@ pub(crate) fn between<L: Lanes, const N: usize>(
     [SimdPack::new(lanes, a), SimdPack::new(lanes, b), SimdPack::new(lanes, c), SimdPack::new(lanes, d)]
 }
 
-/// Returns as many indices as a register holds. They are checked once against the length of the tables, so that no
-/// table needs a further check.
+/// Returns as many indices as a register holds. The indices are checked once against the length of the tables, so that
+/// no table needs a further check.
 ///
 /// # Panics
 /// When an index is out of range.

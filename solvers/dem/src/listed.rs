@@ -11,15 +11,15 @@ use std::ops::Range;
 /// eight.
 pub(crate) const BLOCK: usize = 2048;
 
-/// Contact history of a block of pairs, by value. Each list holds an entry of zero, and then one value per contact of
-/// the last evaluation, in order. Lists of unused values are empty.
+/// Contact history of a block of pairs, with one list for each history value. Each list contains zero as its first
+/// entry, and then one value for each contact of the last evaluation, in order. Lists of unused values are empty.
 pub(crate) type BlockHistory = [Vec<f64>; MEMORY];
 
 /// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are padded after the last
 /// pair so that registers can be filled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pairs {
-    /// First of its own rows. Pairs of other rows come before and after the pairs of its own rows.
+    /// First row of the partition. Pairs of other rows come before and after the pairs of the partition's own rows.
     #[serde(skip)]
     first_row: usize,
     /// Index of the first pair of every own row, and the end of the last row.

@@ -1,4 +1,4 @@
-//! Grains at a wall of triangles: their nearby triangles and their contact history.
+//! Grains at a triangulated wall, with the nearby triangles and the contact history of each grain.
 //!
 //! A contact belongs to a patch, a ridge or a corner of the surface ([`grainbench_scene::mesh`]). If a grain moves from
 //! one part to another at nearly the same point, as when it rolls over a ridge, the contact continues with its history.
@@ -122,8 +122,8 @@ impl MeshContacts {
     }
 }
 
-/// Returns the history of a contact: that of the same part of the surface, or of the nearest part that the grain has
-/// just left. In the second case, no other new contact may be nearer to that part.
+/// Returns the history of a contact. It comes from the same part of the surface, or from the nearest part that the
+/// grain has just left. In the second case, no other new contact may be nearer to that part.
 fn remembered(own: &[PreviousContact], found: &[SphereContact], touched: &SphereContact, radius: f64) -> Memory<f64> {
     if let Some(same) = own.iter().find(|held| held.group == touched.group) {
         return same.memory;
@@ -143,8 +143,8 @@ mod tests {
     use super::*;
     use crate::contact::MEMORY;
 
-    /// A contact goes on at another part of the surface that is at most a tenth of the radius away, and at the nearer of two;
-    /// farther off a new one begins.
+    /// A contact continues on another part of the surface if that part is at most a tenth of the radius away. Of two
+    /// parts, it continues on the nearer one. At a larger distance, a new contact begins.
     #[test]
     fn a_contact_goes_on_where_it_can_have_gone() {
         let at = |x: f64| Vector3::new(x, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! Newton's law for every grain in central differences, with gravity and global damping if the scene has them.
+//! Integration of Newton's law for every grain by central differences, with gravity and global damping if the scene has
+//! them.
 //!
 //! ```text
 //! v ← keep·v + gain·(F/m + g)        x ← x + v Δt        ω ← keep·ω + gain·M/I
@@ -148,8 +149,8 @@ impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
     }
 }
 
-/// Factors of a step, as the numbers of a quad. The fourth number, an inverse mass or a radius, stays unchanged because
-/// zero is added to it; a quad is thus one register.
+/// Factors of a step, as the numbers of a quad, so that a quad is updated as one register. The fourth number, an
+/// inverse mass or a radius, does not change because zero is added to it.
 struct Step {
     keep: [f64; 4],
     gain: [f64; 4],

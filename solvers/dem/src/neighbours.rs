@@ -1,5 +1,5 @@
-//! Neighbour list: pairs that may come into contact, listed with a skin. The list is rebuilt only when something has
-//! moved by half of the skin.
+//! Neighbour list of pairs that may come into contact. Pairs are listed if their gap is smaller than a skin. The list
+//! is rebuilt only when a grain or wall has moved by half of the skin.
 //!
 //! The list has one row per grain and contains each pair once. Contact history is stored beside the list, in the order
 //! of the pairs in contact. Pairs across periodic faces are in a separate list with their shifts, so that the main loop
@@ -33,7 +33,7 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Returns true if this is a complete list of `grains` grains.
+    /// Returns true if the list has a single partition that is valid for `grains` grains and this layout.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
@@ -188,8 +188,8 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
     })
 }
 
-/// Finds the partners near a very large grain, which has no cell: all grains in the cells within its reach, and later
-/// grains without a cell.
+/// Finds the partners near a very large grain, which has no cell. They are all grains in the cells within its reach,
+/// and later grains without a cell.
 fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slot: usize, partners: &mut Vec<u32>) {
     let (grain, without) = (&place[slot], cells.without());
     let mut take = |range: Range<usize>| {

@@ -1,5 +1,5 @@
-//! Output of a simulation at a step: grains with their velocities at the time of the positions, contacts, walls and
-//! energies.
+//! Output of a simulation at a step. It contains grains with their velocities at the time of the positions, contacts,
+//! walls and energies.
 
 use crate::geometry::Geometry;
 use crate::grains::ABSENT;
@@ -101,7 +101,7 @@ fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainSt
     }
 }
 
-/// Returns the angular velocity (rad/s) of a grain without torques: only global damping acts, once per step (Cundall &
+/// Returns the angular velocity (rad/s) of a grain without torques. Only global damping acts, once per step (Cundall &
 /// Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;

@@ -20,7 +20,7 @@ pub(crate) struct RecordedContacts {
     pub(crate) energies: Vec<Energies>,
 }
 
-/// Energies of a contact.
+/// Spring energy of a contact, and its work in one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Energies {
     /// Energy in the springs (J).

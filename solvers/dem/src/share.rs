@@ -1,5 +1,5 @@
-//! Thread partition of the neighbour list: the pairs of some rows, and the pairs of other rows with a grain of the
-//! partition.
+//! Thread partition of the neighbour list. It contains the pairs of some rows, and the pairs of other rows with a grain
+//! of the partition.
 //!
 //! A pair between grains of two partitions is in both. Each partition computes its force for its own grain, from the
 //! same numbers. The forces on a grain are summed in the order of the whole list, so the result does not depend on the
@@ -81,7 +81,7 @@ impl ThreadPartition {
         }
     }
 
-    /// Returns true if this is a complete list of `grains` grains.
+    /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { near, across, rows, .. } = self;
         let shifted = across.shift.len() == across.partner.len() || across.len() == 0;
@@ -129,7 +129,7 @@ impl ThreadPartition {
         self.across.forget();
     }
 
-    /// Returns the number of its own pairs.
+    /// Returns the number of pairs in the partition's own rows.
     pub(crate) fn pairs(&self) -> usize {
         self.near.own().len() + self.across.own().len()
     }
@@ -154,7 +154,7 @@ impl ThreadPartition {
         ]
     }
 
-    /// Computes the forces of its pairs. Returns the number of its own contacts.
+    /// Computes the forces of the partition's pairs. Returns the number of contacts in its own rows.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,

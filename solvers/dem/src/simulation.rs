@@ -1,4 +1,4 @@
-//! One simulation: the calculation cycle of Cundall & Strack.
+//! Simulation of one scene by the calculation cycle of Cundall & Strack.
 //!
 //! A cycle moves the grains by the forces of the previous cycle ([`crate::motion`]) and moves the walls. It rebuilds
 //! the neighbour list if necessary ([`crate::neighbours`]), and computes the forces for the next cycle
@@ -261,8 +261,8 @@ impl<S: Geometry> DemSimulation<S> {
     }
 
     fn cycles(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
-        // If nothing happens between the force evaluation and the motion, each block of grains is moved right after its
-        // forces.
+        // If no other operation comes between the force evaluation and the motion, each block of grains is moved
+        // directly after its forces.
         let at_once = !self.accounting && self.scene.driven.is_empty();
         let mut has_moved = false;
         for left in (0..steps).rev() {

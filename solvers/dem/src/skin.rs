@@ -1,7 +1,8 @@
-//! Skin of the neighbour list: the gap up to which pairs are listed.
+//! Skin of the neighbour list, which is the gap up to which pairs are listed.
 //!
-//! A list is valid until something has moved by half of the skin. With a wider skin, it is rebuilt less often, but each
-//! step tests more pairs without contact. For a list of `P` pairs of `N` grains that lasts `n` steps, a step costs
+//! A list is valid until a grain or wall has moved by half of the skin. With a wider skin, it is rebuilt less often,
+//! but each step tests more pairs without contact. For a list of `P` pairs of `N` grains that lasts `n` steps, a step
+//! costs
 //!
 //! ```text
 //! w(s) = P(s)·test + (N·grain + P·pair)/n(s)        P ∝ (2R + s)^d        n ∝ s

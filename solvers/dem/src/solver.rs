@@ -29,7 +29,7 @@ use grainbench_scene::terms::{Limitation, Terms};
 /// Discrete element method in one convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dem {
-    /// Convention.
+    /// Contact convention, such as the dashpot in the Coulomb limit.
     pub convention: Convention,
     /// Defect, for negative controls only.
     pub defect: Option<Defect>,
@@ -285,7 +285,7 @@ fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn 
     }
 }
 
-/// Running simulation.
+/// Simulation that the main loop advances step by step.
 struct RunningSimulation<'a> {
     simulation: Box<dyn Simulation>,
     run: Run<'a>,

@@ -79,7 +79,7 @@ impl<S: Geometry> DemSimulation<S> {
         self.neighbours = state.neighbours.in_shares(self.shares());
         self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
         self.step = state.step;
-        // Not stored; infinity makes the next cycle compute it.
+        // This bound is not stored. Infinity makes the next cycle compute it.
         self.travelled = f64::INFINITY;
         self.extent = state.extent;
         self.cost = state.cost;

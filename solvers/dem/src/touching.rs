@@ -1,4 +1,5 @@
-//! Selection of the listed pairs in contact, for which laws are evaluated; as many at a time as a register holds.
+//! Selection of the listed pairs in contact, for which laws are evaluated. It processes as many pairs at a time as a
+//! register holds.
 
 use crate::geometry::{Geometry, Linear};
 use crate::laws::{between, gathered, places};

@@ -1,4 +1,4 @@
-//! Moving walls: their position at a step, their motion over it, and nearby grains.
+//! Moving walls, with their position at a step, their motion over the step, and nearby grains.
 
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
@@ -44,7 +44,7 @@ pub(crate) struct MovingWall {
     gone: bool,
 }
 
-/// State of a wall between two steps; everything else follows from its motion.
+/// State of a wall between two steps. All other data of the wall follow from its prescribed motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct WallMemory {
     displacement: Displacement,

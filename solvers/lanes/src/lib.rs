@@ -2,9 +2,8 @@
 //! points or contacts one by one, four by four or eight by eight, with vector instructions if the processor has them.
 //!
 //! Every operation acts on each lane separately and is rounded once, and sums over lanes have a fixed order. Results
-//! are thus equal bit for bit on all processors. For this reason, no operations are fused, and the compiler may not
-//! reorder a loop. The crate also has its own [`logarithm`], because the one of the system library depends on the
-//! processor.
+//! are thus equal bit for bit on all processors. For this reason, operations are not fused and loops are not reordered.
+//! The crate also has its own [`logarithm`], because the one of the system library depends on the processor.
 //!
 //! The threads of a run ([`Team`]) are here too: the distribution of work among threads does not affect the results
 //! either.

@@ -1,7 +1,7 @@
 //! Natural logarithm without branches, with equal bits on every processor. The system library selects its version by
 //! processor, and needs a function call.
 
-/// Bits of √½.
+/// Bit pattern of √½ as `f64`.
 const ROOT_OF_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
 /// ln 2 to twenty bits, so that its product with an exponent is exact, and the remainder.
 const LN_2: [f64; 2] = [0.693_146_705_627_441_4, 4.749_325_039_031_672_6e-7];

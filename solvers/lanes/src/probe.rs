@@ -6,7 +6,7 @@ use crate::{Kernel, Lanes, Number, Processor, Quad, SimdPack};
 /// Bytes that [`stream`] reads and writes per quad.
 pub const BYTES_OF_A_QUAD: usize = 3 * size_of::<Quad>();
 
-/// Adds each quad of one slice to the quad of another: two are read and one is written.
+/// Adds each quad of one slice to the quad of another. Two quads are read and one is written.
 pub fn stream(to: &mut [Quad], from: &[Quad]) {
     to.iter_mut().zip(from).for_each(|(to, from)| to.add(from));
 }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 /// Environment variable that forces an instruction set: `portable`, `avx2` or `avx512`.
 pub const PROCESSOR: &str = "GRAINBENCH_PROCESSOR";
 
-/// Loop over as many items at a time as a register holds, or four, or one.
+/// Loop that processes as many items at a time as a register of the backend holds.
 pub trait Kernel {
     /// Result of the loop.
     type Output;
@@ -76,7 +76,7 @@ impl Processor {
         found.map(Some).ok_or_else(|| format!("{PROCESSOR}: {}, found `{}`", expected(), name.to_string_lossy()))
     }
 
-    /// Returns the name.
+    /// Returns the name that `GRAINBENCH_PROCESSOR` accepts.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -127,7 +127,7 @@ fn portable_by_four<K: FourKernel>(kernel: K) {
     kernel.run(ScalarBackend::<LANES>);
 }
 
-/// Loop compiled for a processor.
+/// Kernel with the instruction set that it is compiled for.
 #[cfg(target_arch = "x86_64")]
 struct CompiledLoop<L, K> {
     lanes: L,

@@ -33,8 +33,8 @@ pub(crate) struct Axis<N> {
     pub(crate) value: [N; 3],
     /// Derivative (per cell), or its mean.
     pub(crate) slope: [N; 3],
-    /// Weights that give the affine part of a velocity field (per cell): w (i − x)/D with D = Σ w (i − x)²
-    /// (Jiang, Schroeder & Teran 2017). Linear in the field, exact for affine fields.
+    /// Weights that give the affine part of a velocity field (per cell): w (i − x)/D with D = Σ w (i − x)² (Jiang,
+    /// Schroeder & Teran 2017). The result is linear in the field and exact for affine fields.
     pub(crate) affine: [N; 3],
     /// D = Σ w (i − x)² (cells²).
     pub(crate) spread: N,

@@ -1,4 +1,4 @@
-//! Creation of bodies from a scene: seeding of material points and surface tracers.
+//! Creation of bodies from a scene, with seeding of material points and surface tracers.
 
 use crate::grid::Lattice;
 use crate::material::Material;

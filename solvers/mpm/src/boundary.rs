@@ -1,4 +1,4 @@
-//! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
+//! Boundaries with prescribed motion. They are walls, fixed or symmetry boundaries, and driven bodies.
 
 use crate::bodies::Body;
 use crate::driven::DrivenGroups;
@@ -27,7 +27,7 @@ impl<S: Space> Boundary<S> {
         }
     }
 
-    /// Moves walls to their positions at `time` (s). During relaxation they rest at their initial positions.
+    /// Moves walls to their positions at `time` (s). During relaxation the walls rest at their initial positions.
     pub(crate) fn move_walls(&mut self, time: f64, time_step: f64, settling: bool) {
         for wall in &mut self.walls {
             wall.force = S::ORIGIN;

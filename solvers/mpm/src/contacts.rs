@@ -1,4 +1,4 @@
-//! Contact stages of a cycle: spring forces between surfaces, and conditions on node velocities.
+//! Contact stages of a cycle, which are spring forces between surfaces, and conditions on node velocities.
 
 use crate::accounts::Accounts;
 use crate::basis::with_basis;
@@ -23,7 +23,7 @@ use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 use std::slice;
 
-/// Subranges of pairs per thread: their cost varies strongly, so several are needed for load balance.
+/// Subranges of pairs per thread. Their cost varies strongly, so several are needed for load balance.
 const SHARES: usize = 8;
 
 /// Requested outputs of springs in a step.
@@ -73,7 +73,7 @@ impl<S: Space> Contacts<S> {
 
     /// Removes tracers if no contact is possible or the contact method does not need them.
     ///
-    /// Before that, they are only needed for the initial pressure.
+    /// Until then, the tracers are needed only for the initial pressure.
     pub(crate) fn drop_idle_surfaces(&mut self, contact: Contact, state: &mut State<S>, boundary: &Boundary<S>) {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;

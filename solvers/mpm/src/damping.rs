@@ -1,6 +1,6 @@
 //! Mass-proportional damping.
 
-/// Factors of damping in a step: dv/dt = a − αv by the trapezoidal rule, v' = keep v + gain a.
+/// Factors of damping in a step. The trapezoidal rule for dv/dt = a − αv gives v' = keep v + gain a.
 ///
 /// Damping acts on the velocity and spin of every material point, as −αρv states, and not only on their part that nodes
 /// represent. Otherwise relative motion of neighbouring points, which the grid does not resolve, would never decay.

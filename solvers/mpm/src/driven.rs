@@ -1,4 +1,4 @@
-//! Grains with prescribed motion, like walls: every node that their points influence has their velocity.
+//! Grains with prescribed motion. Like walls, they set the velocity of every node that their points influence.
 //!
 //! If each body has its own field, these are the nodes of the body. If all bodies share one field, other bodies at
 //! these nodes are carried along.
@@ -94,8 +94,8 @@ impl<S: Space> DrivenGroups<S> {
         }
     }
 
-    /// Sets the velocity of all points of driven bodies. With shared nodes they had taken on a part of the motion of
-    /// other bodies.
+    /// Sets the velocity of all points of driven bodies. At shared nodes, the points had received a part of the motion
+    /// of other bodies.
     pub(crate) fn carry(&mut self, bodies: &[Body], points: &mut Points<S>, time_step: f64) {
         for body in bodies {
             let Some(group) = body.driven else { continue };

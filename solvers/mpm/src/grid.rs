@@ -1,4 +1,4 @@
-//! The grid: a common lattice, of which every velocity field stores its own window.
+//! Grid of nodes. All velocity fields use a common lattice, and every field stores its own window of it.
 //!
 //! A field belongs to a body, or to all bodies if they share one velocity field. Its window is the box of nodes that
 //! its points influence. Memory and time therefore grow with the bodies and not with the space between them. A node
@@ -10,7 +10,8 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A node of a field. The order of its fields is fixed, so that the contributions of a point are added contiguously.
+/// Node of a velocity field. The order of the struct fields is fixed, so that the contributions of a point are added
+/// contiguously.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Node<S: Space> {
@@ -80,7 +81,7 @@ impl Window {
     }
 }
 
-/// The lattice.
+/// Lattice of all possible nodes, with its cell lengths, origin and periods.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lattice {
     /// Length of a cell along each axis (m).
@@ -166,7 +167,7 @@ pub(crate) struct RowBasis<N> {
     pub(crate) affine: [N; 2],
 }
 
-/// A node of a stencil.
+/// Node of a stencil, with its index and its weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StencilNode<S: Space> {
     /// Slot of the node.

@@ -1,4 +1,4 @@
-//! Fixed or symmetry boundaries of boxes: the body continues as its mirror image beyond the side, so that the side
+//! Fixed or symmetry boundaries of boxes. The body continues as its mirror image beyond the side, so that the side
 //! keeps its position to the order of the basis. A side coincides with the nearest nodes.
 
 use crate::bodies::Body;

@@ -1,4 +1,4 @@
-//! The grid with the values of its nodes.
+//! Lattice, windows and node values of the grid.
 
 use crate::bodies::Body;
 use crate::damping::Damping;

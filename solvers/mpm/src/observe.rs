@@ -1,4 +1,4 @@
-//! Observation of a simulation at a step.
+//! Output of a simulation at a step: bodies, contacts, material points and energies.
 
 use crate::bodies::Body;
 use crate::contact::{ContactPartner, ContactPoint};
@@ -27,7 +27,7 @@ struct WholeBodyMotion {
     /// Kinetic energy of all points (J).
     kinetic: f64,
     angle: f64,
-    /// Mass-weighted mean.
+    /// Mass-weighted mean of the equivalent plastic strain.
     plastic_strain: f64,
 }
 

@@ -82,7 +82,7 @@ pub struct Setting {
     /// With smooth ∇N, waves of wave number k grow at the rate Δt σ k² (1 − S)/2ρ. A bar under a tension of .08 E
     /// breaks apart at rest. Hat functions are not affected, because their ∇N is constant within a cell.
     pub moves_with_stress: bool,
-    /// Contact.
+    /// Contact algorithm between bodies and with walls.
     pub contact: Contact,
     /// Springs of [`Contact::Penalty`]: stiffness per area in E'/h, with E' = E/(1 − ν²), harmonic mean of both bodies.
     pub penalty: f64,

@@ -1,5 +1,5 @@
-//! Stencil blocks: the nodes that influence a particle batch, row by row. They are used in place, or copied if a
-//! periodic boundary cuts through them.
+//! Stencil blocks, which are the nodes that influence a particle batch, row by row. Blocks are used in place, or copied
+//! if a periodic boundary cuts through them.
 
 use crate::basis::Basis;
 use crate::grid::Window;

@@ -1,4 +1,4 @@
-//! Material points: structure of arrays, grouped by body and sorted by cell within a body.
+//! Material points as a structure of arrays. They are grouped by body and sorted by cell within a body.
 
 use grainbench_lanes::{Team, take_off};
 use grainbench_scene::space::Space;

@@ -1,5 +1,5 @@
-//! Particle batches: consecutive points that share the same nodes. Points are sorted by cell, so most batches are long.
-//! Loops process the points of a batch four at a time with one set of nodes.
+//! Particle batches, which are consecutive points that share the same nodes. Points are sorted by cell, so most batches
+//! are long. Loops process the points of a batch four at a time with one set of nodes.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
@@ -61,7 +61,7 @@ pub(crate) fn find<S: Space, B: Basis>(
                 ParticleBatch { start, end: start + 1, base, is_known: false }
             }
         };
-        // If the next batch is known too and has other nodes, none of its points can belong to this batch.
+        // If the next batch is also known and has other nodes, none of its points can belong to this batch.
         let is_whole =
             run.is_known && next.is_some_and(|next| next.start == run.end && next.is_known && next.base != run.base);
         let more = if is_whole { run.end..run.end } else { run.end..range.end.min(start + LONGEST) };

@@ -1,4 +1,4 @@
-//! Thread partitions: consecutive points and consecutive nodes of a thread.
+//! Thread partitions, which are consecutive points and consecutive nodes of a thread.
 //!
 //! The partition with a point computes its gather from nodes. The partition with a node computes its sum over all
 //! batches that influence the node, in their order. The result is therefore independent of the number of threads, bit
@@ -14,13 +14,13 @@ use crate::runs::{self, LONGEST, ParticleBatch};
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// Minimum number of points in a partition: with fewer points threads mostly wait for each other.
+/// Minimum number of points in a partition. With fewer points, threads mostly wait for each other.
 pub(crate) const FEWEST: usize = 2000;
 
 /// A thread partition of points and nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct ThreadPartition<S: Space> {
-    /// Points of the partition.
+    /// Range of points in the common point arrays.
     pub(crate) points: Range<usize>,
     /// Nodes of the partition, in whole rows along x.
     pub(crate) nodes: Range<usize>,
@@ -42,7 +42,7 @@ pub(crate) struct ThreadPartition<S: Space> {
     pub(crate) failure: Option<Failure>,
 }
 
-/// Batches of a body in a partition.
+/// Particle batches of one body in a partition.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyBatches {
     /// Index of the body.

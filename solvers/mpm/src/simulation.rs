@@ -1,4 +1,4 @@
-//! A simulation: the cycle points → nodes → points.
+//! Simulation of one scene by the cycle points → nodes → points.
 //!
 //! Each stage uses only the parts that it needs: the state of bodies and points ([`State`]), the grid ([`Grid`]),
 //! boundaries ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums over points and
@@ -29,7 +29,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::SimulationFailure;
 use grainbench_scene::space::Space;
 
-/// A running simulation.
+/// Bodies, grid, boundaries and contacts of a run, advanced step by step.
 pub(crate) struct Simulation<S: Space> {
     pub(crate) scene: Scene,
     pub(crate) scheme: Scheme,
@@ -224,7 +224,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Adds spring forces, then folds mirror images at fixed or symmetry boundaries; all forces are then known.
+    /// Adds spring forces, then folds mirror images at fixed or symmetry boundaries. After this stage all forces are
+    /// known.
     fn spring_forces(&mut self, record: bool) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         if let Some(accounts) = accounts {

@@ -1,4 +1,4 @@
-//! The material point method as a solver: named settings, the time step, and the record of a run.
+//! Material point method as a solver, with named settings, the time step, and the record of a run.
 
 use crate::grid::Lattice;
 use crate::limits;
@@ -43,7 +43,7 @@ impl Mpm {
         Self::ALL.into_iter().find(|mpm| mpm.name == name)
     }
 
-    /// Returns a changed setting under the same name; the case must give the reason.
+    /// Returns the method with a changed setting under the same name. A case that uses it must give the reason.
     #[must_use]
     pub fn with(self, change: impl FnOnce(&mut Setting)) -> Self {
         let mut changed = self;
@@ -211,15 +211,15 @@ fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
         .or_else(|| memory::beyond(nodes, "nodes", BYTES_OF_A_NODE))
 }
 
-/// Minimum radius in cells: a body smaller than a cell has no gradient on the grid.
+/// Minimum radius in cells. A body smaller than a cell has no gradient on the grid.
 const SMALLEST: f64 = 0.5;
 
 /// Minimum number of cells between two fixed or symmetry boundaries.
 ///
-/// With one cell, the energy grew by a factor of 2e7 in 60 periods; with 1.5 cells it is constant within .2 %.
+/// With one cell, the energy grew by a factor of 2e7 in 60 periods. With 1.5 cells it is constant within .2 %.
 const BETWEEN_SIDES: f64 = 1.5;
 
-/// A running simulation.
+/// Simulation that the main loop advances step by step.
 struct RunningSimulation<'a, S: Space> {
     simulation: Simulation<S>,
     run: Run<'a>,
@@ -274,8 +274,8 @@ pub struct Plan {
 
 /// Returns a lattice with cells of about `cell` (m), a whole number of them along periodic axes.
 ///
-/// Nodes are on the faces of the domain along periodic axes, otherwise on the first fixed or symmetry boundary,
-/// otherwise at zero; they are shifted by the phase of the setting.
+/// Along periodic axes, nodes are on the faces of the domain. Along other axes, they are on the first fixed or symmetry
+/// boundary, or at zero if there is none. The phase of the setting shifts them.
 fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
     let mut lattice = Lattice { cell: [cell; 3], inverse: [1.0 / cell; 3], origin: [0.0; 3], period: [None; 3] };
     for axis in 0..scene.dimension.count() {

@@ -54,7 +54,7 @@ impl<S: Space> Simulation<S> {
         before.resize(points.len(), S::ORIGIN);
         for body in bodies.iter() {
             let medium = body.medium();
-            // A relaxed grain has sunk. It must turn about its current centre of mass, or it would start with a
+            // A relaxed grain has sunk. It must rotate about its current centre of mass, or it would start with a
             // velocity.
             let (_, centre) = points.centre_of_mass(body.part.points.clone());
             for at in body.part.points.clone() {
@@ -95,8 +95,8 @@ impl<S: Space> Simulation<S> {
     /// Returns the acceleration of every point at the start (m/s²).
     ///
     /// Relaxed bodies are in equilibrium, and only the change of gravity after relaxation acts on them. Other bodies
-    /// are accelerated by gravity and by their initial stress. As felt through the nodes i that influence a point, a =
-    /// Σ N_i (f_i/m_i + g), with f_i = −Σ V σ ∇N_i over the points and no acceleration across fixed or symmetry
+    /// are accelerated by gravity and by their initial stress. Through the nodes i that influence a point, a = Σ N_i
+    /// (f_i/m_i + g), with f_i = −Σ V σ ∇N_i over the points. There is no acceleration across fixed or symmetry
     /// boundaries. A body rests if its stress carries its weight.
     fn accelerations(&mut self) -> Result<Vec<S::Vector>, Failure> {
         let start = &self.scene.start;

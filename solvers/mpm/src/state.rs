@@ -1,4 +1,4 @@
-//! State of a simulation: bodies and their material points.
+//! State of a simulation, which consists of bodies and their material points.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -20,7 +20,7 @@ use std::ops::Range;
 /// With a third more batches a step costs little more, while sorting costs up to a tenth of a step.
 const DISORDER: usize = 3;
 
-/// Bodies and points.
+/// Bodies of a simulation with their points, and the partition of the points among threads.
 #[derive(Clone, Debug)]
 pub(crate) struct State<S: Space> {
     pub(crate) bodies: Vec<Body>,
@@ -28,7 +28,7 @@ pub(crate) struct State<S: Space> {
     /// Velocities of the points one step before the last observation (m/s), because velocities are half a step behind
     /// positions.
     pub(crate) before: Vec<S::Vector>,
-    /// Thread partitions.
+    /// Partition of the particle batches for each thread.
     pub(crate) shares: Vec<ThreadPartition<S>>,
     /// Threads of the run.
     pub(crate) team: Team,

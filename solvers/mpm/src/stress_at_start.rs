@@ -1,4 +1,4 @@
-//! Initial stress of bodies: hydrostatic pressure, or a stress given by the scene.
+//! Initial stress of bodies, which is a hydrostatic pressure or a stress given by the scene.
 
 use crate::bodies::Body;
 use crate::material::{Law, Material, State as Material3, with_law};

@@ -82,7 +82,7 @@ pub(crate) struct NearSurface<S: Space> {
 /// Number of tracers in a chunk.
 const RUN: usize = 16;
 
-/// Radius of the mean over tracers in three dimensions, in tracer spacings: about twelve tracers contribute.
+/// Radius of the mean over tracers in three dimensions, in tracer spacings. About twelve tracers contribute.
 const SPREAD: f64 = 2.0;
 
 /// Cosine between the normals of two surfaces above which they do not face each other.
@@ -169,8 +169,8 @@ impl<S: Space> Tracers<S> {
     /// face the surface, or is farther than `reach` (m) from it.
     ///
     /// On entry, `closest` is the tracer of these chunks nearest to the previous position, on return the tracer nearest
-    /// to this position. Neighbouring positions have neighbouring nearest tracers, so it limits the search radius; the
-    /// result does not depend on it.
+    /// to this position. Neighbouring positions have neighbouring nearest tracers, so `closest` limits the search
+    /// radius. The result does not depend on it.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
@@ -293,7 +293,7 @@ impl<S: Space> Tracers<S> {
     }
 }
 
-/// Returns the unit vector.
+/// Normalises a non-zero vector.
 #[inline(always)]
 fn unit<S: Space>(vector: S::Vector) -> S::Vector {
     vector * (1.0 / S::dot(vector, vector).sqrt())

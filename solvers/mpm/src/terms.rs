@@ -1,5 +1,4 @@
-//! Conformance properties of the method, and their weaker limits compared with solvers without a grid, for each
-//! setting.
+//! Conformance properties of the method for each setting. Their limits are weaker than those of solvers without a grid.
 
 use crate::options::Contact;
 use crate::solver::Mpm;

@@ -24,11 +24,11 @@ pub(crate) trait Transfer: Copy + Send + 'static {
     fn carried<S: Space, N: Number>(before: [[N; 3]; 3], made: [[N; 3]; 3], stencil: &Stencil<N>) -> [[N; 3]; 3];
 }
 
-/// FLIP: points keep their velocity and add its change (Brackbill & Ruppel 1986), blended with the velocity itself:
-/// v ← (1 − α)(v + Δv) + α v_grid.
+/// FLIP. Points keep their velocity and add the change of the grid velocity (Brackbill & Ruppel 1986), blended with the
+/// grid velocity: v ← (1 − α)(v + Δv) + α v_grid.
 #[derive(Clone, Copy)]
 pub(crate) struct Flip {
-    /// Fraction α.
+    /// Fraction α of the grid velocity in the update.
     pub(crate) pic: f64,
 }
 
@@ -50,8 +50,8 @@ impl Transfer for Flip {
     }
 }
 
-/// APIC: points carry the affine part of the velocity (Jiang et al. 2015). It conserves angular momentum and damps
-/// motion with wavelengths below a few cells.
+/// APIC. Points carry the affine part of the velocity (Jiang et al. 2015). The method conserves angular momentum and
+/// damps motion with wavelengths below a few cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Apic;
 
@@ -73,7 +73,7 @@ impl Transfer for Apic {
     }
 }
 
-/// FLIP with spin: a point keeps its velocity and spin and adds the changes of both. Unlike FLIP it does not lose the
+/// FLIP with spin. A point keeps its velocity and spin and adds the changes of both. Unlike FLIP it does not lose the
 /// angular momentum of points of finite extent, and unlike APIC it has no damping.
 ///
 /// The velocity changes Δv of the nodes have an angular momentum about the point. The spin changes by the rigid
@@ -199,8 +199,8 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::{Matrix2, Vector2};
 
-    /// In simple shear x = X + ¾Y the material lines grow along x by √b_xx = √(1 + ¾²) = 5/4, and along y by nothing; a rotation
-    /// before the shear changes neither.
+    /// In simple shear x = X + ¾Y, the material lines grow along x by the factor √b_xx = √(1 + ¾²) = 5/4, and not along
+    /// y. A rotation before the shear changes neither.
     #[test]
     fn a_point_reaches_as_far_as_its_material_lines() {
         let window = Window::default();

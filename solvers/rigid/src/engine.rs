@@ -9,17 +9,18 @@ use nalgebra::Vector3;
 pub(crate) struct Stepping {
     /// Time step Δt (s).
     pub(crate) time_step: f64,
-    /// Number of small steps of the constraint solver in a step.
+    /// Substeps of rapier's constraint solver per time step Δt (`num_solver_iterations`).
     pub(crate) iterations: usize,
-    /// Length that makes rapier's tolerances absolute (m): the mean radius.
+    /// Length unit of rapier's tolerances (m), equal to the mean radius.
     pub(crate) length: f64,
-    /// Mass that makes rapier's thresholds relative (kg): a power of two near the mean mass, so that no digit changes.
+    /// Unit of mass in the engine (kg). It is a power of two near the mean mass, so that the division by it does not
+    /// round.
     pub(crate) mass: f64,
     /// Settings of the method.
     pub(crate) settings: Settings,
 }
 
-/// Position of a wall: its centre and its rotation since the start.
+/// Present centre of a wall, and its rotation since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placement {
     /// Index of the wall in the scene.

@@ -1,4 +1,4 @@
-//! Rigid grains: the engine rapier in two and three dimensions as a solver.
+//! Solver for rigid grains, which uses the engine rapier in two and three dimensions.
 //!
 //! The adapter passes a scene to rapier and reads the result back. It applies no corrections and no tuning, so results
 //! are those of rapier itself. The two engines differ only in the modules `plane` and `solid`. The vectors of rapier

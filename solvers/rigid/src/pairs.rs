@@ -33,7 +33,7 @@ impl Side {
 /// Parameters of a contact law that a rigid contact uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients {
-    /// Friction μ.
+    /// Friction coefficient μ.
     pub(crate) friction: f64,
     /// Coefficient of restitution e.
     pub(crate) restitution: f64,
@@ -58,7 +58,7 @@ impl Pairs {
         }
     }
 
-    /// Returns material and inverse mass.
+    /// Returns the index of the material and the inverse mass (1/kg) of a contact partner.
     fn side(&self, side: Side) -> (u16, f64) {
         match side {
             Side::Grain(at) => (self.grains[at].0, 1.0 / self.grains[at].1),

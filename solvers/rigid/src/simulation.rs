@@ -1,4 +1,4 @@
-//! Simulation: steps an engine, moves walls, detects failures and observes the state.
+//! Simulation of one scene. It steps an engine, moves walls, detects failures and observes the state.
 
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
@@ -20,7 +20,7 @@ const LARGEST_TURN: f64 = 0.05;
 /// Ratio of surface speed to speed of the centre above which a grain counts as spinning in place.
 const IN_PLACE: f64 = 10.0;
 
-/// A running simulation.
+/// Engine with the scene, the walls and the output data of a run.
 pub(crate) struct Simulation<'a> {
     scene: &'a Scene,
     stepping: Stepping,

@@ -1,4 +1,4 @@
-//! rapier as a solver: its input, unsupported scenes, and the record of a run.
+//! rapier as a solver, with its input, the unsupported scenes, and the record of a run.
 
 use crate::engine::Stepping;
 use crate::limits;
@@ -20,7 +20,7 @@ const STEPS_BETWEEN_PROGRESS: u64 = 1000;
 const PRESSED: &str = "walls that press on a rigid grain from both sides overlap it, and nothing shares the load: impulses push \
                        the overlap out on one side and then on the other, and friction turns the grain with them";
 
-/// The solver `rigid`.
+/// Solver `rigid`, which runs scenes with rapier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rigid {
     /// Settings of the method.
@@ -160,7 +160,7 @@ impl Solver for Rigid {
     }
 }
 
-/// A running simulation.
+/// Simulation that the main loop advances step by step.
 struct RunningSimulation<'a> {
     simulation: Simulation<'a>,
     step: u64,

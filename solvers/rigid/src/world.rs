@@ -45,8 +45,8 @@ pub(crate) struct World {
 impl World {
     pub(crate) fn new(scene: &Scene, pairs: Pairs, stepping: &Stepping) -> Self {
         let shared = pairs.shared();
-        // Coefficients that all pairs share are set on the shapes, as is usual for rapier; both partners have the same
-        // value, of which the larger is used. Other coefficients are set pair by pair.
+        // If all pairs have the same coefficients, these are set on the shapes, as is usual for rapier. Otherwise they
+        // are set pair by pair.
         let with_coefficients = |builder: ColliderBuilder, side: Side| {
             let builder = builder.density(0.0).user_data(side.tag());
             match shared {

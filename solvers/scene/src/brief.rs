@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Summary of a snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Brief {
-    /// Step.
+    /// Step number.
     pub step: u64,
     /// Time (s).
     pub time: f64,

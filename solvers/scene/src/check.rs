@@ -7,7 +7,7 @@ use crate::shape;
 use crate::source::SceneSource;
 use nalgebra::{Matrix3, Vector3};
 
-/// Checks values of one scene.
+/// Checker for the values of one scene, which names the key in each error.
 pub(crate) struct Checker<'a> {
     pub(crate) source: &'a SceneSource,
     pub(crate) dimension: Dimension,

@@ -28,7 +28,7 @@ pub enum CheckpointError {
          continues only there"
     )]
     Older {
-        /// Its format.
+        /// Format version of the checkpoint.
         found: u32,
     },
     /// Written by a later version.
@@ -36,7 +36,7 @@ pub enum CheckpointError {
         "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program wrote it"
     )]
     Newer {
-        /// Its format.
+        /// Format version of the checkpoint.
         found: u32,
     },
     /// Truncated, or longer than expected.

@@ -1,5 +1,5 @@
-//! Main loop of a run, shared by all solvers. It records due output, notifies the watcher and stores checkpoints. It
-//! also measures the wall-clock time from the first step of any kind, relaxation included, to the last.
+//! Main loop of a run, shared by all solvers. It records the output that is due, notifies the observer and stores
+//! checkpoints. It also measures the wall-clock time from the first step of any kind, relaxation included, to the last.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// State that can be advanced in time.
 pub trait Stepper {
-    /// Runs the phase before t = 0, such as relaxation. Its steps count as work.
+    /// Runs the phase before t = 0, such as relaxation. The steps of this phase count as cost.
     ///
     /// # Errors
     /// When the simulation breaks.
@@ -34,8 +34,8 @@ pub trait Stepper {
     /// When the simulation breaks.
     fn advance(&mut self, steps: u64) -> Result<(), RunError>;
 
-    /// Returns the state after the last step; with all snapshot data if `snapshot` is true. It is called at most once
-    /// per step, because a second call may return no contacts.
+    /// Returns the state after the last step, with all snapshot data if `snapshot` is true. This function is called at
+    /// most once per step, because a second call may return no contacts.
     fn look(&mut self, snapshot: bool) -> StepState;
 
     /// Returns the number of rows of grains, contacts and points that a snapshot would have now.
@@ -53,7 +53,7 @@ pub trait Stepper {
         Brief::of_look(&self.look(false))
     }
 
-    /// Returns the counts so far, without times.
+    /// Returns the work counters so far, such as steps, contact evaluations and neighbour builds.
     fn counts(&self) -> Counts;
 
     /// Returns the state after the last step, as the initial state of another scene; `None` if the solver does not
@@ -71,7 +71,7 @@ pub trait Stepper {
     }
 }
 
-/// Parameters of the main loop.
+/// Scene, time step and number of steps for the main loop.
 pub struct Course<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -89,7 +89,7 @@ pub struct Course<'a> {
 pub struct LoopOutput {
     /// Time series.
     pub series: Series,
-    /// Snapshots.
+    /// Snapshots that the observer returned for the record.
     pub snapshots: Vec<Snapshot>,
     /// Counts, and the wall-clock time of all steps, relaxation included (s).
     pub cost: Cost,

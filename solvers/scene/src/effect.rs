@@ -1,5 +1,6 @@
-//! List of physical effects. Each has a name, a scene key that turns it on, a way to switch it off, and a neutral value
-//! that turns it on without changing results. The effects of a scene are always derived from this list.
+//! List of physical effects. Each effect has a name, a scene key that turns it on, and a function that switches it off.
+//! Most effects have a neutral value, which turns them on without changing results. The effects of a scene are always
+//! derived from this list.
 
 use crate::contact_law::{ContactLaw, Springs};
 use crate::material::Deformable;
@@ -39,7 +40,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// All effects.
+    /// All effects in a fixed order.
     pub const ALL: [Self; 12] = [
         Self::Friction,
         Self::Cohesion,
@@ -60,7 +61,7 @@ impl Effect {
         Self::ALL.into_iter().filter(|effect| !matches!(effect, Self::Hertz | Self::Restitution))
     }
 
-    /// Returns the name.
+    /// Returns the name of the effect for users.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -190,7 +191,7 @@ impl Effect {
                 (law.friction, law.cohesion, law.rolling_friction) = (0.0, 0.0, 0.0);
             }),
             Self::Cohesion => scene.change_laws(|law| law.cohesion = 0.0),
-            // Another law is not a switch.
+            // Hertz contacts cannot be switched off, because that would need another law.
             Self::Hertz => {}
             Self::Restitution => scene.change_laws(|law| law.damping_ratio = 0.0),
             Self::RollingResistance => scene.change_laws(|law| law.rolling_friction = 0.0),
@@ -266,7 +267,7 @@ impl Effect {
                 }
                 None => false,
             },
-            // The yield stress is never reached.
+            // The yield stress is so high that it is never reached.
             Self::Plasticity => {
                 let idle = |material: &mut Deformable| {
                     material.constitutive.never_yielding().map(|never| material.constitutive = never)

@@ -19,7 +19,7 @@ pub struct Effects {
     pub rolling_resistance: bool,
     /// Mass-proportional damping of every grain.
     pub global_damping: bool,
-    /// Gravity.
+    /// True if the scene has gravity.
     pub gravity: bool,
     /// Periodic axes.
     pub periodic: bool,

@@ -1,5 +1,5 @@
-//! Final state of a run, from which another scene begins: grains with their velocities and spins, and contact history.
-//! A data file loses the contact springs, and with them the friction that supports a heap.
+//! Final state of a run, from which another scene can begin. It contains grains with their velocities and spins, and
+//! contact history. Unlike a data file, it keeps the contact springs, whose friction supports a heap.
 //!
 //! A file holds the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
 //! [`EndState`] in postcard's format. This format keeps every bit of a number. The smaller form is described in

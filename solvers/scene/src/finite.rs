@@ -6,7 +6,7 @@ use serde::ser::{
 };
 use std::fmt::{self, Display};
 
-/// Returns whether all numbers of a value are finite.
+/// Returns true if all numbers in a value are finite.
 #[must_use]
 pub fn is_finite(value: &impl Serialize) -> bool {
     value.serialize(Search).is_ok()
@@ -42,7 +42,7 @@ macro_rules! passed_over {
     };
 }
 
-/// Traits of values with parts of their own.
+/// Traits of values that consist of several parts.
 macro_rules! parts {
     ($($part:ident: $($method:ident),*;)*) => {
         $(impl $part for Search {

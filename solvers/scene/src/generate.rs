@@ -1,4 +1,4 @@
-//! Generated grains: lattices, and random placement from a seed.
+//! Generation of grains on lattices and at random positions from a seed.
 
 use crate::packing::filled;
 use crate::radii::Radii;

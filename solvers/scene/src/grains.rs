@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// Grains of a scene. A copy costs nothing; a changed copy gets its own grains.
+/// Grains of a scene. Copies share the grains. A copy that changes gets its own grains.
 #[derive(Clone, Default, PartialEq)]
 pub struct Grains(Arc<Vec<Grain>>);
 

@@ -7,7 +7,7 @@ use crate::sealed;
 use serde::{Deserialize, Serialize};
 
 const MAGIC: &[u8] = b"grainbench record ";
-/// Raised whenever stored data change their meaning or their position.
+/// Format that this program writes. It must be raised whenever stored data change their meaning or their position.
 const FORMAT: u32 = 1;
 
 #[derive(Serialize)]

@@ -1,4 +1,4 @@
-//! Scenes of grains: their contents, their physics, and the output of solvers.
+//! Scenes of grains with their contents and physics, and the output of solvers.
 //!
 //! A scene names no solver. It is read from a file ([`source::SceneSource`]), resolved ([`scene::Scene`]), and passed
 //! to a [`solver::Solver`], which returns a [`record::Record`].

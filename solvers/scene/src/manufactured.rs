@@ -1,4 +1,5 @@
-//! Manufactured solutions: chosen motions, and the body forces that make them exact in a neo-Hookean material.
+//! Manufactured solutions, which are chosen motions with the body forces that make them exact in a neo-Hookean
+//! material.
 
 use libm::{cos, log, sin, sincos};
 use nalgebra::{Vector2, Vector3};
@@ -120,7 +121,7 @@ fn turned(vector: Vector2<f64>, angle: f64) -> Vector3<f64> {
     Vector3::new(vector.x * cosine - vector.y * sine, vector.x * sine + vector.y * cosine, 0.0)
 }
 
-/// Returns h, h' and h''.
+/// Returns the profile h(R) of the vortex and its first two derivatives.
 fn bump(radius: f64) -> [f64; 3] {
     let away = radius - 1.0;
     let inside = 1.0 - 16.0 * away * away;

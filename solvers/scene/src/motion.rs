@@ -34,9 +34,9 @@ pub struct Phase {
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s) about [`Motion::centre`].
     pub spin: Vector3<f64>,
-    /// Start.
+    /// Moment at which the phase begins.
     pub start: Moment,
-    /// Stop.
+    /// Moment at which the phase ends.
     pub stop: Moment,
 }
 
@@ -46,7 +46,7 @@ pub struct Phase {
 pub struct Motion {
     /// Initial centre of rotation (m). It moves with the wall.
     pub centre: Vector3<f64>,
-    /// Phases.
+    /// Phases with constant velocity; overlapping phases add up.
     pub phases: Vec<Phase>,
     /// Further functions of time.
     pub functions: Vec<Function>,

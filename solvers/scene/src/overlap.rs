@@ -1,4 +1,5 @@
-//! Detection of grains that overlap at the start, so that a mistyped position is an error and not an explosion.
+//! Detection of grains that overlap at the start, so that a mistyped position is an error. Without it, the run would
+//! explode.
 
 use crate::near::near_pairs;
 use crate::scene::{Domain, Grain, Wall, WallShape, across};

@@ -1,5 +1,5 @@
-//! Perturbed run, which shows how long a run is predictable: the same scene with one position changed by one unit in
-//! the last place.
+//! Perturbed run, in which one position of the scene is changed by one unit in the last place. It shows how long a run
+//! is predictable.
 
 use crate::scene::Scene;
 

@@ -1,5 +1,5 @@
-//! Poured grains: inserted one after the other at a given rate, at random positions in a box from a seed. Every solver
-//! gets the same grains.
+//! Poured grains, which are inserted one after the other at a given rate. Their positions in a box are random numbers
+//! from a seed, so every solver gets the same grains.
 
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
@@ -33,7 +33,8 @@ pub struct Pour {
 pub enum PouringError {
     /// No room was found for a grain in 10,000 tries.
     NoRoom,
-    /// More than 20,000 grains are still near the box: they do not fall out of it, or the box spans the domain.
+    /// More than 20,000 grains are still near the box, because they do not fall out of it or because the box spans the
+    /// domain.
     Crowd,
 }
 

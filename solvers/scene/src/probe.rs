@@ -259,9 +259,9 @@ fn values(probe: &Probe, scene: &Scene, look: &StepState) -> Vec<f64> {
     }
 }
 
-/// Returns overlap, normal force, shear force and slipping of one contact: zeros without contact, NaN if contacts are
-/// not reported. In the plane, the shear force on the first grain is positive along `t = (e₂, −e₁)`, clockwise from the
-/// normal `e` to the partner.
+/// Returns overlap, normal force, shear force and slipping of one contact. They are zero without contact, and NaN if
+/// contacts are not reported. In the plane, the shear force on the first grain is positive along `t = (e₂, −e₁)`,
+/// clockwise from the normal `e` to the partner.
 fn contact_values(look: &StepState, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
     let id = grain as u32 + 1;
     let Some(contacts) = &look.snapshot.contacts else { return vec![f64::NAN; 4] };

@@ -1,4 +1,4 @@
-//! Output of a run: time series, snapshots, cost and provenance.
+//! Output of a run, which consists of time series, snapshots, cost and provenance.
 
 use crate::budget::Budget;
 use crate::effects::Effects;
@@ -165,7 +165,7 @@ pub enum Partner {
 pub struct ContactState {
     /// Grain, by id.
     pub grain: u32,
-    /// Partner of the grain.
+    /// Grain, body or wall on the other side of the contact.
     pub partner: Partner,
     /// Contact point (m), in the middle of the overlap.
     pub point: Vector3<f64>,
@@ -225,8 +225,8 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Returns the reported contacts; empty if none were reported. For figures; evaluations read `contacts` to
-    /// distinguish the two cases.
+    /// Returns the reported contacts; empty if none were reported. Figures use this function. Evaluations read
+    /// `contacts` to distinguish the two cases.
     #[must_use]
     pub fn told_contacts(&self) -> &[ContactState] {
         self.contacts.as_deref().unwrap_or_default()
@@ -256,7 +256,7 @@ impl Snapshot {
         self.place_of(id).map(|place| &self.grains[place])
     }
 
-    /// Returns a snapshot of grains alone: without contacts, and with walls that have moved but report no forces.
+    /// Returns a snapshot with grains and moved walls, without contacts and without forces on the walls.
     #[must_use]
     pub fn of_grains(scene: &Scene, step: u64, time: f64, grains: Vec<GrainState>) -> Self {
         let time_step = if step == 0 { 0.0 } else { time / step as f64 };

@@ -1,4 +1,4 @@
-//! Resolved scene: every grain, wall and law, checked, in SI units. Solvers read nothing else.
+//! Resolved scene with every grain, wall and law in SI units. All values are checked. Solvers read only this scene.
 
 pub use crate::body::Block;
 use crate::body::Start;
@@ -20,12 +20,12 @@ use std::sync::Arc;
 pub enum Dimension {
     /// Plane (x, y).
     Two,
-    /// Space.
+    /// Spheres in three dimensions.
     Three,
 }
 
 impl Dimension {
-    /// Returns 2 or 3.
+    /// Returns the number of dimensions, 2 or 3.
     #[must_use]
     pub const fn count(self) -> usize {
         match self {
@@ -174,7 +174,8 @@ pub struct Piston {
     pub damping: f64,
 }
 
-/// Grains with prescribed motion, whatever forces act on them: a constant velocity and spin, plus a further motion.
+/// Grains with prescribed motion, which forces do not change. It consists of a constant velocity and spin, and of a
+/// further motion.
 #[derive(Clone, PartialEq)]
 pub struct Driven {
     /// Name in the file.
@@ -208,7 +209,7 @@ impl std::fmt::Debug for Driven {
 }
 
 impl Driven {
-    /// The whole run.
+    /// Time span of the whole run (s).
     pub const ALWAYS: [f64; 2] = [0.0, f64::INFINITY];
 
     /// Returns true if the motion is prescribed over the step that begins at a time (s). A moment that is a whole
@@ -281,7 +282,7 @@ pub enum Sampling {
     Count(u64),
 }
 
-/// Target of a probe.
+/// Grain, wall, contact or sum whose quantities a probe records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeTarget {
     /// Grain, by index in [`Scene::grains`].
@@ -333,7 +334,7 @@ pub enum BodyName {
 pub struct Probe {
     /// Name. Columns are called `name.quantity`.
     pub name: String,
-    /// Target.
+    /// Recorded object of the scene.
     pub target: ProbeTarget,
 }
 
@@ -383,7 +384,7 @@ pub struct Scene {
     pub start: Start,
     /// Reference length of the cells of a grid (m).
     pub reference_length: f64,
-    /// Walls.
+    /// Walls in the order of the scene file.
     pub walls: Vec<Wall>,
     /// Groups of grains with prescribed motion.
     pub driven: Vec<Driven>,
@@ -536,7 +537,7 @@ impl Scene {
         2.0 * (mass / stiffness).sqrt()
     }
 
-    /// Returns true if a time step (s) is at or above the critical one. Central differences are stable below it alone.
+    /// Returns true if a time step (s) is at or above the critical one. Central differences are stable only below it.
     #[must_use]
     pub fn is_unstable_at(&self, time_step: f64) -> bool {
         let critical = self.critical_time_step();

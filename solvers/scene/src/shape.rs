@@ -1,4 +1,4 @@
-//! Shapes of values with more than one number, for error messages about a wrong value. Walls that exist only in three
+//! Shapes of vectors and tensors in scene files, for error messages about a wrong value. Walls that exist only in three
 //! dimensions are shown in three dimensions.
 
 use crate::scene::Dimension;

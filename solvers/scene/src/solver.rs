@@ -1,4 +1,4 @@
-//! Solvers: they take a scene and a resolution and return a record.
+//! Interface of solvers, which take a scene and a resolution and return a record.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -23,7 +23,7 @@ pub enum Resolution {
     Rigid {
         /// Step that is divided into substeps (s).
         step: f64,
-        /// Number of time steps in it.
+        /// Number of time steps in `step`.
         substeps: u32,
         /// Iterations of the constraint solver in each time step.
         iterations: u32,
@@ -161,8 +161,8 @@ pub fn beyond_steps(steps: f64) -> Option<String> {
         .then(|| format!("expected fewer than {MOST_STEPS:e} steps, found {steps:.3e}"))
 }
 
-/// Describes a run of steps of `time_step` (s) that has too many steps, or whose record does not fit into memory;
-/// `None` if neither is so.
+/// Describes a run with steps of `time_step` (s) that has too many steps, or whose record does not fit into memory.
+/// Returns `None` for other runs.
 #[must_use]
 pub fn beyond_run(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
     beyond_steps(steps).or_else(|| recorder::beyond_memory(scene, time_step, steps))
@@ -198,11 +198,11 @@ fn rounded(value: f64) -> f64 {
 /// Kind of a solver, by its type of resolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Method {
-    /// Discrete element method: a time step.
+    /// Discrete element method. Its resolution is a time step.
     Dem,
-    /// Rigid grains: substeps and iterations.
+    /// Rigid grains. The resolution consists of substeps and iterations.
     Rigid,
-    /// Deformable grains on a grid: cells and points.
+    /// Deformable grains on a grid. The resolution consists of cells and points.
     Grid,
 }
 
@@ -397,7 +397,7 @@ impl fmt::Display for FailedParticle {
     }
 }
 
-/// Simulation that broke: time, position, cause, and a stable alternative.
+/// Failure of a simulation, with time, position, cause, and a stable alternative.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "the simulation broke at t = {time:.6e} s (step {step}): {subject} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
@@ -407,13 +407,13 @@ impl fmt::Display for FailedParticle {
 pub struct SimulationFailure {
     /// Time (s).
     pub time: f64,
-    /// Step.
+    /// Step number at the failure.
     pub step: u64,
     /// Particle that broke.
     pub subject: FailedParticle,
     /// Last position (m).
     pub position: Vector3<f64>,
-    /// Cause.
+    /// Detected reason of the failure.
     pub cause: Cause,
     /// Time step (s).
     pub time_step: f64,
@@ -448,11 +448,11 @@ pub enum RunError {
     NotFinite {
         /// Time (s).
         time: f64,
-        /// Step.
+        /// Step number of the sample.
         step: u64,
         /// Column of the time series.
         column: String,
-        /// Value.
+        /// Invalid value: NaN or infinity.
         value: f64,
     },
     /// The resolution is not valid for this solver.
@@ -492,12 +492,12 @@ pub enum RunError {
     /// The simulation broke.
     #[error(transparent)]
     Broken(#[from] Box<SimulationFailure>),
-    /// The watcher interrupted the run.
+    /// The observer interrupted the run.
     #[error("the simulation was interrupted at t = {time:.6e} s (step {step})")]
     Interrupted {
         /// Time (s).
         time: f64,
-        /// Step.
+        /// Number of the last complete step.
         step: u64,
     },
     /// A snapshot could not be stored.
@@ -508,7 +508,7 @@ pub enum RunError {
     Checkpoint(#[from] CheckpointError),
 }
 
-/// Error of a watcher that could not store output.
+/// Error of an observer that could not store output.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct StorageError(pub String);
@@ -590,7 +590,7 @@ impl Default for RunOptions {
     }
 }
 
-/// Observer of a run.
+/// Receiver of samples, snapshots and checkpoints during a run.
 pub trait Observer {
     /// Returns the options of the run.
     fn options(&self) -> RunOptions {

@@ -1,4 +1,4 @@
-//! Text of a scene: parsing, variants, overrides, and the lines of keys.
+//! Text of a scene file, with parsing, variants, overrides, and the lines of keys.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SceneFile;
@@ -15,7 +15,7 @@ pub struct SceneSource {
     /// Directory that paths in the file are relative to.
     pub directory: PathBuf,
     text: String,
-    /// The text as a table. All copies share it, whatever their variant and overrides, so the text is parsed once.
+    /// Text as a table. All copies share it, even with other variants and overrides, so the text is parsed once.
     read: Arc<OnceLock<toml::Table>>,
     variant: Option<String>,
     overrides: Vec<(String, String)>,
@@ -237,7 +237,7 @@ impl SceneSource {
         }
         let variant = self.variant.as_ref().map(|variant| format!("variants.{variant}.{key}"));
         let exact = variant.and_then(|path| self.line(&path, true)).or_else(|| self.line(key, true));
-        // A parent that is not in the file comes from an override of a key below it.
+        // If a parent is not in the file, an override of a key below it has created it.
         if let (None, Some((set, value))) = (exact, self.overrides.iter().rev().find(|(set, _)| within(set, key))) {
             return format!("--set {set}={value}");
         }

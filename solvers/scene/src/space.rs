@@ -56,7 +56,7 @@ impl<T> Linear for T where
 pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     /// Number of dimensions.
     const DIMENSION: usize;
-    /// Position, velocity, force.
+    /// Vector, such as a position, velocity or force.
     type Vector: Linear;
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
@@ -327,7 +327,7 @@ impl Space for Solid {
 mod tests {
     use super::*;
 
-    /// Both spaces give the same results for plane tensors.
+    /// The formulas in two and three dimensions give the same results for plane tensors.
     #[test]
     fn plane_agrees_with_solid() {
         let (tensor, gradient) = ([1.0, -2.0, 0.5, 0.7], Matrix2::new(0.01, 0.2, -0.1, 0.03));

@@ -46,8 +46,8 @@ impl Stays {
         self.entries.is_empty() && self.removal.is_none()
     }
 
-    /// Returns the number of grains inserted until a time (s). A tolerance includes insertions at the end of the step
-    /// despite rounding.
+    /// Returns the number of grains inserted until a time (s). A tolerance ensures that rounding does not exclude
+    /// insertions at the end of the step.
     #[must_use]
     pub fn entered_by(&self, time: f64) -> usize {
         let now = time + 1e-9 * time.abs();

@@ -1,5 +1,5 @@
-//! Conformance properties of a solver: its resolution in tests, its order of convergence in the time step, and its
-//! limitations with their physical reasons.
+//! Conformance properties of a solver. They state its resolution in tests, its order of convergence in the time step,
+//! and its limitations with their physical reasons.
 
 use crate::solver::Resolution;
 
@@ -12,7 +12,7 @@ pub struct Terms {
     pub order: Option<Order>,
     /// Limitations compared with other methods.
     pub less: &'static [Limitation],
-    /// True if scenes in space are run too. They take some methods a long time.
+    /// True if scenes in three dimensions are also run. Some methods need a long time for them.
     pub in_space: bool,
     /// True if runs that monitor the energy take 10⁵ steps instead of some thousands.
     pub long: bool,
@@ -21,7 +21,7 @@ pub struct Terms {
 /// Claimed order of convergence in the time step, for smooth motion without dashpots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// Order.
+    /// Expected order, such as 2.
     pub expected: f64,
     /// Three resolutions; each has half the time step of the previous one. The run lasts ten critical time steps.
     pub levels: [Resolution; 3],
@@ -34,15 +34,15 @@ pub struct Limitation {
     pub property: &'static str,
     /// Prefix of the quantity, such as `angular`; empty for all quantities of the property.
     pub quantity: &'static str,
-    /// Error limit, relative to the scale of the row, above which the row fails. It is set above the observed error, so
-    /// that only a change of the solver exceeds it. A row with a limitation never passes as green.
+    /// Error limit, relative to the scale of the result, above which the result fails. It is larger than the observed
+    /// error, so that only a change of the solver exceeds it. A result with a limitation is never green.
     pub at_most: f64,
     /// Physical reason.
     pub because: &'static str,
 }
 
 impl Terms {
-    /// Central differences at time steps that suit springs: second order.
+    /// Properties of central differences with second order in the time step, at time steps for contact springs.
     pub const SECOND_ORDER: Self = Self {
         resolution: Resolution::CriticalFraction(0.02),
         order: Some(Order {

@@ -1,4 +1,4 @@
-//! Text from users: reading of files, and safe display of titles, keys and file names.
+//! Text from users. The functions read files and display titles, keys and file names safely.
 
 use std::fs;
 use std::io;

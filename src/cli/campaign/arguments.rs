@@ -1,4 +1,4 @@
-//! Arguments of a plan, as they are typed and as they are stored.
+//! Arguments of a plan, read from the command line and from a stored plan.
 
 use crate::cli::exit::Fault;
 use crate::cli::value::whole;
@@ -47,11 +47,11 @@ pub(crate) struct Arguments {
     pub(crate) json: bool,
 }
 
-/// Options that write a plan instead of doing the work.
+/// Options of commands that can write a plan.
 #[derive(clap::Args)]
 pub(crate) struct PlanOptions {
-    /// Write a plan to this directory instead of doing the work; `run --resume DIR` does it. Finished tasks of an existing plan
-    /// stay finished.
+    /// Write a plan to this directory and run nothing. `run --resume DIR` runs the plan. Finished tasks of an existing
+    /// plan stay finished.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
     pub(crate) plan: Option<PathBuf>,
     /// Number of shards of the plan; by default each shard lasts about a minute.

@@ -24,14 +24,14 @@ pub(crate) struct Arguments {
 /// Options of the report of a plan.
 #[derive(Default, clap::Args)]
 pub(crate) struct CollectOptions {
-    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. A plan of costs compares its times
-    /// with the last one.
+    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. For a plan made by `cost`,
+    /// times are compared with the last of these reports.
     #[arg(long, value_name = "DIR|results.json")]
     pub(crate) against: Vec<PathBuf>,
     /// Treat amber results as red.
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Write `rows.parquet` too, for a plan of `run`; sweeps always do.
+    /// Also write `rows.parquet` for a plan made by `run`. The report of a sweep always contains it.
     #[arg(long)]
     pub(crate) parquet: bool,
     /// Directory for the report; by default inside the plan.

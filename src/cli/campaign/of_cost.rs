@@ -66,8 +66,8 @@ impl CostStudy {
         NamedSolvers::read_by_content(&self.solver).map(|(solvers, _)| solvers)
     }
 
-    /// Returns the tasks outside the diagrams: the cost of the parts of a step, and of a step at different numbers of
-    /// grains.
+    /// Returns the tasks that belong to no diagram. They measure the cost of the parts of a step, and of a step at
+    /// different numbers of grains.
     fn beside(&self, program: &str) -> [(Id, &'static str, f64); 2] {
         [("prices", PRICES), ("loads", LOADS)]
             .map(|(word, seconds)| (Id::of_words(program, &["cost", word]), word, seconds))

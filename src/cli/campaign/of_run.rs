@@ -1,5 +1,5 @@
-//! Plan of claims: one task per claim with its control, one for the figures of a case, and one for the conformance of
-//! each solver.
+//! Plan of claims. It has one task for each claim with its control, for the figures of each case, and for the
+//! conformance of each solver.
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study};

@@ -27,7 +27,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const SPRINGS: f64 = 0.5;
 /// Expected duration of a stability limit with a grid, per cell (s).
 const CELLS: f64 = 0.05;
-/// Factor on the duration of a hard case, which is repeated with smaller steps if it fails.
+/// Factor on the expected duration of a hard case, because the case is repeated with smaller steps if it fails.
 const TRIES: f64 = 3.0;
 
 /// Limits and hard cases of a plan.

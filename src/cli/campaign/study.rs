@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Kind of plan.
 pub(crate) trait Study: Sync {
-    /// Returns the kind.
+    /// Returns the kind of plan that is stored in its file.
     fn kind(&self) -> Kind;
     /// Returns true if times are measured.
     fn is_timed(&self) -> bool;
@@ -27,7 +27,7 @@ pub(crate) trait Study: Sync {
     fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
 }
 
-/// Options of a report.
+/// Output directory, format and comparison of a report.
 pub(crate) struct ReportOptions<'a> {
     /// Directory of the report.
     pub(crate) out: &'a Path,
@@ -38,7 +38,7 @@ pub(crate) struct ReportOptions<'a> {
     pub(crate) against: Option<&'a Path>,
     /// Number of finished tasks in words, if some are missing.
     pub(crate) unfinished: Option<String>,
-    /// Words to add to the options of the study.
+    /// Additional options that the report lists, in words.
     pub(crate) words: Vec<String>,
     /// Total duration of all tasks (s).
     pub(crate) seconds: f64,

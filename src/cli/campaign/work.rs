@@ -1,4 +1,4 @@
-//! `run --resume DIR`: does the tasks of a plan or of a shard, here or through a batch system.
+//! `run --resume DIR`: runs the tasks of a plan or of a shard, here or through a batch system.
 
 use super::arguments::Arguments as Planned;
 use super::{enter, kinds};
@@ -39,13 +39,13 @@ pub(crate) struct Arguments {
     retry_failed: bool,
 }
 
-/// Options of the work on a plan.
+/// Options of `run` that need `--resume`.
 #[derive(Default, clap::Args)]
 pub(crate) struct WorkOptions {
     /// Shard and number of shards; by default the whole plan.
     #[arg(long, value_name = "K/N", conflicts_with = "on")]
     pub(crate) shard: Option<Shard>,
-    /// Submit the shards to a batch system instead of working here.
+    /// Submit the shards to a batch system instead of running them here.
     #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
     pub(crate) on: Option<String>,
     /// Submit the missing shards of a submitted plan.
@@ -60,7 +60,7 @@ pub(crate) struct WorkOptions {
 }
 
 impl WorkOptions {
-    /// Rejects options of the work on a plan if there is no plan.
+    /// Rejects options that need `--resume` if it is absent.
     pub(crate) fn refuse_without_plan(&self) -> Result<(), Fault> {
         let given = [("--shard", self.shard.is_some()), ("--on", self.on.is_some())];
         match given.iter().find(|(_, is_given)| *is_given) {
@@ -70,7 +70,7 @@ impl WorkOptions {
     }
 }
 
-/// Does a plan as the old command `work`.
+/// Runs a plan as the old command `work`.
 pub(crate) fn old(arguments: &Arguments) -> Outcome {
     work(&arguments.plan, &arguments.options, arguments.jobs, arguments.retry_failed)
 }
@@ -149,7 +149,7 @@ fn worker() -> Worker {
     }
 }
 
-/// Observer that shows the progress and stops the work on an interrupt.
+/// Observer that shows the progress and starts no new task after an interrupt.
 struct WorkObserver {
     interrupt: Interrupt,
     progress: Mutex<Option<Progress>>,

@@ -22,15 +22,15 @@ pub(crate) struct ClaimOptions {
     /// Select resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Select rows by quantity, source (substring or pattern), evidence or outcome; filters of one key are alternatives. A filter
-    /// by outcome still runs all claims, and all of them determine the exit code.
+    /// Select results by quantity, source (substring or pattern), evidence or outcome. Filters of one key are
+    /// alternatives. A filter by outcome still runs all claims, and all of them determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
     /// Repeat only the failed claims and controls of the report in `--out`, and the omitted parts of an interrupted
     /// run; with `--resume`, the failed tasks of the plan.
     #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
     pub(crate) retry_failed: bool,
-    /// Print the rows and controls whose outcome differs from this earlier report.
+    /// Print the results and controls whose outcome differs from this earlier report.
     #[arg(long, value_name = "DIR|results.json", conflicts_with_all = ["plan", "resume"])]
     pub(crate) against: Option<PathBuf>,
     /// Directory for the report.
@@ -60,10 +60,10 @@ pub(crate) struct ClaimOptions {
     /// Store the results of an external solver in `judged.json` next to its manifest; needs all cases and all controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     pub(crate) update_stored: bool,
-    /// Expect the outcomes stored next to the manifest: only a different outcome is red.
+    /// Compare the outcomes with those stored next to the manifest. Only a different outcome is red.
     #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored", "plan"])]
     pub(crate) expect_stored: bool,
-    /// Threads of each run; the results have the same bits for any number.
+    /// Number of threads of each run. It does not change the results.
     #[arg(
         long,
         value_name = "N",
@@ -75,10 +75,10 @@ pub(crate) struct ClaimOptions {
     /// Number of simultaneous runs or tasks; as many as the cores allow by default, and one if a plan measures times.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with_all = ["plan", "on"])]
     pub(crate) jobs: Option<u16>,
-    /// Print only the counts and the failed rows.
+    /// Print only the counts and the failed results.
     #[arg(short, long, conflicts_with_all = ["verbose", "plan", "resume"])]
     pub(crate) quiet: bool,
-    /// Print each row to standard error as soon as it is judged.
+    /// Print each result to standard error as soon as it is judged.
     #[arg(short, long, conflicts_with_all = ["plan", "resume"])]
     pub(crate) verbose: bool,
 }

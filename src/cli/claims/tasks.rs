@@ -1,5 +1,5 @@
-//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` does the tasks in memory,
-//! and a plan does them on many machines. Both make the report from the same results.
+//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` performs the tasks
+//! in one process, and a plan distributes them over machines. Both make the report from the same results.
 
 use super::ClaimOptions;
 use crate::cli::conform::{self, ConformingSolver};
@@ -30,7 +30,7 @@ pub(crate) struct ClaimTasks {
     pub(crate) conforming: Vec<ConformingSolver>,
     /// True if the negative controls run.
     pub(crate) controls: bool,
-    /// True if programs run even if a stored run exists.
+    /// True if external programs run even if a stored run exists.
     pub(crate) live: bool,
     /// True if all resolution levels run.
     pub(crate) thorough: bool,
@@ -90,9 +90,9 @@ impl ClaimTasks {
         of_cases.chain((0..self.conforming.len()).map(ClaimTask::Conformance)).collect()
     }
 
-    /// Returns a key by which tasks are sorted before they are done in memory. Claims that need a new run come before
-    /// claims that only need earlier runs. All cases progress evenly, so two threads are seldom at one case, where they
-    /// would wait for the same scene or run. Figures come last, because they use finished runs.
+    /// Returns a key by which `run` sorts its tasks. Claims that need a new run come before claims that only need
+    /// earlier runs. All cases progress evenly, so two threads are seldom at one case, where they would wait for the
+    /// same scene or run. Figures come last, because they use finished runs.
     pub(crate) fn turns(&self) -> Vec<f64> {
         let mut turns = Vec::new();
         for selected in &self.selected {
@@ -237,7 +237,7 @@ impl<'a> Desk<'a> {
         self.runners[case].get_or_init(|| self.tasks.runner(case, Arc::clone(&self.solvers)))
     }
 
-    /// Does a task.
+    /// Performs a task and returns its state and result.
     pub(crate) fn perform(&self, task: ClaimTask) -> (State, Part) {
         match task {
             ClaimTask::Claim(case, claim) => self.claim(case, claim),

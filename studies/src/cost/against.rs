@@ -1,4 +1,4 @@
-//! Comparison of two sessions: counts exactly, times with their spread.
+//! Comparison of two sessions. Counts must be equal, and times may differ by their spread.
 //!
 //! The time of a point is the median of its repetitions, in units of the reference time measured before and after each
 //! repetition ([`crate::clock::reference_seconds`]). A temporarily slower machine therefore cancels. For all points of
@@ -38,7 +38,7 @@ pub fn shared(old: &[Point], new: &[Point]) -> usize {
 }
 
 /// Returns the changes from one session to another. Points that only the old session has are counted by case, variant
-/// and solver. Sessions without a common point cannot be compared, which is for the worse.
+/// and solver. Sessions without a common point cannot be compared. This counts as a change for the worse.
 #[must_use]
 pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     let before: BTreeMap<[&str; 6], &Point> = old.iter().map(|point| (point.key(), point)).collect();
@@ -61,8 +61,8 @@ pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     changes
 }
 
-/// Returns the numbers of points that only the old session has. A selection of cases or solvers loses points without
-/// fault, so this is not for the worse.
+/// Returns the numbers of points that only the old session has. A selection of cases or solvers omits points on
+/// purpose, so lost points are not a change for the worse.
 fn lost(old: &[Point], new: &[Point]) -> Vec<Change> {
     let now: BTreeSet<[&str; 6]> = new.iter().map(Point::key).collect();
     let mut counts: BTreeMap<[&str; 3], usize> = BTreeMap::new();
@@ -77,7 +77,7 @@ fn lost(old: &[Point], new: &[Point]) -> Vec<Change> {
     counts.into_iter().map(change).collect()
 }
 
-/// Returns any change of counts, errors or outcome of a point; the comparison is exact.
+/// Returns the changes of counts, errors and outcome of a point, by exact comparison.
 fn counts(old: &Point, new: &Point) -> Option<Change> {
     let mut how = Vec::new();
     if old.standing != new.standing {

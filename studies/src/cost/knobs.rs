@@ -12,7 +12,7 @@ pub struct SweepPoint {
     pub solver: String,
     /// Curve of the diagram that contains the point: the solver without its settings.
     pub line: String,
-    /// Resolution.
+    /// Time step, substeps or cells of the run.
     pub resolution: Resolution,
     /// Description of further changed parameters.
     pub knobs: String,

@@ -1,8 +1,8 @@
 //! Cost of a step for one grain, a hundred and ten thousand grains, without start-up.
 //!
-//! Stacked discs rest in a box, and each solver has a usual resolution. A timing is a pair of runs, and the short run
-//! has one step. The difference of their times over the difference of their step counts is the time of a step. The
-//! short run without its step is the start-up. All solvers take turns, with one timing of each scene in a round.
+//! Stacked discs rest in a box, and each solver has a usual resolution. A timing is a pair of runs, of which the short
+//! one has one step. The difference of their times divided by the difference of their step counts is the time of a
+//! step. The time of the short run minus one step is the start-up. Each round has one timing of every solver and scene.
 
 use super::knobs::nominal_seconds;
 use crate::ProgressObserver;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// Discs along each edge of the square packing.
 const EDGES: [u32; 3] = [1, 10, 100];
-/// Solvers and their resolutions.
+/// Measured solvers, each at one resolution.
 const SOLVERS: [(&str, Resolution); 5] = [
     ("dem", Resolution::CriticalFraction(Resolution::FRACTION)),
     ("rigid", Resolution::substeps(Resolution::SUBSTEPS)),

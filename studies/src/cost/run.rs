@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 const REPETITIONS: usize = 5;
 /// Longest run that is repeated (s); a longer run is measured once.
 const SHORT: f64 = 1.0;
-/// Shortest duration of a repetition (s): shorter runs are repeated in a row.
+/// Shortest duration of a repetition (s). A shorter run is repeated several times within one repetition.
 const LEAST: f64 = 2e-3;
 /// Duration of the reference timing before and after a run, as a fraction of the run time.
 const SHARE: f64 = 0.025;
@@ -28,7 +28,7 @@ const SHARE: f64 = 0.025;
 const LONG_ENOUGH: f64 = 0.01;
 /// Duration of the reference timing around a first run (s), whose run time is still unknown.
 const AT_FIRST: f64 = 0.002;
-/// Shortest run (s) that needs no warm-up: its first run counts as a repetition.
+/// Shortest run (s) that needs no warm-up. The first run of a longer point counts as a repetition.
 const WARM: f64 = 0.05;
 /// Maximum number of runs in a row.
 const MOST: f64 = 50.0;
@@ -43,14 +43,14 @@ const UNKNOWN: &str = "what no finer step takes away";
 /// Errors below this are rounding errors, not a floor.
 const ROUNDING: f64 = 1e-11;
 
-/// Selection of points.
+/// Points to measure, and extent of the measurement.
 #[derive(Clone, Debug, Default)]
 pub struct PointSelection {
     /// Solvers to measure; all if empty.
     pub solvers: Vec<String>,
     /// True to include points that take longer than twenty seconds.
     pub all: bool,
-    /// True to measure only errors and counts, with one run each; times are then incidental.
+    /// True to measure only errors and counts, with one run for each point. Times are then not meaningful.
     pub counts: bool,
 }
 
@@ -109,7 +109,7 @@ pub struct Meter<'a> {
     pub program: String,
     /// Cache of finished points.
     pub cache: &'a ResultCache,
-    /// Selection of points.
+    /// Points to measure.
     pub wanted: PointSelection,
     /// Finds solvers by name.
     pub solvers: &'a dyn Solvers,
@@ -285,7 +285,7 @@ fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>
     let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
     let TimedResult { done: record, cpu, wall: whole, reference } = clocked;
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
-    // A failed run has no record: all of its time counts as loop time.
+    // A failed run has no record, so all of its time counts as loop time.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
     let cpu = match (&record, task.stays) {
         // The processor time of a program that keeps running is unknown; with one thread it equals the wall time.
@@ -387,8 +387,8 @@ fn summarise(point: &mut Point) {
 
 /// Marks the points of a sequence at which finer resolutions no longer reduce the error.
 ///
-/// This holds if the errors of the two finest points, of at least three, differ by at most a fifth. All points with
-/// about the finest error are marked.
+/// A sequence needs at least three points. Its finest two errors must differ by at most a fifth. All points with about
+/// the finest error are marked.
 fn mark_floors(tasks: &[Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {

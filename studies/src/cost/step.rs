@@ -1,10 +1,10 @@
 //! Cost model: the cost of a step, divided into elementary operations.
 //!
-//! Grains on springs rest on a periodic square or cubic lattice. Three spacings are run in turn: beyond the reach of
-//! the neighbour list, within it, and in contact. The time of a step per grain is then `g`, `g + p·pairs` and
-//! `g + p·pairs + c·contacts`, with the counts that the run reports. A block of material points is run with four
-//! points in a cell and with sixteen: `t = a·points + b·nodes` in both. A timing is the processor time of a long run
-//! less that of a short run. All runs take turns.
+//! Grains on springs rest on a periodic square or cubic lattice. Three spacings are run: beyond the reach of the
+//! neighbour list, within its reach, and in contact. The time of a step per grain is then `g`, `g + p·pairs` and
+//! `g + p·pairs + c·contacts`, with the counts that the run reports. A block of material points is run with four points
+//! in a cell and with sixteen: `t = a·points + b·nodes` in both. A timing is the processor time of a long run minus
+//! that of a short run. The runs alternate.
 
 use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
@@ -21,7 +21,7 @@ use std::path::Path;
 
 /// Steps of the short and of the long run, for grains and for a block.
 const STEPS: [[u64; 2]; 2] = [[20, 1620], [20, 320]];
-/// Number of SIMD packs that are streamed: two arrays of 64 MB, more than caches hold.
+/// Number of SIMD packs that are streamed. They are two arrays of 64 MB, which is more than caches hold.
 const STREAMED: usize = 2 << 20;
 /// Number of multiplications and additions of all registers in a timing.
 const COMPUTED: u64 = 2_000_000;

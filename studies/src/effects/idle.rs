@@ -1,4 +1,5 @@
-//! Absent effects compiled in with a neutral value: the result must be equal bit by bit, and the cost is measured.
+//! Test of effects that are off. Each effect is compiled in with a neutral value. The result must be equal to the bit,
+//! and the additional cost is measured.
 
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;

@@ -41,7 +41,7 @@ pub struct Ledger {
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
-    /// Runs without an effect, by effect and run.
+    /// Runs with one effect switched off. The key is the effect, and the run in words.
     without: BTreeMap<(Effect, String), Result<FinishedRun, RunError>>,
 }
 
@@ -99,7 +99,8 @@ impl Ledger {
 
     /// Returns the first claim whose error exceeds its limit when the effect is switched off.
     ///
-    /// If there is none, returns a claim without a value, such as the pressure under an unloaded wall.
+    /// If there is none, returns a claim that has no value without the effect, such as the pressure under an unloaded
+    /// wall.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
@@ -173,7 +174,7 @@ impl Ledger {
     fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
         let without = self.error_without(claim, effect);
         let row = self.runner.judge(claim);
-        // A claim that cannot be run or measured without the effect proves nothing, as in negative controls.
+        // A claim that cannot be run or measured without the effect shows nothing, as in negative controls.
         let red = without.is_some_and(|(error, allowed)| error.abs() > allowed);
         Shift {
             quantity: claim.quantity.clone(),
@@ -226,9 +227,10 @@ impl Ledger {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
-    /// Tests an absent effect with the first run of the variant for each kind of solver that can leave the effect out.
+    /// Tests an effect that is off. For each kind of solver that can omit the effect, the first run of the variant is
+    /// used.
     ///
-    /// The effect is inert if it is inert for all of these solvers. Counts and times are from the first solver.
+    /// The effect is inert if no solver's result changes. Counts and times are from the first solver.
     fn idle(&self, piece: &SceneEffect) -> Option<Entry> {
         let mut entry = Entry { worth: EffectResult::Inert, ..self.blank(piece) };
         for &method in piece.effect.left_out_by() {

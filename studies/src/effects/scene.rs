@@ -1,4 +1,5 @@
-//! Effects study of a scene without claims: the change of its probes without an effect, and the cost of the effect.
+//! Effects study of a scene without claims. It measures the change of the probes without each effect, and the cost of
+//! the effect.
 
 use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
@@ -17,9 +18,9 @@ pub struct StudyInput<'a> {
     pub name: String,
     /// The scene.
     pub scene: &'a Scene,
-    /// Solver.
+    /// Solver that runs the scene with and without each effect.
     pub solver: &'a dyn Solver,
-    /// Resolution.
+    /// Resolution of all runs.
     pub resolution: Resolution,
     /// Smallest relevant change, relative to the largest value of a probe.
     pub matters: f64,
@@ -66,7 +67,7 @@ impl StudyInput<'_> {
     fn switched_off(&self, whole: &Record, effect: Effect, entry: &mut Entry) {
         let mut without = self.scene.clone();
         effect.switch_off(&mut without);
-        // The step is the one of the unchanged scene.
+        // The time step is computed from the unchanged scene.
         let resolution = match self.resolution.steps(self.scene) {
             Ok((step, _)) => Resolution::TimeStep(step),
             Err(_) => self.resolution,

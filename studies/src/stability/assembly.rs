@@ -3,7 +3,7 @@
 //!
 //! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is compressed, so that no contact
 //! opens. Every degree of freedom is perturbed at random by a millionth of the overlap, because a symmetric start never
-//! excites the critical mode. A run is unstable if the perturbation has grown a thousandfold.
+//! excites the critical mode. A run is unstable if the perturbation has grown by a factor of 1000.
 //!
 //! ```text
 //! grain on a wall     ω² = k/m; with a tangential spring κk that does not slip also κ(k/m)(1 + 1/i), i = I/(mR²)
@@ -51,10 +51,10 @@ enum Judge {
     Energy,
 }
 
-/// An assembly.
+/// Assembly of grains whose largest stable time step is measured.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// Name.
+    /// Name in tables, such as `square lattice of discs`.
     pub name: &'static str,
     /// κ = k_s/k_n of contacts that do not slip; `None` for frictionless assemblies in which κ is not varied.
     pub kappa: Option<f64>,

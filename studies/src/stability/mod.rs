@@ -1,4 +1,4 @@
-//! Stability study: the largest stable step, found by bisection on a typed failure, and hard cases.
+//! Stability study. It finds the largest stable step by bisection, and runs hard cases.
 
 pub mod assembly;
 pub mod bisection;

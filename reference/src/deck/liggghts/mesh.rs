@@ -25,7 +25,7 @@ pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> 
             rectangle(a - depth, [b - a, depth * 2.0])
         }
         WallShape::Rectangle { corner, edges } => rectangle(corner, edges),
-        // Such walls are refused before, because triangles are flat.
+        // Round walls are refused before, because triangles are flat.
         WallShape::Round { .. } => Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 //! models.
 //!
 //! Two-dimensional scenes are run in two dimensions if every wall is a primitive. All other walls need meshes, which
-//! LIGGGHTS has in three dimensions only. The grains are then one layer of spheres.
+//! LIGGGHTS supports only in three dimensions. The grains are then one layer of spheres.
 
 mod contact;
 mod mesh;

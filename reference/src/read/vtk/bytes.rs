@@ -88,7 +88,7 @@ impl<'b> Bytes<'b> {
             let word = &word[..word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len())];
             match fast_float2::parse::<f64, _>(word) {
                 Ok(number) => numbers.push(number),
-                Err(_) => return Err(self.error(format!("a number, one of {count}"))),
+                Err(_) => return Err(self.error(format!("{count} numbers"))),
             }
             digits.see(word);
             self.at += start + word.len();

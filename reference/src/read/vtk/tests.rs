@@ -114,13 +114,10 @@ fn faults_name_their_place() {
     let fault = |text: &str| legacy::read(Bytes::new("f.vtk", text.as_bytes())).unwrap_err().to_string();
     let head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n";
     assert_eq!(fault("# vtk DataFile Version 3.0\nt\nTEXT\n"), "f.vtk:3: expected `ASCII` or `BINARY`, found `TEXT`");
-    assert_eq!(
-        fault(&format!("{head}POINTS 2 float\n0 0 0\n1 x 0\n")),
-        "f.vtk:7: expected a number, one of 6, found `x`"
-    );
+    assert_eq!(fault(&format!("{head}POINTS 2 float\n0 0 0\n1 x 0\n")), "f.vtk:7: expected 6 numbers, found `x`");
     assert_eq!(
         fault(&format!("{head}POINTS 2 float\n0 0 0\n")),
-        "f.vtk:7: expected a number, one of 6, found the end of the file"
+        "f.vtk:7: expected 6 numbers, found the end of the file"
     );
     assert!(fault(&format!("{head}POINTS 1 float\n0 0 0\nPOINT_DATA 2\n")).contains("expected `POINT_DATA 1`"));
     assert!(fault(&format!("{head}POINTS 99999999999 double\n")).contains("found the end of the file"));

@@ -28,7 +28,7 @@ const LEGEND_SAMPLE: f64 = 30.0;
 /// A position in the drawing.
 type Place = (f64, f64);
 
-/// Style of a curve.
+/// Colour, marker and dashes of a curve.
 #[derive(Clone, Copy)]
 struct CurveStyle {
     colour: &'static str,

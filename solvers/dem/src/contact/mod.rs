@@ -33,12 +33,12 @@ pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
     pub(crate) between: S::Vectors<X>,
     /// Inverse of the length of `between` (1/m).
     pub(crate) inverse_distance: X,
-    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential stage and the rolling stage read it;
-    /// the normal force acts along `between`.
+    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential stage and the rolling stage read
+    /// this vector. The normal force acts along `between`.
     pub(crate) normal: S::Vectors<X>,
     /// Overlap δ (m), positive.
     pub(crate) overlap: X,
-    /// Normal along which velocities are decomposed: in the middle of the step, or `normal`.
+    /// Normal along which velocities are decomposed. It is the normal in the middle of the step, or `normal`.
     pub(crate) velocity_normal: S::Vectors<X>,
     /// Rotation of the contact over the step; `None` if a convention projects the history.
     pub(crate) turn: Option<ContactRotation<S, X>>,

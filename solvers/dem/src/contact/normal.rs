@@ -1,4 +1,4 @@
-//! First stage: the normal force, and the stiffness that the other stages need.
+//! First stage. It computes the normal force, and the stiffness that the other stages need.
 
 use super::{ContactInput, Options};
 use crate::geometry::{Geometry, Linear};
@@ -14,7 +14,7 @@ pub(crate) struct NormalForce<X> {
     pub(crate) for_cap: X,
 }
 
-/// Normal stage.
+/// Normal force law of a contact, as a stage of the chain.
 pub(crate) trait Normal: Copy + Send + Sync + 'static {
     /// True if dashpots act at contacts, including tangential ones.
     const DAMPED: bool;
@@ -89,8 +89,8 @@ impl Normal for Spring {
 /// Linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff).
 ///
 /// The first two terms are from Cundall & Strack (1979, eqs. 26 and 28); LAMMPS and LIGGGHTS use the second. The third
-/// gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). It is exact if the contact ends with the
-/// overlap: the damped half-oscillation ends at e = exp(−πζ/√(1 − ζ²)).
+/// gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). It is exact if the contact ends when the overlap
+/// is zero. Then the damped half-oscillation ends with e = exp(−πζ/√(1 − ζ²)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringDashpot;
 

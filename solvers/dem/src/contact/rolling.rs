@@ -1,11 +1,11 @@
-//! Third stage: the moment against rolling, and its contact history.
+//! Third stage. It computes the moment against rolling and updates its contact history.
 
 use super::ContactInput;
 use super::normal::{Normal, NormalForce};
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 
-/// Rolling stage.
+/// Rolling resistance of a contact, as a stage of the chain.
 pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     /// True if there is a moment.
     const ACTIVE: bool;
@@ -27,7 +27,7 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, memory: &[X]) -> X;
 }
 
-/// No rolling resistance: no history and no moment.
+/// Stage without rolling resistance. It has no history and no moment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeRolling;
 

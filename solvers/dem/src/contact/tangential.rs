@@ -1,4 +1,4 @@
-//! Second stage: the tangential force, a spring and a dashpot with the Coulomb limit.
+//! Second stage. It computes the tangential force of a spring and a dashpot with the Coulomb limit.
 //!
 //! The contact history is the displacement s of the tangential spring (m). It grows by the slip velocity times the time
 //! step, and rotates with the contact ([`SpringTransport`]). The Coulomb limit reduces it ([`Cap`]).
@@ -21,7 +21,7 @@ pub(crate) struct Shear<S: Geometry, X: Number> {
     pub(crate) slipping: X::Mask,
 }
 
-/// Tangential stage.
+/// Tangential force law of a contact, as a stage of the chain.
 pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// True if there is a tangential force.
     const ACTIVE: bool;
@@ -63,7 +63,7 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X;
 }
 
-/// No friction: no tangential force, no history and no rotation.
+/// Stage without friction. It has no tangential force and no history, and grains do not rotate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frictionless;
 
@@ -223,8 +223,8 @@ pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'sta
     fn squared<X: Number>(memory: &Memory<X>) -> X;
 }
 
-/// The displacement rotates with the contact: in the plane as a scalar along the tangent (Cundall & Strack 1979), in
-/// space as a vector.
+/// The displacement rotates with the contact. In two dimensions it is a scalar along the tangent (Cundall & Strack
+/// 1979), and in three dimensions a vector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
@@ -381,7 +381,8 @@ fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
 mod tests {
     use super::*;
 
-    /// Above the limit, both conventions leave a displacement that gives the limit: of the spring alone, or of the sum.
+    /// Above the limit, both conventions leave a displacement for which the force equals the limit. The force is that
+    /// of the spring alone, or the sum with the dashpot.
     #[test]
     fn caps_leave_a_consistent_stretch() {
         let slip = Components([2.0]);
@@ -422,7 +423,7 @@ mod tests {
         }
     }
 
-    /// Contacts with and without a dashpot in one register: each gives the same result as it would alone.
+    /// Contacts with and without a dashpot are evaluated in one register. Each contact gives the same result as alone.
     #[test]
     fn contacts_side_by_side_are_limited_as_alone() {
         use grainbench_lanes::{ScalarBackend, SimdPack};

@@ -1,4 +1,4 @@
-//! Friction of springs: the tangential force on a surface tracer that penetrates another surface.
+//! Friction of springs, which is the tangential force on a surface tracer that penetrates another surface.
 //!
 //! A tangential spring is displaced by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s = −k s,
 //! |F_s| ≤ μ k g. Here s is the tangential spring displacement (m), g the depth (m) and k the stiffness of the
@@ -44,8 +44,8 @@ pub(crate) struct Shear<S: Space> {
 }
 
 impl<S: Space> Shear<S> {
-    /// Computes the tangential force after a further `slip`, and the new spring displacement: −k s, at most μ times the
-    /// normal force.
+    /// Computes the tangential force −k s after a further `slip`, limited to μ times the normal force, and the new
+    /// spring displacement.
     #[inline(always)]
     fn new(stretch: S::Vector, overlap: &Overlap<S>) -> Self {
         let Overlap { depth, stiffness, slip, friction, .. } = *overlap;
@@ -102,7 +102,7 @@ pub(crate) trait Tangential<S: Space> {
 impl<S: Space> Tangential<S> for AbsentEffect {
     const ACTIVE: bool = false;
 
-    /// Returns no force; surfaces slip wherever they move along each other.
+    /// Returns no force. Surfaces slip wherever they move along each other.
     #[inline(always)]
     fn respond(&mut self, _tracer: usize, _other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
         let along = overlap.along(overlap.slip);
@@ -114,11 +114,11 @@ impl<S: Space> Tangential<S> for AbsentEffect {
 /// Maximum number of tangential springs of a tracer.
 const AT_ONCE: usize = 4;
 
-/// A tangential spring.
+/// Tangential contact spring of a tracer to one partner.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Spring<S: Space> {
-    /// Contact partner.
+    /// Body or wall at the other end.
     other: ContactPartner,
     /// Number of the evaluation at which it was last in contact.
     stamp: u64,
@@ -224,7 +224,7 @@ mod tests {
         Tangential::respond(&mut &mut *springs, 0, ContactPartner::Wall(0), &overlap).force.x
     }
 
-    /// A spring keeps its displacement only during contact: after a hop it starts at zero again.
+    /// A spring keeps its displacement only during contact. After a hop it starts at zero.
     #[test]
     fn a_hop_leaves_no_stretch() {
         let mut friction = Friction::<Plane>::new(true, 1);
@@ -245,8 +245,8 @@ mod tests {
         }
     }
 
-    /// A spring of 200 N/m that is pulled by .03 m from rest holds 2 N, at a stretch of .01 m. Its end slides by .02 m under 1 N
-    /// in the mean. Pulled by .01 m more it slides by all of it under 2 N.
+    /// A spring of 200 N/m is pulled by .03 m from rest. Its force is limited to 2 N, at a displacement of .01 m. Its
+    /// end slides by .02 m under a mean force of 1 N. If it is pulled by .01 m more, its end slides by .01 m under 2 N.
     #[test]
     fn what_slides_rubs_off_the_mean_force_times_its_way() {
         let normal = Vector2::y();

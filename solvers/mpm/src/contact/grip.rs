@@ -1,4 +1,4 @@
-//! Surface shape functions: interpolation between a point on a body's surface and the nodes with mass around it.
+//! Surface shape functions, which interpolate between a point on a body's surface and the nodes with mass around it.
 //!
 //! Forces on a surface act on nodes, and tracers follow nodes, with weights of the basis functions. In strong plastic
 //! flow a grain may be stretched to three times its length, and its points are then a cell and a half apart. A node can

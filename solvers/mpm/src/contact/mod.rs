@@ -1,4 +1,4 @@
-//! Contact of bodies: springs between surfaces, or conditions at nodes.
+//! Contact of bodies, by springs between surfaces or by conditions at nodes.
 
 pub(crate) mod friction;
 pub(crate) mod grip;
@@ -11,7 +11,7 @@ pub(crate) mod shared;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Contact partner of a body.
+/// Other body or wall in a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum ContactPartner {
     Body(u32),

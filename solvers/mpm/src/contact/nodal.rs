@@ -1,4 +1,4 @@
-//! Contact conditions of the original papers, at nodes that several bodies or a wall share: each body is constrained
+//! Contact conditions of the original papers, at nodes that several bodies or a wall share. Each body is constrained
 //! relative to the common velocity.
 //!
 //! The common velocity v is the velocity of the wall, if there is one, or of the centre of mass. For a body in contact
@@ -210,8 +210,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 if along <= 0.0 && !pressing && S::dot(before, normal) <= 0.0 {
                     continue;
                 }
-                // Normal impulse on the other body. It stops the approach, and may be negative only while the bodies
-                // are under pressure.
+                // Normal impulse on the other body. The impulse stops the approach, and may be negative only while the
+                // bodies are under pressure.
                 let sum = S::dot(before, normal) + effective * along;
                 let push = if pressing { sum } else { sum.max(0.0) };
                 let rubbed = before - normal * S::dot(before, normal) + (apart - normal * along) * effective;

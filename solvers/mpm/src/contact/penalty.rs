@@ -1,4 +1,4 @@
-//! Springs between surfaces: each tracer that penetrates another surface is pushed out by the force κ |g| a. Here g is
+//! Springs between surfaces. Each tracer that penetrates another surface is pushed out by the force κ |g| a. Here g is
 //! the gap (m), a the tracer's area and κ a stiffness per area. With friction, a tangential spring of the same
 //! stiffness acts along the surface ([`super::friction`]). Forces on both surfaces act at the same contact point, so
 //! linear momentum is conserved to rounding and torques are consistent.

@@ -48,7 +48,7 @@ impl<S: Space> SearchResults<S> {
     }
 }
 
-/// Surroundings of tracers.
+/// Read-only data for the contact search of tracers.
 #[derive(Clone, Copy)]
 pub(crate) struct TracerSurroundings<'a, S: Space, B> {
     pub(crate) rules: Rules<'a>,

@@ -52,7 +52,7 @@ impl Material {
     }
 }
 
-/// Kirchhoff stress τ = Jσ = λ ln J 1 + G (b − 1), b = F Fᵀ, J = det F.
+/// Neo-Hookean law: Kirchhoff stress τ = Jσ = λ (ln J) I + G (b − I), with b = F Fᵀ, J = det F and the identity I.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
     /// Lamé's λ (Pa).

@@ -121,10 +121,10 @@ pub trait Law: Copy + Send + Sync + 'static {
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64;
     /// Returns the elastic energy per initial volume (J/m³).
     fn energy(&self, state: &State) -> f64;
-    /// Returns the state without rotation and plastic strain under a stress (Pa), or `None` if there is no such state.
+    /// Returns the state with this Cauchy stress (Pa), no rotation and no plastic strain, or `None` if there is no such
+    /// state.
     ///
-    /// The stress acts along the first `dimensions` axes, which can deform. Laws that integrate the stress also take
-    /// its other components.
+    /// Only the first `dimensions` axes deform. Hypoelastic laws also store the stress components of the other axes.
     fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State>;
 }
 

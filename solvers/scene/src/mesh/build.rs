@@ -1,4 +1,5 @@
-//! Construction of a surface from the facets of a file: merging of corners, checks, and connectivity.
+//! Construction of a surface from the facets of a file. Corners are merged, errors are detected, and the connectivity
+//! is computed.
 
 use super::flaw::Flaw;
 use super::geometry::{Part, nearest};

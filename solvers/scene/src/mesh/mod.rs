@@ -1,4 +1,4 @@
-//! Walls of triangles: read from STL, checked, and searched for contacts with spheres.
+//! Triangulated walls, which are read from STL, checked, and searched for contacts with spheres.
 //!
 //! Contacts do not depend on the triangulation. Connected triangles in one plane form a *patch*, and edges in one line
 //! between the same patches form a *ridge*. The remaining parts are *corners*. A sphere has at most one contact with

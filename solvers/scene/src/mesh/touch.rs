@@ -2,9 +2,9 @@
 //!
 //! A contact exists where the distance from the sphere's centre along the surface has a local minimum below the radius.
 //! On a triangle, this is the foot of the perpendicular from the centre. On an edge or at a corner, it is the nearest
-//! point, provided that all adjacent parts lead away from the centre. These are the contacts of a sphere with the
-//! solid: one on a plane, two in the concave edge of two planes, one on their convex edge. The centre may be on either
-//! side of a triangle, but parts behind another triangle are not in contact.
+//! point, provided that all adjacent parts lead away from the centre. A sphere thus has one contact on a plane, two
+//! contacts in the concave edge of two planes, and one contact on their convex edge. The centre may be on either side
+//! of a triangle, but parts behind another triangle are not in contact.
 
 use super::build::Surface;
 use super::geometry::{Part, lies_across, nearest};
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(cube().parts(), [6, 12, 8]);
     }
 
-    /// Plane of many triangles: one contact at every position, including seams and corners of triangles.
+    /// On a plane of many triangles, there is one contact at every position, including seams and corners of triangles.
     #[test]
     fn a_plane_is_touched_once_everywhere() {
         let at = |i: u32, j: u32| [0.1 * f64::from(i) + 0.017 * f64::from(j), 0.1 * f64::from(j), 0.3];

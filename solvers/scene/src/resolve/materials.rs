@@ -1,4 +1,4 @@
-//! Materials: those in use, and those that deform.
+//! Selection of the materials in use, and properties of deformable materials.
 
 use super::Resolver;
 use crate::error::SceneError;

@@ -1,4 +1,5 @@
-//! Resolution of a scene file into a scene: all names looked up, all numbers checked, all grains placed.
+//! Resolution of a scene file into a scene. All names are looked up, all numbers are checked, and all grains are
+//! placed.
 
 use crate::body::{Settle, Start};
 use crate::check::Checker;

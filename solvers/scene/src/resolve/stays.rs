@@ -48,7 +48,7 @@ impl Resolver<'_> {
                 PouringError::NoRoom => "room in the box for each grain when it comes",
                 PouringError::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
             };
-            // Tries a half, a quarter, … of the rate, until grains fall away in time.
+            // The search tries a half, a quarter, … of the rate, until grains fall away in time.
             let slower = (1..=10).map(|halvings| pour.rate / f64::from(1 << halvings));
             let fits = |rate: &f64| poured(&Pour { rate: *rate, ..pour }, domain, check.dimension).is_ok();
             let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is"));

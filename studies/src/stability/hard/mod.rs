@@ -1,4 +1,4 @@
-//! Hard cases: each has a solver-independent condition, and each solver that supports the case gets a verdict.
+//! Hard cases. Each has a solver-independent condition, and each solver that supports the case gets a verdict.
 
 mod contacts;
 mod extremes;
@@ -24,9 +24,9 @@ use std::path::Path;
 /// Checks the condition at the end of a run.
 type Check = fn(&Scene, &Record) -> Result<(), Failure>;
 
-/// A hard case.
+/// Hard case: a scene in which solvers may fail, and the required property.
 pub struct HardCase {
-    /// Name.
+    /// Name in tables, such as `mass-ratio-1e6`.
     pub name: String,
     /// Description of the condition.
     pub must: &'static str,
@@ -36,7 +36,7 @@ pub struct HardCase {
     pub check: Check,
     /// True if the run is also continued from a checkpoint halfway and must end in the same bits.
     pub goes_on: bool,
-    /// Solvers to test; only a fast solver is listed for cases of 10⁹ grain-steps, which it does in a minute.
+    /// Solvers to test. Cases of 10⁹ grain-steps list only a fast solver, which needs a minute.
     pub asked: &'static [&'static str],
 }
 
@@ -199,7 +199,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
             record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
             (case.check)(scene, &record).map_err(Stop::Failed)
         }
-        // A solver that rejects the step and names a stable one has failed early, with a typed error.
+        // If a solver rejects the step and names a stable one, it has failed early with a typed error.
         Err(RunError::Resolution { reason, .. }) => Err(Stop::Failed(Failure::Broken(reason))),
         Err(error) => Err(match of_error(&error) {
             Some(failure) => Stop::Failed(failure),
