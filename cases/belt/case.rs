@@ -341,8 +341,7 @@ fn is_kicked(claim: &Claim) -> bool {
     claim.runs.iter().any(|run| run.solver == "liggghts") && claim.quantity.contains(", damped,")
 }
 
-/// Claims the velocity difference after the first step. The dashpot of LIGGGHTS acts at step 0, when our belt still
-/// rests.
+/// Claims the velocity difference after the first step. The dashpot of LIGGGHTS acts at step 0, when our belt still rests.
 fn kick() -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| {
         Run::new("disc", solver, Resolution::TimeStep(1e-4)).adjusted("one step, overlap/R = 1e-3", |scene| {
@@ -396,8 +395,7 @@ mod tests {
 
     use super::*;
 
-    /// In the frame of the belt, the grain has an initial spin and velocity. Its motion ends as in `backspin` with R Ω₀
-    /// = V.
+    /// In the frame of the belt, the grain has an initial spin and velocity. Its motion ends as in `backspin` with R Ω₀ = V.
     #[test]
     fn is_backspin_seen_from_the_belt() {
         let belt = Belt::from_scene(&CASE.variant("disc").unwrap());

@@ -18,8 +18,7 @@ pub(super) struct ImpactParameters {
     pub(super) restitution: f64,
     /// Ratio e′ of the normal velocities if the contact ends as soon as its force is zero.
     pub(super) early: f64,
-    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the Coulomb limit by the normal
-    /// spring.
+    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the Coulomb limit by the normal spring.
     pub(super) steepness: f64,
 }
 

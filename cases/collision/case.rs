@@ -281,8 +281,7 @@ fn at_the_limit() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction while F_n
-/// pulls.
+/// Claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction while F_n pulls.
 fn coulomb() -> Vec<Claim> {
     let oblique_claim =
         |quantity: &str, unit, solver| claim(quantity, unit).run(Run::new("oblique", solver, LEVELS[1].resolution));

@@ -46,8 +46,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number
-/// first.
+/// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {
     let odd = scene.grains.len().div_ceil(2);
     let place = |number: usize| if number % 2 == 1 { number / 2 } else { odd + number / 2 - 1 };

@@ -116,8 +116,7 @@ impl Mode {
         (0..PARTS).map(|at| profile(self.radii[0] + (f64::from(at) + 0.5) * part) * part).sum()
     }
 
-    /// Returns the mode's initial velocity in the middle of the ring (m/s), and the fraction of the energy in other
-    /// modes.
+    /// Returns the mode's initial velocity in the middle of the ring (m/s), and the fraction of the energy in other modes.
     fn start(&self) -> (f64, f64) {
         let own = self.through(|r| r * self.shape(r).powi(2));
         let common = self.through(|r| r * r * self.shape(r));

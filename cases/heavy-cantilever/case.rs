@@ -87,8 +87,7 @@ fn strip(scene: &Scene) -> Option<[f64; 3]> {
     Some([length, thickness, beam.density * -scene.gravity.y * length.powi(3) / stiffness])
 }
 
-/// Returns the error due to the thickness of the strip and to the position of a material point, in units of the
-/// deflection.
+/// Returns the error due to the thickness of the strip and to the position of a material point, in units of the deflection.
 fn allowed(level: Level) -> f64 {
     let Resolution::Grid { cells, points, .. } = level.resolution else { return f64::NAN };
     let (thickness, Elastica { curvature, sinking, angle, .. }) = (0.05, Elastica::under(10.0));

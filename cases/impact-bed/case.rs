@@ -184,8 +184,7 @@ fn claims() -> Vec<Claim> {
     all_claims
 }
 
-/// Two functions for several beds: one combines their values, given the expected value; the other returns the
-/// tolerance.
+/// Two functions for several beds: one combines their values, given the expected value; the other returns the tolerance.
 type BedCombination = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
 /// The mean of five beds agrees with the codes.

@@ -299,8 +299,7 @@ fn continuous() -> Vec<Claim> {
                      2.96e-3 and 7.4e-4 at κ = 0, the worst case, rounded up to include the geometry",
                 ))
                 .refuses(lighter());
-            // At coarser steps, the tolerance is the phase error of central differences, which other schemes do not
-            // have.
+            // At coarser steps, the tolerance is the phase error of central differences, which other schemes do not have.
             claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
         }
         claims.push(

@@ -291,8 +291,7 @@ fn ratio_in(done: &FinishedRun, parts: u64) -> Result<f64, MissingData> {
     Ok((right? - left?) / (top? - bottom?))
 }
 
-/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom over the initial
-/// height.
+/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom over the initial height.
 fn vertical_strain(done: &FinishedRun, time: f64) -> f64 {
     let [_, _, bottom, top] = &done.scene.walls[..] else { return f64::NAN };
     let moved = |wall: &grainbench_scene::scene::Wall| wall.motion.displacement(time, 0.0).translation.y;

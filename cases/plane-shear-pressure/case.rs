@@ -45,8 +45,7 @@ const PACKINGS: &str = include_str!("packings.csv");
 const BECAUSE: &str =
     "a sheared packing is a random sample: 99 % interval of the difference of two packings, from four seeds";
 
-/// Part of the run after which the flow is steady, because the walls have accelerated the middle of the layer
-/// (derivation).
+/// Part of the run after which the flow is steady, because the walls have accelerated the middle of the layer (derivation).
 const STEADY: f64 = 0.25;
 
 /// Ratio of the lid's pressure in the comparison runs. The speed of their walls is larger by its square root.

@@ -128,8 +128,7 @@ fn overlaps(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok([overlaps.iter().copied().fold(0.0, f64::max), overlaps.iter().sum::<f64>() / overlaps.len() as f64])
 }
 
-/// Returns the largest ratio of shear to normal force, over the contacts between grains with more than the mean normal
-/// force.
+/// Returns the largest ratio of shear to normal force, over the contacts between grains with more than the mean normal force.
 fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));

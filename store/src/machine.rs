@@ -25,7 +25,7 @@ pub fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
-/// Returns whether a process of this machine exists, or `None` if the system does not report it.
+/// Returns true if a process of this machine exists, or `None` if the system does not report it.
 #[must_use]
 pub fn runs(process: u32) -> Option<bool> {
     std::path::Path::new("/proc/self").exists().then(|| std::path::Path::new(&format!("/proc/{process}")).exists())

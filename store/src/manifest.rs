@@ -1,5 +1,5 @@
-//! Manifest of an output directory: its files, and whether all are from one run. A process that ends while it replaces
-//! files leaves files of two runs.
+//! Manifest of an output directory, with the names of its files. It also states if all files are from one run, because a
+//! process that ends while it replaces files leaves files of two runs.
 
 use serde::{Deserialize, Serialize};
 use std::fs;

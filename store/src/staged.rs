@@ -475,7 +475,7 @@ mod tests {
         assert!(crate::refuse_mixed(&target).is_ok());
     }
 
-    /// A folder of the user that a manifest takes for a file stays.
+    /// A folder of the user remains, although a manifest lists its name as a file.
     #[test]
     fn folders_are_not_removed_as_files() {
         let dir = tempfile::tempdir().unwrap();

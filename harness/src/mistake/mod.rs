@@ -234,7 +234,7 @@ fn is_own(claim: &Claim) -> bool {
     is_computed && claim.control.set == Set::Main && claim.runs.iter().all(is_short)
 }
 
-/// Returns whether the runs of a claim are short enough for a wrong scene, and for a wrong method.
+/// Returns true if the runs of a claim are short enough: first for a wrong scene, second for a wrong method.
 fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
     let of_grains = |run: &Run| matches!(Method::from_name(run.solver), Some(Method::Dem | Method::Rigid));
     if !is_own(claim) || !claim.runs.iter().all(of_grains) {

@@ -20,8 +20,7 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Sets the mass of grains to infinity when their prescribed motion starts, and back to their own mass when it
-    /// ends.
+    /// Sets the mass of grains to infinity when their prescribed motion starts, and back to their own mass when it ends.
     pub(crate) fn begin_and_end_driving(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {

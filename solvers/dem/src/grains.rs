@@ -59,7 +59,7 @@ impl<S: Geometry> Grains<S> {
             && self.has_bodies_of(scene, quads / count.max(1))
     }
 
-    /// Returns whether radii, masses and moments of inertia are those of the scene; a driven grain may have no inverse mass.
+    /// Returns true if radii, masses and moments of inertia are those of the scene. A driven grain may have an inverse mass of 0.
     fn has_bodies_of(&self, scene: &Scene, quads: usize) -> bool {
         let is_one = |found: f64, expected: f64| found.to_bits() == expected.to_bits();
         self.id.iter().enumerate().all(|(slot, &id)| {

@@ -166,8 +166,7 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
         let [i, j, k] = at;
         let (left, right) = (i.saturating_sub(1), (i + 1).min(cells.count[0] - 1));
         let mut scan = |range: Range<usize>| {
-            // A branch would be unpredictable, so every candidate is written, and those that are not near are
-            // overwritten.
+            // A branch would be unpredictable, so every candidate is written, and those that are not near are overwritten.
             let mut count = partners.len();
             partners.resize(count + range.len(), 0);
             for other in range {

@@ -70,8 +70,7 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &DemSimulation<S>) -> impl I
     })
 }
 
-/// Returns a grain, with its velocity (m/s) and spin (rad/s) advanced from half a step before to the time of the
-/// positions.
+/// Returns a grain, with its velocity (m/s) and spin (rad/s) advanced from half a step before to the time of the positions.
 fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainState {
     let (scene, grains) = (&simulation.scene, &simulation.grains);
     let slot = grains.slot[id] as usize;

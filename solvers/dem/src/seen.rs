@@ -51,8 +51,7 @@ impl RecordedContacts {
         reserve(&mut self.energies, more);
     }
 
-    /// Records an answer; of several answers in lanes, the first. `centre` (m) and `radius` (m) are those of the first
-    /// grain.
+    /// Records an answer; of several answers in lanes, the first. `centre` (m) and `radius` (m) are those of the first grain.
     pub(crate) fn add<S: Geometry, X: Number>(
         &mut self,
         answer: &Answer<S, X>,

@@ -28,8 +28,7 @@ use grainbench_scene::scene::{Driven, Probe, Scene};
 use grainbench_scene::solver::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
 use nalgebra::Vector3;
 
-/// Radius, in mean radii, above which a grain has no cell of the grid. Cells of its size would hold hundreds of other
-/// grains.
+/// Radius, in mean radii, above which a grain has no cell of the grid. Cells of its size would hold hundreds of other grains.
 const FAR_LARGER: f64 = 4.0;
 
 /// Steps between two checks of contact stiffness. A collision takes about thirty steps at a tenth of the critical time
@@ -96,8 +95,7 @@ pub(crate) struct DemSimulation<S: Geometry> {
 }
 
 impl<S: Geometry> DemSimulation<S> {
-    /// Sets up a scene: computes the initial forces, and shifts velocities half a step back so that all cycles are
-    /// alike.
+    /// Sets up a scene: computes the initial forces, and shifts velocities half a step back so that all cycles are alike.
     pub(crate) fn new(
         scene: &Scene,
         forces: Box<dyn Forces<S>>,
@@ -331,8 +329,7 @@ impl<S: Geometry> DemSimulation<S> {
         self.travel(fastest);
     }
 
-    /// Computes the forces and torques at all contacts. Spring displacements grow by the slip and roll during `elapsed`
-    /// (s).
+    /// Computes the forces and torques at all contacts. Spring displacements grow by the slip and roll during `elapsed` (s).
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
         let Self {
             laws,

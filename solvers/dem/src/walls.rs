@@ -209,8 +209,7 @@ impl MovingWall {
         self.shape = self.wall.shape.moved(motion, &displacement);
     }
 
-    /// Returns an upper bound of the displacement (m) since the list was built, for parts within `extent` (m) of the
-    /// centre.
+    /// Returns an upper bound of the displacement (m) since the list was built, for parts within `extent` (m) of the centre.
     pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
         let translation = (self.displacement.translation - self.at_list.translation).norm();
         translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent

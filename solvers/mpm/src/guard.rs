@@ -40,8 +40,7 @@ pub(crate) struct EnergyGuard {
     largest: f64,
 }
 
-/// Returns true if only gravity does work on the bodies. Then no wall or grain is driven, and there is no manufactured
-/// force.
+/// Returns true if only gravity does work on the bodies. Then no wall or grain is driven, and there is no manufactured force.
 fn is_closed(scene: &Scene) -> bool {
     let rests = scene.walls.iter().all(|wall| !wall.motion.is_moving());
     rests && scene.driven.is_empty() && scene.start.manufactured.is_none()

@@ -109,8 +109,7 @@ impl Setting {
         phase: [0.0; 3],
     };
 
-    /// Returns the setting of the original papers with the given contact. More tracers would mark more nodes as in
-    /// contact.
+    /// Returns the setting of the original papers with the given contact. More tracers would mark more nodes as in contact.
     #[must_use]
     pub const fn classic(contact: Contact) -> Self {
         let transfer = Transfer::Flip { pic: 0.0 };

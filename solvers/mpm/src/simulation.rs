@@ -224,8 +224,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Adds spring forces, then folds mirror images at fixed or symmetry boundaries. After this stage all forces are
-    /// known.
+    /// Adds spring forces, then folds mirror images at fixed or symmetry boundaries. After this stage all forces are known.
     fn spring_forces(&mut self, record: bool) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
         if let Some(accounts) = accounts {

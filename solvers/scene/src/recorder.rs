@@ -34,7 +34,7 @@ impl Recorder {
         Self { interval, snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
-    /// Returns whether all samples are finite, as they are when a run goes on.
+    /// Returns true if all samples are finite, as in every run that continues.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.series.time.iter().chain(self.series.values.iter().flatten()).all(|value| value.is_finite())

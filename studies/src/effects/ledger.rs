@@ -99,8 +99,7 @@ impl Ledger {
 
     /// Returns the first claim whose error exceeds its limit when the effect is switched off.
     ///
-    /// If there is none, returns a claim that has no value without the effect, such as the pressure under an unloaded
-    /// wall.
+    /// If there is none, returns a claim without a value when the effect is off, such as the pressure under an unloaded wall.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
@@ -227,8 +226,7 @@ impl Ledger {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
-    /// Tests an effect that is off. For each kind of solver that can omit the effect, the first run of the variant is
-    /// used.
+    /// Tests an effect that is off, in the first run of the variant for each kind of solver that can omit the effect.
     ///
     /// The effect is inert if no solver's result changes. Counts and times are from the first solver.
     fn idle(&self, piece: &SceneEffect) -> Option<Entry> {

@@ -1,5 +1,4 @@
-//! Effects study of a scene without claims. It measures the change of the probes without each effect, and the cost of
-//! the effect.
+//! Effects study of a scene without claims: change of the probes without each effect, and cost of the effect.
 
 use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};

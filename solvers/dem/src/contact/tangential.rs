@@ -395,8 +395,7 @@ mod tests {
         };
         let (force, spring, slipping) = limited(Cap::Spring, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
-        // The dashpot alone, 3·2, exceeds the limit. The spring of LAMMPS acts in the sliding direction, and ours
-        // relaxes.
+        // The dashpot alone, 3·2, exceeds the limit. The spring of LAMMPS acts in the sliding direction, and ours relaxes.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14);
         assert!((stretch * stiffness + 2.0 * viscosity - limit).abs() < 1e-14);

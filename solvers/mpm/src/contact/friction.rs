@@ -215,8 +215,7 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// Returns the force along x on a tracer with springs of 200 N/m at a depth of .01 m, after it has slipped by
-    /// `slip` (m).
+    /// Returns the force along x on a tracer with springs of 200 N/m at a depth of .01 m, after it has slipped by `slip` (m).
     fn force(friction: &mut Friction<Plane>, slip: f64, coefficient: f64) -> f64 {
         let Friction::Present(springs) = friction else { return f64::NAN };
         let (normal, slip) = (Vector2::y(), Vector2::new(slip, 0.0));

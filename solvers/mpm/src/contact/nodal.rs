@@ -319,8 +319,7 @@ mod tests {
             let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).norm()).fold(0.0, f64::max);
             assert!(off < 3.5e-8, "{found:?}");
         };
-        // The first body pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they slide past each
-        // other.
+        // The first body pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they slide past each other.
         let [pushed, still] = [vector(1.0, 0.3), Vector2::zeros()];
         let sixth = 1.0 / 6.0;
         near(after(0.0, [pushed, still, still]), [vector(sixth, 0.3), vector(sixth, 0.0), vector(sixth, 0.0)]);

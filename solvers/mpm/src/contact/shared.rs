@@ -40,7 +40,7 @@ impl<S: Space> Field<S> for SteppedVelocities<'_, S> {
     }
 }
 
-/// Projected velocities.
+/// Nodal velocities projected from points, without separate velocities before the step.
 pub(crate) struct ProjectedVelocities<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
 
 impl<S: Space> Field<S> for ProjectedVelocities<'_, S> {

@@ -1,5 +1,4 @@
-//! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and its
-//! stress.
+//! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and its stress.
 
 use super::{Law, State, VolumeRatio, symmetric_root};
 use crate::off::AbsentEffect;
