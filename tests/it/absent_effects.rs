@@ -25,8 +25,7 @@ const ALLOWED: f64 = 1.02;
 /// Smallest ratio of instructions of dense shear with friction that has no effect to those without friction.
 const FRICTION: f64 = 1.3;
 
-/// Returns a square lattice of overlapping discs that starts to expand at its rim, without rebuilding the neighbour
-/// list.
+/// Returns a square lattice of overlapping discs that starts to expand at its rim, without rebuilding the neighbour list.
 fn lattice() -> Scene {
     let text = format!(
         "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\

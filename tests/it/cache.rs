@@ -136,7 +136,7 @@ fn two_at_once_share_it() {
     assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
 }
 
-/// Ctrl-C at ten times: finished runs are kept, and at the end nothing is missing.
+/// Ctrl-C is sent at ten different times. Finished runs are kept, and at the end no result is missing.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_goes_on_from_what_was_finished() {
@@ -153,7 +153,7 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
         Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
         let ended = child.wait_with_output().unwrap();
         let message = String::from_utf8(ended.stderr).unwrap();
-        // Before its handler is installed, a signal ends the process as any program.
+        // Before the handler is installed, a signal ends the process without a message.
         let is_announced = message.contains("the next run continues with the finished runs");
         assert!(ended.status.code() != Some(1) || is_announced, "{message}");
         let now = if here.join("cache").exists() { entries(here).len() } else { 0 };

@@ -82,8 +82,7 @@ fn without_times(mut value: Value) -> Value {
     value
 }
 
-/// The report of a plan equals the report of its command: results, controls, figures, counts of runs, points and
-/// limits.
+/// The report of a plan equals the report of its command: results, controls, figures, counts of runs, points and limits.
 #[test]
 fn a_collected_plan_is_the_report_of_its_command() {
     let directory = tempfile::tempdir().unwrap();
@@ -266,8 +265,7 @@ fn failures_keep_their_type() {
     );
 }
 
-/// Workers are killed after a random number of results and a short time, and lines are truncated. The remaining tasks
-/// are then done, and none twice.
+/// Workers are killed at random times and lines are truncated. The remaining tasks are then done, and none twice.
 #[test]
 fn killed_workers_lose_nothing_and_do_nothing_twice() {
     let directory = tempfile::tempdir().unwrap();
@@ -513,8 +511,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     }
 }
 
-/// Replaces the programs of Slurm by shell scripts. Each writes its arguments to a file, and the file `broken` makes
-/// `squeue` fail.
+/// Replaces the programs of Slurm by scripts that write their arguments to a file. A file `broken` makes `squeue` fail.
 fn fake_slurm(directory: &Path) -> String {
     let bin = directory.join("bin");
     fs::create_dir(&bin).unwrap();
@@ -530,8 +527,8 @@ fn fake_slurm(directory: &Path) -> String {
     format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
 }
 
-/// The array has at most the size that the site allows. A resubmission contains only missing shards that are neither
-/// queued nor running.
+/// The array is within the limit of the site. A resubmission has only missing shards that are neither queued nor
+/// running.
 #[test]
 fn slurm_is_asked_for_what_is_missing() {
     let directory = planned();

@@ -74,8 +74,7 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
     ] {
         let (found, rows) = check("oblique-impact/damped", dump, &[]);
         assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 11), "{dump}");
-        // Our solvers, and the stored runs of both external solvers. Exact solutions of damped impacts depend on the
-        // dashpot's convention.
+        // No exact solution is a reference, because solutions of damped impacts depend on the dashpot.
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
         assert_eq!(stored.count(), 5, "{dump}");
     }
@@ -211,7 +210,7 @@ fn half_a_run_is_not_judged_as_the_whole() {
     assert_eq!(checked(&["--partial", "--strict"]).0, Some(1));
 }
 
-/// The first and the last snapshot alone are no run; a tenth of the snapshots is.
+/// The first and the last snapshot alone are not enough to judge a run; a tenth of the snapshots is enough.
 #[test]
 fn samples_far_apart_judge_no_course() {
     let directory = tempfile::tempdir().unwrap();
@@ -239,7 +238,7 @@ fn samples_far_apart_judge_no_course() {
     assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 5), "{rows:#?}");
     let (code, rows) = checked(&|at| at % 10 == 0, &[]);
     assert_eq!((code, count(&rows, "fail")), (Some(0), 0), "{rows:#?}");
-    // One hole of two tenths in a dense run.
+    // Two tenths of the samples are missing in the middle of a dense run.
     let (code, rows) = checked(&|at| !(31..50).contains(&at), &[]);
     assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
 }
@@ -289,7 +288,7 @@ fn a_time_between_two_steps_is_red() {
     }
 }
 
-/// Six digits of the mass are its first six. A snapshot or a row may occur twice with the same numbers.
+/// A mass may be rounded to six digits. A snapshot or a row may occur twice with the same numbers.
 #[test]
 fn rounded_and_repeated_numbers_are_judged() {
     let directory = tempfile::tempdir().unwrap();
@@ -308,7 +307,7 @@ fn rounded_and_repeated_numbers_are_judged() {
     }
 }
 
-/// Three digits allow two starts of the variant; the nearer one has the exact answers.
+/// With three digits, the file agrees with two possible starts of the variant. The nearer one has the exact answers.
 #[test]
 fn few_digits_take_no_other_start() {
     let directory = tempfile::tempdir().unwrap();
@@ -331,7 +330,7 @@ fn few_digits_take_no_other_start() {
     }
 }
 
-/// The text of a packed file of the data.
+/// Returns the text of a compressed data file.
 fn unpacked(name: &str) -> String {
     let mut whole = String::new();
     let file = fs::File::open(data(name)).unwrap();
@@ -426,7 +425,7 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
         "{rows:#?}"
     );
     assert_eq!(rows[1]["detail"], "only a.csv has it");
-    // Neither are sizes and masses, which no run changes.
+    // Sizes and masses alone are no comparison either, because no run changes them.
     let table = |name: &str| format!("step,n,radius,mass,{name}\n0,1,0.5,2,1\n1,1,0.5,2,3\n");
     assert_eq!(compared(&table("v").replace(",n,", ",id,"), &table("w").replace(",n,", ",id,"), &[]).0, 1);
     assert_eq!(compared(&table("v"), &table("w"), &[]).0, 0);

@@ -1,5 +1,4 @@
-//! `check` on runs with the user's own parameters: a scene that is not a case, a case with other parameters, VTK files,
-//! and a folder of many runs.
+//! `check` on a scene that is not a case, on a case with other parameters, on VTK files, and on a folder of many runs.
 
 use crate::common::grainbench;
 use grainbench::cases::registry::read_grains;
@@ -225,7 +224,7 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
     assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
 }
 
-/// A difference between log and table within the digits of printed times is none.
+/// A difference between log and table that is within the printed digits of the times does not count.
 #[test]
 fn a_rounded_time_step_in_a_log_is_accepted() {
     let directory = tempfile::tempdir().unwrap();
@@ -250,8 +249,7 @@ fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
     }
 }
 
-/// In ParaView's tables, `TimeStep` is the number of a frame and `Time` is in seconds. One table per time contains no
-/// times.
+/// In ParaView's tables, `TimeStep` is the number of a frame and `Time` is in seconds. One table per time contains no times.
 #[test]
 fn tables_of_grains_are_read_as_grains() {
     let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--time-step", "1e-5"]);
@@ -420,12 +418,12 @@ fn motion_out_of_the_plane_is_refused() {
         let answer = checked_flight(&flight(0, change), &[]);
         assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
     }
-    // The plane may lie anywhere, and a rounding does not leave it.
+    // The plane may have any position, and rounding errors do not count as motion out of it.
     let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
     assert_eq!(checked_flight(&right, &[]).code, Some(0));
 }
 
-/// The interval of the scene file says how far apart samples may be, and no option replaces it.
+/// The sampling interval of the scene file limits the distance between samples, and no option replaces it.
 #[test]
 fn no_option_allows_samples_far_apart() {
     let whole = flight(0, &|_, _| {});
@@ -441,7 +439,7 @@ fn no_option_allows_samples_far_apart() {
     assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
 }
 
-/// A sample at a time of no step is missing, and is not left out of the comparison without a word.
+/// A sample at a time between two steps counts as missing, and a message reports it.
 #[test]
 fn a_sample_between_steps_is_missing() {
     let directory = tempfile::tempdir().unwrap();
@@ -473,7 +471,7 @@ fn a_sample_between_steps_is_missing() {
     assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are missing"), "{row}");
 }
 
-/// A file equals itself, however few digits it has.
+/// A file equals itself, for any number of digits.
 #[test]
 fn a_file_is_equal_to_itself() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,4 @@
-//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`,
-//! `--against`.
+//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`, `--against`.
 
 use crate::common::{Answer, grainbench};
 use serde_json::Value;

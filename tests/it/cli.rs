@@ -77,8 +77,7 @@ fn list_tells_of_every_case() {
     for case in CASES {
         assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
     }
-    // One case represents all cases, so that a new case does not change this file. Column widths follow the longest
-    // name.
+    // One case represents all cases, so that a new case does not change this file. Column widths follow the longest name.
     let squash: Vec<String> = text
         .lines()
         .skip_while(|line| !line.starts_with("squash "))
@@ -150,8 +149,7 @@ fn the_schema_in_the_tree_is_that_of_the_program() {
 fn run_leaves_its_files_and_a_summary() {
     let directory = tempfile::tempdir().unwrap();
     let text = printed(directory.path(), &["run", "squash", "--out", "deep/out"]);
-    // The claim with the largest used fraction of its tolerance depends on rounding, which differs between mathematical
-    // libraries. Column widths follow it.
+    // The worst claim and with it the column widths depend on rounding, which differs between mathematical libraries.
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.path().join("deep/out");

@@ -65,7 +65,7 @@ impl Solver for MisledSolver {
     }
 }
 
-/// The hint is that of the mistake, and no other, where another solver makes it.
+/// A failed result of a solver with a mistake has the hint for this mistake, and no other hint.
 #[test]
 fn a_failed_result_names_the_mistake() {
     type Wrong = (&'static str, &'static str, fn(&mut Scene));
@@ -105,7 +105,7 @@ fn a_failed_result_names_the_mistake() {
     }
 }
 
-/// Defects of Mindlin's law change nothing where springs are linear.
+/// Defects in Mindlin's law have no effect on linear springs.
 #[test]
 fn claims_with_linear_springs_do_not_see_mindlins() {
     for mistake in [MethodMistake::SecantSpring, MethodMistake::NotRescaled] {

@@ -1,5 +1,4 @@
-//! The conformance suite: it detects every defect that it must, and accepts no unproven claim. The tests of each solver
-//! crate apply it to the solver.
+//! Tests of the conformance suite with solvers that have defects. The solver crates apply the suite to their solvers.
 
 use grainbench::cases::solvers;
 use grainbench::harness::conformance::ALL;

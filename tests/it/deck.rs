@@ -99,8 +99,7 @@ fn walls_of_finite_extent_are_flat_blocks() {
     insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
 }
 
-/// A sine and a ramp as formulas of LAMMPS, which dem:lammps agrees with to rounding. LIGGGHTS gets intervals of
-/// constant velocity.
+/// LAMMPS gets a sine and a ramp as formulas, and agrees with dem:lammps. LIGGGHTS gets intervals of constant velocity.
 #[test]
 fn a_wall_that_moves_by_functions() {
     let (x, y) = (Vector3::x(), Vector3::y());

@@ -1,5 +1,4 @@
-//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result is the
-//! same.
+//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result is the same.
 
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
@@ -10,8 +9,7 @@ use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 
-/// Adds a material that no grain has, with friction and rolling resistance. The selected kernels include both, without
-/// an effect.
+/// Adds an unused material, so that the selected kernels include friction and rolling resistance without an effect.
 fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
@@ -43,8 +41,8 @@ fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
     same_without(&scene, Resolution::TimeStep(1e-4));
 }
 
-/// Checks that a frictionless scene has the same final state with the frictionless kernel and with friction that has no
-/// effect.
+/// Checks that a frictionless scene has the same final state with the frictionless kernel and with ineffective
+/// friction.
 fn same_without(scene: &Scene, resolution: Resolution) {
     let idle = with_idle_friction(scene);
     assert!(

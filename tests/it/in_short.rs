@@ -107,8 +107,8 @@ fn memory(path: &Path, arguments: &[&str]) -> f64 {
     1000.0 * crate::common::peak_memory(path, &arguments) as f64
 }
 
-/// During `simulate`, a grain with three contacts needs at most 700 B and a material point 350 B, from the difference
-/// between two sizes.
+/// In `simulate`, a grain with three contacts takes at most 700 B, and a material point 350 B (difference between two
+/// sizes).
 #[test]
 #[cfg(target_os = "linux")]
 fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {

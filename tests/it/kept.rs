@@ -41,8 +41,7 @@ fn a_solver_that_changed_is_told() {
     assert!(cost.lines.iter().any(|line| line.solver == "mpm" && line.factors[1].is_some()));
 }
 
-/// A reader must be able to build the source of each stored result. A commit outside the history of the repository is
-/// no source.
+/// Each stored result names a commit in the history of the repository, so that a reader can build its source.
 #[test]
 fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
     let mut commits: BTreeMap<String, Vec<String>> = BTreeMap::new();

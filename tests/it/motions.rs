@@ -42,8 +42,8 @@ fn a_disc_rolls_on_a_belt_that_is_drawn_off_evenly() {
     });
     let table = format!("{{ table = [{}] }}", rows.collect::<Vec<_>>().join(", "));
     let at_once = format!("{{ velocity = [{SPEED:?}, 0.0] }}");
-    // The grid has a larger error of rolling (`incline-disc`). It must also agree between a table and the function that
-    // the table samples.
+    // The grid has a larger error of rolling (`incline-disc`), but its results with a table and with its function
+    // agree.
     for (solver, resolution, off) in [
         ("dem", Resolution::CriticalFraction(0.02), 2e-3),
         ("rigid", Resolution::substeps(32), 1e-2),

@@ -75,7 +75,7 @@ fn a_program_that_lies_is_found_out() {
     assert!(!running().contains("sleep 1235"), "and what it started in a session");
 }
 
-/// Grains in a folder that is a link are those of somebody else, as in a file that is one.
+/// Grains in a folder that is a symbolic link may belong to another run, as in a file that is a link.
 #[test]
 fn grains_in_a_linked_folder_are_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -211,8 +211,7 @@ fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usiz
 
 const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
 
-/// The claims pass for a one-grain solver in forty lines of Python, with controls. A defect in any line of its physics
-/// makes claims fail.
+/// Claims pass for a one-grain solver of forty lines in Python. They fail for a defect in any line of its physics.
 #[test]
 fn a_grain_in_python_is_judged_line_by_line() {
     if !is_here("python3") {
@@ -252,7 +251,7 @@ fn a_grain_in_python_is_judged_line_by_line() {
     });
 }
 
-/// The same test for C++, which the manifest builds first.
+/// The same for a solver in C++, which is built first by the command in the manifest.
 #[test]
 fn a_grain_in_cpp_is_built_and_judged() {
     if !is_here("make") || !is_here("c++") {
@@ -267,7 +266,7 @@ fn a_grain_in_cpp_is_built_and_judged() {
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
 }
 
-/// The claims by cells pass for a column and a bar in fifty lines of Python, and detect a defect in each line.
+/// The claims with cells pass for a solver of a column and a bar in fifty lines of Python. They detect a defect in each line.
 #[test]
 fn a_line_of_masses_is_judged_as_a_continuum() {
     if !is_here("python3") {
@@ -308,7 +307,7 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
 }
 
-/// The results of an external solver are stored with it, and the next run is compared with them instead of with a pass.
+/// The results of an external solver are stored beside it. The next run must have the same results, also where they failed.
 #[test]
 fn a_program_is_held_to_what_is_kept_of_it() {
     if !is_here("python3") {
@@ -338,7 +337,7 @@ fn a_program_is_held_to_what_is_kept_of_it() {
     assert_eq!(judge(&["--expect-stored", "column"]).code, Some(2));
 }
 
-/// The studies treat an external solver as our solvers. Old results are never taken for results of the present program.
+/// The studies treat an external solver as they treat our solvers. Results of an older program are not used.
 #[test]
 fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     if !is_here("make") || !is_here("c++") {
@@ -369,7 +368,7 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
 
-/// A program that ends with 0 and writes nothing measures nothing.
+/// A study fails if all runs of a solver end with exit code 0 but without output.
 #[test]
 fn a_study_of_failed_runs_alone_is_red() {
     let folder = tempfile::tempdir().unwrap();
@@ -380,7 +379,7 @@ fn a_study_of_failed_runs_alone_is_red() {
     }
 }
 
-/// Energy that a program adds in mid-run and takes back before the end is detected.
+/// A program adds energy during the run and removes it before the end. This is detected.
 #[test]
 fn energy_gained_in_mid_run_is_red() {
     if !is_here("python3") {

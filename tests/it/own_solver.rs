@@ -1,5 +1,5 @@
-//! Claims for solvers that the cases do not name: solver-independent, with controls that have an effect, and failing
-//! for wrong physics.
+//! Claims for solvers that no case names. They do not depend on the solver, have effective controls and detect wrong
+//! physics.
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;

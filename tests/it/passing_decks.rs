@@ -24,8 +24,8 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Returns our run in the convention of an external solver, and its own run. `None` if it is not installed, which is an
-/// error in CI.
+/// Returns our run in the convention of an external solver, and its run. `None` if it is not installed (an error in
+/// CI).
 fn both(text: &str, program: &str) -> Option<[Record; 2]> {
     let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
     let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));

@@ -1,5 +1,4 @@
-//! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of
-//! `peers/README.md`.
+//! Stored results of external solvers belong to the present adapters, claims and tables of `peers/README.md`.
 //!
 //! `UPDATE_README=1 cargo test --release --test it peers` rewrites the tables.
 //! `grainbench run --solver PATH --update-stored` makes new results.

@@ -15,8 +15,7 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be judged has no control");
 }
 
-/// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a
-/// success.
+/// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a success.
 #[test]
 fn a_race_tells_who_took_no_part() {
     let directory = tempfile::tempdir().unwrap();

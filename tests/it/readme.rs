@@ -129,8 +129,8 @@ fn the_disc_on_the_slope_rolls_or_slips() {
         let record = grainbench::dem::solver::Dem::new(Convention::DEFAULT)
             .run(&scene, &Resolution::CriticalFraction(0.1), &mut ())
             .unwrap();
-        // Rolling has a = (2/3) g sin θ; sliding on ice has a = g (sin θ − μ cos θ). Both hold up to the compliance of
-        // the contact.
+        // Rolling has a = (2/3) g sin θ, sliding on ice has a = g (sin θ − μ cos θ), up to the compliance of the
+        // contact.
         let (sine, cosine) = (20_f64.to_radians().sin(), 20_f64.to_radians().cos());
         let expected = if variant == PLAIN { 9.81 * sine / 3.0 } else { 0.5 * 9.81 * (sine - 0.05 * cosine) };
         let x = record.series.column("disc.x").unwrap().last().copied().unwrap();

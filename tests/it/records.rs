@@ -28,8 +28,8 @@ fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
     (record, observer.checkpoints)
 }
 
-/// Returns V σ of each grain from the contacts of a snapshot. The lever arm ends at the `part` of the overlap; 0.5 is
-/// its middle.
+/// Returns V σ of each grain from the contacts of a snapshot. Lever arms end at a `part` of the overlap (0.5: its
+/// middle).
 fn virials(snapshot: &Snapshot, part: f64) -> Vec<Matrix3<f64>> {
     let mut sums = vec![Matrix3::zeros(); snapshot.grains.len()];
     for contact in snapshot.told_contacts() {
@@ -59,8 +59,7 @@ fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>,
     each.fold(0.0, f64::max) / scale
 }
 
-/// The mean over an interval equals the mean over the snapshots of all its steps, which another run stores with
-/// contacts.
+/// The mean over an interval equals the mean over the snapshots of all its steps, which another run stores with contacts.
 #[test]
 fn the_mean_over_an_interval_is_that_of_its_steps() {
     let each = run(&scene("").each_step(), 1).0;

@@ -74,8 +74,8 @@ fn none_is_stale_and_another_scene_is() {
     }
 }
 
-/// Half the time step changes the displacement of the stored runs on inclined planes by less than 0.1 % of its final
-/// value. This difference is the numerical uncertainty of the stored runs.
+/// With half the time step, displacements of the stored runs on inclined planes change by less than 0.1 % of the final
+/// value. This is their numerical uncertainty.
 #[test]
 fn the_time_step_is_worth_little_where_it_is_small() {
     for stored_run in

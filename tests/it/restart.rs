@@ -29,8 +29,7 @@ fn begun(mut scene: Scene) -> Scene {
 /// Beds of more grains have the same contact laws as smaller beds of their case, so they are skipped.
 const MANY: usize = 20_000;
 
-/// Moving walls, periodic boundaries, Hertz contacts, rolling resistance, cohesion, spheres: all features of the cases,
-/// in each convention.
+/// Covers all features of the cases in each convention, such as moving walls, Hertz contacts and cohesion.
 #[test]
 fn every_case_continues_to_the_same_bits() {
     // At most twelve variants of a case.

@@ -139,8 +139,8 @@ material = "m"
 cone = { axis = [[0.0, 0.0, 3.2], [0.0, 0.0, 6.5]], radii = [0.5, 2.5] }
 "#;
 
-/// The live external solver with the deck of the scene has the same energy and the same forces on both walls, before
-/// chaos amplifies rounding. Without LAMMPS nothing is compared; CI has it.
+/// LAMMPS with the deck of the scene has the same energy and the same wall forces, before chaos amplifies rounding. If
+/// LAMMPS is not installed, nothing is compared. CI has it.
 #[test]
 fn lammps_has_the_same_round_walls() {
     let lammps = solvers::by_name("lammps").unwrap();

@@ -99,7 +99,7 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     let [later, _] = ends(path, "rounded");
     let moved = apart(&uninterrupted, &later);
     assert!(0.0 < moved && moved < 1e-8, "{moved}");
-    // Behind another grain, which is held far above, the springs stay with their own.
+    // With another grain before them in the scene, held far above, the springs still belong to the right grains.
     let held = "[driven.a]\ngrains = 'a'\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 9.5]\n";
     let behind = taken("").replace("[grains.g]", &format!("{held}[grains.g]"));
     simulate(path, "behind", &behind, &[]);
@@ -118,8 +118,8 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
 }
 
-/// A grain that flies and spins goes on from where a run ended: with its spin to the bit, and its velocity v + g t. With friction
-/// grains turn, and without it their spins are known from the start.
+/// A grain that flies and spins continues with its spin, bit by bit, and with the velocity v + g t. With friction,
+/// spins change during the run; without friction, they are known from the start.
 #[test]
 fn a_grain_that_spins_is_taken_over_with_its_spin() {
     let directory = tempfile::tempdir().unwrap();

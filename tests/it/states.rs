@@ -1,5 +1,4 @@
-//! The initial states of cases have a provenance and are unchanged. Each has a file `NAME.state.toml` beside it, with
-//! the command that makes it again.
+//! The initial states of cases are unchanged. A file `NAME.state.toml` beside each has the command that makes it again.
 
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::fields::overlap::sphere_in_box;

@@ -72,8 +72,7 @@ fn a_grain_that_is_poured_falls_from_when_it_comes() {
     );
 }
 
-/// A grain is inserted at the position and velocity of a grain in flight. Both hit a grain on the floor in the same
-/// way.
+/// A grain is inserted at the position and velocity of a grain in flight. Both hit a grain on the floor in the same way.
 #[test]
 fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     let target = "[grains.target]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
@@ -156,8 +155,7 @@ fn threads_and_checkpoints_leave_no_trace() {
     assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
 }
 
-/// Threads and checkpoints do not change any bit, also for a checkpoint during the prescribed motion. Only `dem`
-/// supports it.
+/// Threads and checkpoints do not change any bit, also for a checkpoint during the prescribed motion. Only `dem` supports it.
 #[test]
 fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     let directory = tempfile::tempdir().unwrap();

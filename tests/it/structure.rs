@@ -1,12 +1,11 @@
-//! Structure of the source files: lines and circles of each crate. The numbers may only fall; a commit that raises one says
-//! why.
+//! Size and cyclic dependencies of each crate. The limits may only fall; a commit that raises one states the reason.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Largest number of lines of a folder of Rust files, and of its files that depend on themselves through others. A case
-/// holds a function that draws with a runner, and a runner runs a case, so `harness` keeps that circle.
+/// Largest number of lines of the Rust files in a folder, and of its files with a cyclic dependency. `harness` keeps a
+/// cycle: a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 15] = [
     ("solvers/scene", 13_150, 28),
     ("solvers/lanes", 1_500, 0),
@@ -72,7 +71,7 @@ fn circles_are_found() {
     assert_eq!(in_circles(&circle), ["a", "b"].map(str::to_owned).into());
     let straight = graph(&[("", "mod a;"), ("a", "use crate::b::B;"), ("b", "fn f() {} // crate::a")]);
     assert_eq!(in_circles(&straight), BTreeSet::new());
-    // A name that a folder takes from its file is of the file.
+    // A name that a folder re-exports from one of its files belongs to the file.
     let folder =
         graph(&[("x", "pub use x::y::Y;\nuse self::z::Z;"), ("x::y", "struct Y;"), ("x::z", "use crate::x::Y;")]);
     let folder: BTreeMap<_, _> = folder.into_iter().map(|(name, text)| (name, text.replace("x::y", "y"))).collect();
@@ -96,7 +95,7 @@ fn code(text: &str) -> String {
     lines.map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 
-/// Returns the modules that depend on themselves through others.
+/// Returns the modules with a cyclic dependency.
 fn in_circles(modules: &BTreeMap<String, String>) -> BTreeSet<String> {
     let taken: BTreeMap<String, String> =
         modules.iter().flat_map(|(name, text)| taken_names(modules, name, text)).collect();
@@ -197,7 +196,7 @@ fn paths(text: &str) -> Vec<String> {
     found
 }
 
-/// Returns the place of the bracket that closes an open group.
+/// Returns the position of the bracket that closes an open group.
 fn closing(group: &str) -> usize {
     let mut depth = 1;
     for (at, letter) in group.char_indices() {

@@ -97,8 +97,7 @@ fn crates_depend_in_one_direction() {
             ],
         ),
     ];
-    // Additional dependencies of a crate's tests: solver tests use the harness, and tests of the studies use one
-    // solver.
+    // Additional dependencies of a crate's tests: solver tests use the harness, and tests of the studies use one solver.
     let tested: &[(&str, &str)] =
         &[("solvers/dem", "harness"), ("solvers/mpm", "harness"), ("solvers/rigid", "harness"), ("studies", "dem")];
     let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
@@ -261,8 +260,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     });
 }
 
-/// Returns the formatting errors of some files. `cargo fmt` does not find files that are only in a generated list, for
-/// example those of the cases.
+/// Returns the formatting errors of some files. `cargo fmt` does not find those in generated lists, such as the cases.
 fn badly_formatted(files: &[PathBuf]) -> Option<String> {
     let settings = root().join("rustfmt.toml");
     let mut command = std::process::Command::new("rustfmt");

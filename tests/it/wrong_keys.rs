@@ -27,7 +27,7 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
         walk(schema, one, path, depth + 1, found);
     }
     for (key, subschema) in at.get("properties").and_then(Value::as_object).into_iter().flatten() {
-        // A variant may contain any other key.
+        // A variant may contain any key of a scene.
         if key == "variants" {
             continue;
         }

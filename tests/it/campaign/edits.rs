@@ -118,8 +118,7 @@ fn another_executable_is_another_task() {
     }
 }
 
-/// Points without an expectation are counted apart, and a tolerance as large as the scale is amber: neither is green
-/// with `--strict`.
+/// Points without an expectation, and points with a tolerance as large as the scale, are not green with `--strict`.
 #[test]
 fn a_point_that_shows_nothing_is_not_green() {
     let directory = tempfile::tempdir().unwrap();
