@@ -10,7 +10,7 @@ use grainbench::scene::body::BlockShape;
 use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
-use grainbench::scene::solver::{Method, Observer, Resolution, RunError, Solver};
+use grainbench::scene::solver::{Method, Observer, Resolution, RunError, RunOptions, Solver};
 use grainbench::scene::source::SceneSource;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -31,9 +31,8 @@ const POINTS: u32 = 2;
 struct Brief;
 
 impl Observer for Brief {
-    fn progress(&mut self, _done: u64, _total: u64) {}
-    fn checkpoint_interval(&self) -> Option<u64> {
-        Some(STEPS)
+    fn options(&self) -> RunOptions {
+        RunOptions { checkpoint_interval: Some(STEPS), ..RunOptions::DEFAULT }
     }
     fn checkpoint(&mut self, _checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         Err(CheckpointError::NotStored("enough".to_owned()))
