@@ -236,6 +236,9 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
         reached().filter_map(|(diagram, mine)| Some(mine / time(diagram, "dem", target)?)).collect();
     let seconds: Vec<f64> = reached().map(|(_, time)| time).collect();
     let times = over(target);
+    if seconds.is_empty() {
+        return None;
+    }
     Some(Factor {
         times: geometric_mean(&times).unwrap_or(1.0),
         compared: times.len(),

@@ -16,7 +16,7 @@ const BUDGETS: [(&str, usize, usize); 15] = [
     ("store", 1_190, 0),
     ("reference", 14_650, 13),
     ("cases", 20_900, 17),
-    ("fields", 3_160, 0),
+    ("fields", 3_160, 4),
     ("reports", 14_050, 16),
     ("studies", 4_150, 0),
     ("campaign", 3_170, 0),
@@ -63,9 +63,8 @@ fn crates_stay_within_their_budgets() {
 
 #[test]
 fn circles_are_found() {
-    let module = |text: &str| text.to_owned();
     let graph = |files: &[(&str, &str)]| -> BTreeMap<String, String> {
-        files.iter().map(|(name, text)| ((*name).to_owned(), module(text))).collect()
+        files.iter().map(|(name, text)| ((*name).to_owned(), code(text))).collect()
     };
     let circle = graph(&[("", "mod a; mod b;"), ("a", "use crate::b::B;"), ("b", "use super::a::{A, other::C};")]);
     assert_eq!(in_circles(&circle), ["a", "b"].map(str::to_owned).into());

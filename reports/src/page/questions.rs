@@ -257,8 +257,9 @@ fn changes(effects: &Effects) -> Markup {
         }
         p { "A claim fails " b { (most) } " scenes." }
         p.note {
-            "One mark per scene: the median over its claims that fail, or over all claims if none fails. Cost: median of the processor time with the effect divided by "
-            "the time without it, if it was measured in three scenes or more. Changes below 10⁻⁵ and above 10 are at the ends."
+            "One mark per scene: the median over its claims that fail, or over all claims if none fails. Cost: median of the "
+            "processor time with the effect divided by the time without it, if it was measured in three scenes or more. "
+            "Changes below 10⁻⁵ and above 10 are at the ends."
         }
     }
 }

@@ -57,7 +57,7 @@ fn expanded(chapter: &Chapter) -> Result<String, String> {
 }
 
 /// Returns a text in which the block or table after each `<!-- file: PATH -->` has the content of the file. A block ends
-/// with its fence, a table with `<!-- end -->`.
+/// with its fence, a table with `<!-- end of file -->`.
 pub(crate) fn with_files(text: &str) -> Result<String, String> {
     let (mut found, mut lines) = (Vec::new(), text.lines());
     while let Some(line) = lines.next() {
@@ -65,7 +65,7 @@ pub(crate) fn with_files(text: &str) -> Result<String, String> {
         let Some(path) = line.strip_prefix("<!-- file: ").and_then(|rest| rest.strip_suffix(" -->")) else { continue };
         let first = lines.next().ok_or_else(|| format!("{path}: expected a block, found the end"))?;
         let is_block = first.starts_with("```");
-        let end = if is_block { "```" } else { "<!-- end -->" };
+        let end = if is_block { "```" } else { "<!-- end of file -->" };
         if is_block {
             found.push(first.to_owned());
         } else {
