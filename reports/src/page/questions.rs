@@ -169,7 +169,9 @@ fn steps(stability: &Stability) -> Markup {
                         @let holds = held.iter().filter(|case| found(case, &line.solver) == Some(Hardness::Holds)).count();
                         @let tried = |standing| !matches!(standing, Hardness::Unsupported | Hardness::NotAvailable);
                         @let asked = held.iter().filter(|case| found(case, &line.solver).is_some_and(tried)).count();
-                        td { span.mark.pass { "✓" (holds) "/" (asked) } }
+                        td title=(format!("{holds} of {asked} supported")) {
+                            span.mark.pass { "✓" (holds) @if holds < asked { "/" (asked) } }
+                        }
                     }
                 }
             }
