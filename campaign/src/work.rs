@@ -122,14 +122,19 @@ impl ResultSink {
 
     /// Records a task at which our program panicked.
     pub fn crashed(&self, id: Id, seconds: f64, reason: &(dyn std::any::Any + Send)) {
-        let words =
-            reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
-        self.leave_text(id, State::Crashed, seconds, &quoted(words.unwrap_or("our program failed")));
+        self.leave_text(id, State::Crashed, seconds, &quoted(panic_words(reason)));
     }
 
     fn sync(&self) -> Result<(), WriteError> {
         self.log.lock().unwrap_or_else(PoisonError::into_inner).sync()
     }
+}
+
+/// Returns the message of a panic.
+#[must_use]
+pub fn panic_words(reason: &(dyn std::any::Any + Send)) -> &str {
+    let words = reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref::<&str>().copied());
+    words.unwrap_or("our program failed")
 }
 
 fn quoted(words: &str) -> String {

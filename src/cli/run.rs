@@ -17,12 +17,14 @@ use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish, says_nothing};
 use super::select::{self, CaseSelection};
 use grainbench::campaign::finished::TaskResult;
+use grainbench::campaign::work::panic_words;
 use grainbench::harness::data::{Data, SceneDataError};
 use grainbench::reference::has_ended_programs;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::{Report, Section, line};
 use grainbench::studies::run_cache::RunCache;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -188,30 +190,34 @@ fn perform(
     let turns = tasks.turns();
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by(|a, b| turns[*a].total_cmp(&turns[*b]));
-    let results: Vec<OnceLock<Part>> = all.iter().map(|_| OnceLock::new()).collect();
+    let results: Vec<OnceLock<TaskResult<Part>>> = all.iter().map(|_| OnceLock::new()).collect();
     let desk = Desk::new(tasks, cache);
     let progress = Progress::new(all.len() as u64, "checks");
     let do_task = |place: usize| {
         let place = order[place];
         progress.now(&tasks.name(all[place]));
-        let (_, part) = desk.perform(all[place]);
+        // As in a plan, a panic is the result of its own task only.
+        let result = match catch_unwind(AssertUnwindSafe(|| desk.perform(all[place]))) {
+            Ok((_, part)) => TaskResult::Out(part),
+            Err(reason) => TaskResult::Crash(panic_words(&*reason).to_owned()),
+        };
         // An error may be due to the interrupt, and would count as a control that turned red.
         if has_ended_programs() {
             return;
         }
-        if options.verbose {
+        if let (true, TaskResult::Out(part)) = (options.verbose, &result) {
             for row in &part.section.verdicts {
                 progress.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
             }
         }
-        let _ = results[place].set(part);
+        let _ = results[place].set(result);
         progress.advance();
     };
     let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
     share(all.len(), jobs, || !interrupt.is_asked(), do_task);
     drop(progress);
-    let results: Vec<Option<Part>> = results.into_iter().map(OnceLock::into_inner).collect();
+    let results: Vec<Option<TaskResult<Part>>> = results.into_iter().map(OnceLock::into_inner).collect();
     let left = results.iter().filter(|result| result.is_none()).count();
-    let results = results.into_iter().map(|result| result.map_or(TaskResult::Nothing, TaskResult::Out));
+    let results = results.into_iter().map(|result| result.unwrap_or(TaskResult::Nothing));
     (tasks.sections(all.into_iter().zip(results), desk.solvers()), left)
 }
