@@ -36,14 +36,15 @@ impl<S: Geometry> DemSimulation<S> {
                 for at in pairs.own() {
                     let [one, other] = [pairs.row[at], pairs.partner[at]].map(|slot| slot as usize);
                     let shift = pairs.shift.get(at).map_or_else(Default::default, S::vector_in_space);
-                    let apart = (grains.position(other) - grains.position(one) - shift).norm();
+                    let apart = (grains.position(other) - grains.position(one) - shift).norm_squared();
                     let [first, second] = [one, other].map(|slot| grains.radius(slot));
-                    if apart < first + second {
+                    let reach = first + second;
+                    if apart < reach * reach {
                         self.refuse_stiff(&CheckedContact {
                             law: self.scene.law(grains.material[one], grains.material[other]),
                             slot: one,
-                            overlap: first + second - apart,
-                            radius: first * second / (first + second),
+                            overlap: reach - apart.sqrt(),
+                            radius: first * second / reach,
                             inverse_mass: grains.inverse_mass(one).max(grains.inverse_mass(other)),
                         })?;
                     }
@@ -73,17 +74,18 @@ impl<S: Geometry> DemSimulation<S> {
         let Some(law) = look.law else { return Ok(()) };
         let (normal, tangential) = law.springs.stiffness(look.overlap, look.radius);
         let stiffness = normal.max(if law.has_friction() { tangential } else { 0.0 });
-        let critical = 2.0 / (stiffness * look.inverse_mass).sqrt();
-        if self.motion.time_step <= critical {
+        let time_step = self.motion.time_step;
+        if time_step * time_step * stiffness * look.inverse_mass <= 4.0 {
             return Ok(());
         }
+        let critical = 2.0 / (stiffness * look.inverse_mass).sqrt();
         Err(Box::new(SimulationFailure {
             time: self.time(),
             step: self.step,
             subject: FailedParticle::Grain(self.grains.id[look.slot] + 1),
             position: self.grains.position(look.slot),
             cause: Cause::StiffContact { stiffness },
-            time_step: self.motion.time_step,
+            time_step,
             critical,
             advice: format!("a step of at most {:.4e} s, a tenth of that, resolves the contact", 0.1 * critical),
         }))

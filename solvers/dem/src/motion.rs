@@ -170,22 +170,26 @@ impl Step {
         }
     }
 
-    /// Adds the effect of forces to velocities, with these inverse masses.
+    /// Adds the effect of forces to velocities, with these inverse masses. Returns the new velocities.
     #[inline(always)]
-    fn push<D: Drag, const GRAVITY: bool>(&self, Quad(velocity): &mut Quad, load: &mut Quad, inverse: [f64; 4]) {
+    fn push<D: Drag, const GRAVITY: bool>(&self, velocity: &mut Quad, load: &mut Quad, inverse: [f64; 4]) -> Quad {
+        let (before, forces) = (velocity.0, load.0);
+        let mut after = before;
         for axis in 0..4 {
-            let mut acceleration = load.0[axis] * inverse[axis];
+            let mut acceleration = forces[axis] * inverse[axis];
             if GRAVITY {
                 acceleration += self.gravity[axis];
             }
-            velocity[axis] = D::keep(velocity[axis], self.keep[axis]) + acceleration * self.gain[axis];
+            after[axis] = D::keep(before[axis], self.keep[axis]) + acceleration * self.gain[axis];
         }
+        *velocity = Quad(after);
         *load = Quad::default();
+        Quad(after)
     }
 
     /// Moves a grain by its velocity; in the plane also its angle by its spin. Returns the square of the speed.
     #[inline(always)]
-    fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): &Quad) -> f64 {
+    fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): Quad) -> f64 {
         for axis in 0..4 {
             place[axis] += velocity[axis] * self.time_step[axis];
         }
@@ -211,18 +215,21 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
                 place.iter_mut().zip(movement).zip(load).zip(inverse_inertia)
             {
                 let inverse = velocity.0[3];
-                step.push::<D, GRAVITY>(velocity, load, [inverse; 4]);
+                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse; 4]);
                 step.push::<D, false>(spin, torque, [*inertia; 4]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
+        } else if S::DIMENSION == 2 && !inverse_inertia.is_empty() {
+            for (((place, velocity), load), inertia) in place.iter_mut().zip(movement).zip(load).zip(inverse_inertia) {
+                let inverse = velocity.0[3];
+                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse, inverse, *inertia, inverse]);
+                fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
+            }
         } else {
-            let turns = S::DIMENSION == 2 && !inverse_inertia.is_empty();
-            for (slot, ((place, velocity), load)) in place.iter_mut().zip(movement).zip(load).enumerate() {
-                let mut inverse = [velocity.0[3]; 4];
-                if S::DIMENSION == 2 {
-                    inverse[2] = if turns { inverse_inertia[slot] } else { 0.0 };
-                }
-                step.push::<D, GRAVITY>(velocity, load, inverse);
+            for ((place, velocity), load) in place.iter_mut().zip(movement).zip(load) {
+                let inverse = velocity.0[3];
+                let about_z = if S::DIMENSION == 2 { 0.0 } else { inverse };
+                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse, inverse, about_z, inverse]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
         }

@@ -293,6 +293,9 @@ impl MovingWall {
     /// Returns the velocity at a point of the wall (m/s).
     #[inline(always)]
     fn velocity_at(&self, point: Vector3<f64>) -> Vector3<f64> {
+        if self.spin == Vector3::zeros() {
+            return self.velocity;
+        }
         let [turning, inward] = self.swing;
         let around = self.spin.cross(&(point - self.centre));
         self.velocity + around * turning - self.spin.cross(&around) * inward
