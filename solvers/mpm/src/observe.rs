@@ -20,7 +20,7 @@ struct WholeBodyMotion {
     velocity: Vector3<f64>,
     /// Angular momentum about the centre of mass (kg m²/s).
     angular_momentum: Vector3<f64>,
-    /// Angular velocity ω of the rigid motion with that angular momentum, I ω = L (rad/s).
+    /// Angular velocity ω of a rigid body with the same angular momentum L, from I ω = L (rad/s).
     spin: Vector3<f64>,
     /// Moment of inertia about the centre of mass, averaged over the possible axes of rotation (kg m²).
     inertia: f64,
@@ -32,7 +32,7 @@ struct WholeBodyMotion {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Returns the current observation; with `points`, it includes every material point.
+    /// Returns the state at this step. With `with_points`, it includes every material point.
     pub(crate) fn look(&mut self, with_points: bool) -> StepState {
         let wholes: Vec<WholeBodyMotion> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
@@ -89,7 +89,7 @@ impl<S: Space> Simulation<S> {
             uneven_rotational_energy,
             uneven_angular_momentum,
             spots: self.spots(),
-            driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.force)).collect(),
+            driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.contact_force())).collect(),
             budget: self.budget(elastic_energy),
             snapshot: Snapshot {
                 step: self.step,
@@ -167,8 +167,8 @@ impl<S: Space> Simulation<S> {
             (inertia.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * angular), inertia.trace() / 3.0)
         };
         let angle = if S::DIMENSION == 2 {
-            // The rotation angle is known up to full turns. The turn is chosen that is nearest to the previous angle
-            // plus spin times the elapsed time.
+            // The deformation gives the angle up to full turns. The result is the angle nearest to the previous angle
+            // plus spin times elapsed time.
             let expected =
                 self.state.bodies[body].angle + spin.z * self.scheme.time_step * (self.step - self.looked) as f64;
             nearest_turn(rotation_of(mean), expected)
@@ -221,7 +221,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Returns means over the points that were nearest to each spot at the start.
+    /// Returns the state at each spot: the mean over the points that were nearest to the spot at the start.
     fn spots(&self) -> Vec<PointState> {
         let mut spots = Vec::with_capacity(self.scene.spots.len());
         for spot in &self.scene.spots {
@@ -240,7 +240,7 @@ impl<S: Space> Simulation<S> {
                 .filter(|&at| away(at) <= reach)
                 .map(|at| (self.state.points.id[at], self.point(body, at)))
                 .collect();
-            // Sorted by id, so that the result does not depend on the current order of points.
+            // The points are sorted by id, so that the result does not depend on their current order.
             found.sort_by_key(|(id, _)| *id);
             spots.extend(mean(&found));
         }
@@ -263,7 +263,8 @@ impl<S: Space> Simulation<S> {
             .collect()
     }
 
-    /// Returns one contact for each pair: the sum of all tracer forces, at their centre of force.
+    /// Returns one contact for each pair of a grain and another body or a wall. Its force is the sum of the forces on all
+    /// tracers. It acts at the mean of their contact points, weighted by the normal forces.
     fn contacts(&self) -> Vec<ContactState> {
         let mut touches: Vec<(u32, ContactPartner, ContactPoint<S>)> = Vec::new();
         for touch in &self.contacts.touches {
@@ -313,7 +314,7 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Returns the rotation about z of a plane deformation gradient (rad, from −π to π): R of F = R U.
+/// Returns the rotation about z (rad, from −π to π) of a deformation gradient in the plane, from R of F = R U.
 fn rotation_of(deformation: Matrix3<f64>) -> f64 {
     libm::atan2(deformation.m21 - deformation.m12, deformation.m11 + deformation.m22)
 }

@@ -29,7 +29,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::SimulationFailure;
 use grainbench_scene::space::Space;
 
-/// Bodies, grid, boundaries and contacts of a run, advanced step by step.
+/// Bodies, grid, boundaries and contacts of a run, with the current step.
 pub(crate) struct Simulation<S: Space> {
     pub(crate) scene: Scene,
     pub(crate) scheme: Scheme,
@@ -40,11 +40,11 @@ pub(crate) struct Simulation<S: Space> {
     pub(crate) contacts: Contacts<S>,
     /// Energy budget, if requested.
     pub(crate) accounts: Option<Accounts<S>>,
-    /// Energy of a closed run, once it is monitored.
+    /// Monitored energy of a closed run; `None` for other runs and before monitoring starts.
     pub(crate) watched: Option<EnergyGuard>,
     /// True before the first step.
     pub(crate) is_fresh: bool,
-    /// Crossing time of the fastest wave through a cell (s).
+    /// Time in which the fastest wave crosses a cell (s).
     pub(crate) critical: f64,
     pub(crate) step: u64,
     pub(crate) settling: bool,
@@ -54,7 +54,7 @@ pub(crate) struct Simulation<S: Space> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Creates the bodies of a scene, without relaxation and initial velocities, see [`Simulation::begin`].
+    /// Creates the bodies of a scene. [`Simulation::begin`] relaxes them and sets their initial velocities.
     pub(crate) fn new(
         scene: &Scene,
         setting: Setting,
@@ -87,7 +87,7 @@ impl<S: Space> Simulation<S> {
     /// Relaxes the bodies and sets their initial velocities.
     ///
     /// # Errors
-    /// When bodies extend farther than a grid can, or fail during relaxation.
+    /// Returns an error if the grid would have too many nodes, or if the relaxation fails.
     pub(crate) fn begin(&mut self) -> Result<(), Box<SimulationFailure>> {
         let team = self.state.team.clone();
         team.lead(|| self.settle())?;
@@ -105,19 +105,19 @@ impl<S: Space> Simulation<S> {
         self.accounts = scene.asks_for_budget().then(|| Accounts::open(scheme.setting.basis, state, &grid.lattice));
     }
 
-    /// Takes `steps` steps; contact points are recorded in the last one.
+    /// Takes `steps` steps. Contact points are recorded in the last step.
     ///
     /// # Errors
-    /// When the state of a point becomes invalid.
+    /// Returns an error if the state of a point becomes invalid or a check fails.
     pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         let team = self.state.team.clone();
         team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))
     }
 
-    /// Takes one step.
+    /// Takes one step. With `record`, contact points are recorded.
     ///
     /// # Errors
-    /// When the state of a point becomes invalid.
+    /// Returns an error if the state of a point becomes invalid or a check fails.
     pub(crate) fn cycle(&mut self, record: bool) -> Result<(), Box<SimulationFailure>> {
         let Self { critical, step, scheme, .. } = *self;
         self.stages(record).map_err(|failure| failure.into_simulation_failure(step, scheme.time_step, critical))?;
@@ -154,7 +154,7 @@ impl<S: Space> Simulation<S> {
         state.bytes() + grid.bytes() + contacts.bytes() + accounts.as_ref().map_or(0, Accounts::bytes)
     }
 
-    /// Assigns a window to every field.
+    /// Assigns a window of nodes to every velocity field.
     pub(crate) fn place_windows(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, .. } = self;
         let placed = grid.place_windows(&mut state.bodies, scheme.has_one_field());
@@ -169,15 +169,17 @@ impl<S: Space> Simulation<S> {
         scatter(scheme, state, grid, contacts.tracers.len() > 0);
     }
 
-    /// Starts the step of driven bodies and contacts.
+    /// Sets the velocities of driven bodies for the step, and finds the shared nodes for contact.
     fn begin_meeting(&mut self) {
-        let Self { scheme, state, grid, boundary, contacts, accounts, settling, cost, step, .. } = self;
+        let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, settling, cost, step, .. } = self;
         if let Some(accounts) = accounts {
             accounts.tally = Tally::default();
         }
         boundary.driven.begin(*settling, *step as f64 * scheme.time_step, scheme.time_step);
         if !boundary.driven.groups.is_empty() {
             let State { bodies, points, .. } = state;
+            let own = (surroundings.gravity, Damping::over(surroundings.damping, scheme.time_step));
+            boundary.driven.note_own_forces(bodies, points, own, scheme.time_step);
             boundary.driven.find_held(&grid.lattice, bodies, points, scheme.setting.basis, scheme.has_one_field());
         }
         contacts.find_shared(scheme, state, grid, boundary, cost);
@@ -252,7 +254,8 @@ impl<S: Space> Simulation<S> {
         grid.find_changes(state, damping);
     }
 
-    /// Gathers velocities and displacements of points from nodes; driven points get their prescribed velocity.
+    /// Gathers velocities and displacements of points from nodes. Driven points get their prescribed velocity. With MUSL,
+    /// boundary and contact conditions are applied to the projected velocities.
     fn gather(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, accounts, .. } = self;
         gather(scheme, Damping::over(surroundings.damping, scheme.time_step), state, grid);
@@ -272,7 +275,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Updates stresses, unless they come first, and moves tracers and points; rejects displacements above one cell.
+    /// Moves tracers and points, and updates stresses unless they were updated first. Rejects displacements above one
+    /// cell.
     fn move_on(&mut self, velocities: Velocities) -> Result<(), Failure> {
         let Self { scheme, state, grid, contacts, accounts, .. } = self;
         let cell = grid.lattice.shortest(S::DIMENSION);
