@@ -1,4 +1,4 @@
-//! Output of the commands: files and text of a report, and the exit code.
+//! Output of commands: files and text of a report, and the exit code.
 
 use super::exit::{Fault, Outcome, RED, print};
 use super::github;
@@ -10,7 +10,7 @@ use grainbench::reports::{Headline, Report, summary_table, write_report, write_r
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Place and form of a report.
+/// Directory and form of a report.
 pub(crate) struct Output<'a> {
     pub(crate) out: &'a Path,
     /// True to write `rows.parquet` in addition to `rows.csv`.
@@ -19,7 +19,7 @@ pub(crate) struct Output<'a> {
     pub(crate) json: bool,
     /// True to print only the counts and the failed results.
     pub(crate) quiet: bool,
-    /// Text to print before the place of the page; by default the summary.
+    /// Text that is printed before the path of the page. Default: the summary of the results.
     pub(crate) text: Option<String>,
     /// True to treat amber results as red.
     pub(crate) strict: bool,
@@ -31,7 +31,7 @@ impl<'a> Output<'a> {
     }
 }
 
-/// Writes and prints a report. Returns its exit code.
+/// Writes and prints a report, and returns the exit code.
 pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     let write = if output.parquet { write_report_and_parquet } else { write_report };
     write(output.out, report).map_err(Fault::writing)?;
@@ -47,7 +47,7 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     Ok(exit_code(report, output.strict))
 }
 
-/// Writes and prints a study. Returns its exit code.
+/// Writes and prints a study, and returns the exit code.
 pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> Outcome {
     write_study(output.out, study).map_err(Fault::writing)?;
     if output.json {
@@ -58,7 +58,7 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> 
     Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }
 
-/// Adds the reasons why a run is red although no result is: nothing was judged, or amber results count as red.
+/// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
 pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
     if is_mute {
         let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
@@ -72,14 +72,14 @@ pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
     }
 }
 
-/// Returns the failed rows and the counts.
+/// Returns the lines of failed results and controls, and the counts.
 fn quiet_text(report: &Report) -> String {
     let failing: String = failing_lines(report).into_iter().map(|line| line + "\n").collect();
     format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
-/// Returns success, or red if a result is red, a control stayed green, nothing was evaluated, or the report states
-/// another reason. With `strict`, amber results are red too.
+/// Returns the exit code. It is red if a result is red, a control did not fail, nothing was judged, or the report
+/// states another reason. With `strict`, an amber result is red too.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     let least = if strict { Severity::Amber } else { Severity::Red };
     let red_row = |verdict: &Verdict| verdict.outcome.severity() >= least;
@@ -92,14 +92,18 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
-/// Returns true if the outcome is a statement about the solver. An unsupported scene is one, and a missing solver is
-/// not.
+/// Returns true if the solver was judged. An unsupported scene counts as judged, but a missing solver does not.
 pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
-    use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
-    matches!(verdict.outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
+    outcome_is_judged(verdict.outcome)
 }
 
-/// Returns true if no result is a statement about the measured quantity. Here, an unsupported scene does not count.
+/// Returns true if a result with this outcome counts as judged. Outcomes without a usable reference or solver do not count.
+pub(crate) const fn outcome_is_judged(outcome: verdict::Outcome) -> bool {
+    use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
+    matches!(outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
+}
+
+/// Returns true if no result judges its quantity. For an unsupported scene, the quantity is not judged.
 pub(crate) fn says_nothing(report: &Report) -> bool {
     let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
     rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))

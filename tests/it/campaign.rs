@@ -1,5 +1,5 @@
-//! Plans as a user has them. The report of a plan equals the report of its command. After a kill, a truncated file or a
-//! full disk, no result is lost and no task is done twice. Invalid plans are rejected.
+//! Plans on the command line. The report of a plan equals the report of its command. After a kill, a truncated file or
+//! a full disk, no result is lost and no task is repeated. Invalid plans are rejected.
 
 mod edits;
 
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// Sweep of two factors by two solvers, with a claim of the case and a quantity of its own.
+/// Sweep of two factors with two solvers, a claim of the case, and a further quantity.
 const SWEEP: &str = include_str!("../scenes/sweep.toml");
-/// Number of points of the sweep.
+/// Number of points of the sweep, over all solvers and levels.
 const POINTS: usize = 45;
 
 fn ok(answer: &Answer) -> &Answer {
@@ -21,7 +21,7 @@ fn ok(answer: &Answer) -> &Answer {
     answer
 }
 
-/// Returns a folder with the planned sweep.
+/// Returns a folder that contains the sweep and its plan.
 fn planned() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
@@ -29,13 +29,13 @@ fn planned() -> tempfile::TempDir {
     directory
 }
 
-/// Returns the rows of a table without times.
+/// Returns the rows of a table without the column of times.
 fn rows(file: &Path) -> Vec<String> {
     let text = fs::read_to_string(file).unwrap();
     let mut table = text.lines();
     let head = table.next().unwrap();
     let times = head.split(',').position(|name| name == "wall_seconds").unwrap();
-    // In these tables, the times are the last column.
+    // The times are the last column of these tables.
     assert_eq!(times + 1, head.split(',').count());
     table.map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect()
 }
@@ -44,12 +44,12 @@ fn json(file: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
 }
 
-/// Returns the output of `status` as JSON.
+/// Returns the progress of a plan as JSON.
 fn status(directory: &Path, plan: &str) -> Value {
     serde_json::from_str(&ok(&grainbench(directory, &["report", plan, "--progress", "--json"])).out).unwrap()
 }
 
-/// Returns the ids of all lines of all results.
+/// Returns the ids of all results of a plan, one for each complete line.
 fn done(plan: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for entry in fs::read_dir(plan.join("results")).unwrap() {
@@ -60,7 +60,7 @@ fn done(plan: &Path) -> Vec<String> {
     found
 }
 
-/// Removes the keys of times from a report.
+/// Removes all times and the provenance from a report.
 fn without_times(mut value: Value) -> Value {
     fn strip(value: &mut Value) {
         match value {
@@ -82,7 +82,7 @@ fn without_times(mut value: Value) -> Value {
     value
 }
 
-/// The report of a plan equals the report of its command: results, controls, figures, counts of runs, points and limits.
+/// The report of a plan equals the report of its command in results, controls, figures, counts of runs, points and limits.
 #[test]
 fn a_collected_plan_is_the_report_of_its_command() {
     let directory = tempfile::tempdir().unwrap();
@@ -107,7 +107,7 @@ fn a_collected_plan_is_the_report_of_its_command() {
     }
 }
 
-/// A sweep without a plan does the same, and the old commands still work, with a note.
+/// A sweep that runs at once gives the same results as its plan. The old commands still work, and print a note.
 #[test]
 fn a_sweep_at_once_is_its_plan() {
     let directory = tempfile::tempdir().unwrap();
@@ -159,7 +159,7 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
         .sum();
     assert_eq!(shards, POINTS);
     assert_eq!(done(&here.join("p")).len(), POINTS);
-    // Another division into shards finds all tasks finished.
+    // With another number of shards, all tasks are already finished.
     assert!(
         ok(&grainbench(here, &["run", "--resume", "p", "--shard", "1/1"])).out.contains("45 were finished, 0 done now")
     );
@@ -174,7 +174,7 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
     for name in ["index.html", "rows.parquet", "figures/map.svg", "figures/work.svg"] {
         assert!(report.join(name).is_file(), "{name}");
     }
-    // A disc rolls or slips as expected by both methods, because the springs of the case are stiff enough.
+    // The disc rolls or slips with both methods as expected, because the springs of the case are stiff enough.
     let results = json(&report.join("results.json"));
     let verdicts = results["verdicts"].as_array().unwrap();
     let count_of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
@@ -184,12 +184,12 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
         count_of("pass"),
         count_of("fail")
     );
-    // A quantity without an expectation is reported without a verdict. Without friction it is sin θ, at most 0.87.
+    // A quantity without an expectation is reported without an outcome. Without friction it is sin θ, at most 0.87.
     let unjudged: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
     assert!(unjudged.len() == POINTS && unjudged.iter().all(|row| row["value"].as_f64() < Some(0.87)));
 }
 
-/// A report of some of the tasks is red, also when it is written again.
+/// A report with unfinished tasks is red, also when its files are written again.
 #[test]
 fn a_report_of_some_tasks_is_red_everywhere() {
     let directory = tempfile::tempdir().unwrap();
@@ -207,12 +207,12 @@ fn a_report_of_some_tasks_is_red_everywhere() {
     assert!(read("badge.svg").contains("pass"));
 }
 
-/// The runs of a sweep use the cache: cached runs are not repeated, and new runs are cached.
+/// A sweep uses the cache of finished runs: cached runs are not repeated, and new runs are added.
 #[test]
 fn a_sweep_shares_the_cache_of_runs() {
     let directory = planned();
     let here = directory.path();
-    // Long enough to be cached.
+    // The runs are long enough for the cache.
     fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
     let work = |plan: &str, cache: &str| {
         ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", plan]));
@@ -237,7 +237,7 @@ fn a_sweep_shares_the_cache_of_runs() {
     assert_eq!(times("p1"), times("p2"), "a reused run reports its original time");
 }
 
-/// A crash of a solver and an unsupported scene are results with a type, which the report shows.
+/// A crash of a solver and an unsupported scene are results with their own outcome, which the report shows.
 #[test]
 fn failures_keep_their_type() {
     let directory = tempfile::tempdir().unwrap();
@@ -253,24 +253,24 @@ fn failures_keep_their_type() {
     ok(&grainbench(here, &["run", "--resume", "p"]));
     let progress = status(here, "p");
     assert_eq!((progress["tasks"].as_u64(), progress["failed"].as_u64()), (Some(3), Some(2)), "{progress}");
-    ok(&grainbench(here, &["report", "p"]));
+    assert_eq!(grainbench(here, &["report", "p"]).code, Some(1));
     let results = json(&here.join("p/report/results.json"));
     let ended: Vec<&str> =
         results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert_eq!(ended, ["broken", "unsupported"], "{results}");
-    // A failed task counts as finished, unless it is requested again.
+    // A failed task counts as finished, unless `--retry-failed` is given.
     assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("3 were finished, 0 done now"));
     assert!(
         ok(&grainbench(here, &["run", "--resume", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed")
     );
 }
 
-/// Workers are killed at random times and lines are truncated. The remaining tasks are then done, and none twice.
+/// Workers are killed at random times, and lines are truncated. All remaining tasks are then run, and none is run twice.
 #[test]
 fn killed_workers_lose_nothing_and_do_nothing_twice() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    // Two hundred tasks of a few milliseconds.
+    // About two hundred tasks of a few milliseconds each.
     let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
     fs::write(here.join("sweep.toml"), sweep).unwrap();
     ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "whole"]));
@@ -301,7 +301,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
         }
         at_work += usize::from(results() > before);
         if round % 3 == 0 {
-            // Truncates the last line of one of the result files.
+            // Truncates the last line of one result file.
             let cut = fs::read_dir(here.join("p/results")).unwrap().map(|entry| entry.unwrap().path()).max();
             if let Some(path) = cut {
                 let bytes = fs::read(&path).unwrap();
@@ -326,12 +326,12 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
 }
 
-/// A full disk ends the run and keeps the finished results. The rest is done when there is space again.
+/// A full disk ends the run but keeps the finished results. When there is space again, the remaining tasks are run.
 #[test]
 fn a_full_disk_loses_nothing() {
     let directory = planned();
     let here = directory.path();
-    // Files of this process are limited to four kilobytes: about ten results.
+    // The files of this process are limited to 4 kB, which is about ten results.
     let full = std::process::Command::new("sh")
         .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
         .env("GRAINBENCH_CACHE", "off")
@@ -347,12 +347,12 @@ fn a_full_disk_loses_nothing() {
     assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
 }
 
-/// A full disk keeps the earlier plan, and leaves nothing of a first one.
+/// If the disk is full, an earlier plan stays unchanged, and a new plan leaves no file.
 #[test]
 fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     let directory = planned();
     let here = directory.path();
-    // The head of the second plan is too long for the limit of a file: 512 bytes.
+    // The limit of 512 bytes per file is too small for the second plan.
     let plan = |out: &str, limit: &str| {
         let script = format!("trap '' XFSZ; {limit} exec \"$0\" run belt --plan {out}");
         let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
@@ -374,7 +374,7 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     }
 }
 
-/// Concurrent workers share a plan.
+/// Workers that run at the same time share a plan, and do each task once.
 #[test]
 fn two_at_once_do_each_task_once() {
     let directory = planned();
@@ -389,7 +389,7 @@ fn two_at_once_do_each_task_once() {
     assert_eq!((ids.len(), ids.iter().collect::<BTreeSet<_>>().len()), (POINTS, POINTS));
 }
 
-/// Rejects invalid plans, for each kind of error in a file.
+/// Rejects plans with each kind of error in their files.
 #[test]
 fn what_is_no_plan_is_refused() {
     let directory = planned();
@@ -442,7 +442,7 @@ fn what_is_no_plan_is_refused() {
         assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     }
     fs::write(&whole[0].0, head).unwrap();
-    // Foreign files among the results are ignored.
+    // Other files in the folder of results are ignored.
     for (name, text) in
         [("a.log", &b""[..]), ("b.log", b"hello\n"), ("c.log", b"grainbench-results 1 {}\n\xff\n"), ("d.txt", b"x")]
     {
@@ -453,7 +453,7 @@ fn what_is_no_plan_is_refused() {
     ok(&grainbench(here, &["report", "p"]));
     assert_eq!(status(here, "p")["damaged"], 2);
     assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
-    // A plan is written only to an empty folder.
+    // A plan is written only to an empty folder or over a plan.
     fs::create_dir(here.join("full")).unwrap();
     fs::write(here.join("full/notes"), "").unwrap();
     let answer = grainbench(here, &["simulate", "sweep.toml", "--plan", "full"]);
@@ -463,7 +463,7 @@ fn what_is_no_plan_is_refused() {
     }
 }
 
-/// An external solver with a manifest takes part in a sweep at each point.
+/// An external solver with a manifest runs every point of a sweep.
 #[test]
 fn a_program_by_its_manifest_takes_part() {
     let directory = tempfile::tempdir().unwrap();
@@ -491,7 +491,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     let here = directory.path();
     ok(&grainbench(here, &["run", "--resume", "p"]));
     ok(&grainbench(here, &["report", "p", "--out", "new"]));
-    // Results of an earlier commit, with a failed claim and a run of one step less.
+    // Results of an earlier commit: one claim failed, and one run had one step less.
     let mut old = json(&here.join("new/results.json"));
     old["verdicts"][0]["verdict"] = "fail".into();
     let steps = old["points"][0]["steps"].as_u64().unwrap();
@@ -511,7 +511,7 @@ fn a_trend_tells_which_rows_and_counts_changed() {
     }
 }
 
-/// Replaces the programs of Slurm by scripts that write their arguments to a file. A file `broken` makes `squeue` fail.
+/// Replaces the commands of Slurm by scripts that write their arguments to a file. If the file `broken` exists, `squeue` fails.
 fn fake_slurm(directory: &Path) -> String {
     let bin = directory.join("bin");
     fs::create_dir(&bin).unwrap();
@@ -527,8 +527,8 @@ fn fake_slurm(directory: &Path) -> String {
     format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
 }
 
-/// The array is within the limit of the site. A resubmission has only missing shards that are neither queued nor
-/// running.
+/// The job array stays within the limit of the site. A resubmission contains only the missing shards that are neither
+/// queued nor running.
 #[test]
 fn slurm_is_asked_for_what_is_missing() {
     let directory = planned();
@@ -556,7 +556,7 @@ fn slurm_is_asked_for_what_is_missing() {
     assert!(answer.code == Some(1) && answer.err.contains("squeue failed") && asked() == 0, "{}", answer.err);
     fs::remove_file(here.join("broken")).unwrap();
     let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
-    // Array indices are below MaxArraySize.
+    // Array indices must be below MaxArraySize.
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: shards 1-3 of 3\n"), "{}", answer.err);
     let submitted = fs::read_to_string(here.join("sbatch.txt")).unwrap();
     assert!(
@@ -565,7 +565,7 @@ fn slurm_is_asked_for_what_is_missing() {
     );
     let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
-    // A second submission needs `--resubmit`.
+    // Submitting a plan a second time needs `--resubmit`.
     assert!(ask(&submit).code == Some(2) && asked() == 1);
     let again = [&submit[..], &["--resubmit"]].concat();
     fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
@@ -586,13 +586,13 @@ fn slurm_is_asked_for_what_is_missing() {
     fs::remove_file(here.join("broken")).unwrap();
     ok(&ask(&["run", "--resume", "p"]));
     assert!(ask(&again).out.starts_with("every missing task is queued or running"));
-    // A timing run has exclusive use of its node.
+    // A plan that measures times requests its node exclusively.
     ok(&ask(&["cost", "collision", "--solver=dem", "--plan", "c"]));
     ok(&ask(&["run", "--resume", "c", "--on", "slurm"]));
     let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
     assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
     assert_eq!(ask(&["run", "--resume", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
-    // A reply without a job number is an error.
+    // If `sbatch` does not print a job number, this is an error.
     fs::write(here.join("number"), "Submitted").unwrap();
     ok(&ask(&["simulate", "sweep.toml", "--plan", "q"]));
     let answer = ask(&["run", "--resume", "q", "--on", "slurm"]);

@@ -1,10 +1,11 @@
-//! Plan of a sweep.
+//! Plan of a parameter sweep.
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
+use crate::cli::publish::outcome_is_judged;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::campaign::finished::{FinishedTasks, TaskResult};
@@ -23,11 +24,11 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Sweep with its solvers.
+/// Sweep over parameters, with its solvers.
 pub(crate) struct SweepStudy {
     path: String,
     sweep: Sweep,
-    /// Solvers as the file names them.
+    /// Names or manifests of the solvers, as the sweep file states them.
     asked: Vec<String>,
     /// Solver names in the results.
     names: Vec<String>,
@@ -41,7 +42,7 @@ impl SweepStudy {
         arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;
         let beside = Path::new(file).parent().unwrap_or(Path::new(""));
-        // Paths of manifests are relative to the sweep file.
+        // Paths of manifests are relative to the directory of the sweep file.
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
         let (_, names) = NamedSolvers::read_by_content(&asked)?;
@@ -69,7 +70,7 @@ impl Study for SweepStudy {
     fn inputs(&self) -> BTreeMap<String, String> {
         let scene = self.sweep.scene_file().map(|path| path.display().to_string());
         let manifests = self.asked.iter().filter(|name| is_manifest(name)).cloned();
-        // An invalid scene is reported when the tasks are listed.
+        // An invalid scene causes an error when the tasks are listed.
         let named = self.sweep.files().unwrap_or_default().into_iter().map(|path| path.display().to_string());
         let files = std::iter::once(self.path.clone()).chain(scene).chain(named).chain(manifests);
         let mut inputs = self.solvers().map_or_else(|_| BTreeMap::new(), |solvers| solvers.inputs());
@@ -78,7 +79,7 @@ impl Study for SweepStudy {
     }
 
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
-        // Timed tasks are always run, and never taken from the cache.
+        // Timed tasks never use results of the cache.
         let cache = if self.is_timed() { None } else { cache::open(false) };
         let solvers = cache::with(self.solvers()?, cache.as_ref());
         let places: HashMap<Id, usize> = plan.tasks.iter().enumerate().map(|(at, task)| (task.id, at)).collect();
@@ -127,12 +128,13 @@ impl Study for SweepStudy {
             let page = how.out.join("index.html");
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
-        // A sweep includes conditions in which methods fail, so only a crash of our program is red.
         let crashed = plan
             .tasks
             .iter()
             .any(|task| finished.entries.get(&task.id).is_some_and(|entry| entry.state == State::Crashed));
-        let is_red = crashed || how.strict && outside + amber + unjudged > 0;
+        let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
+        let nothing_judged = outcomes().next().is_some() && !outcomes().any(outcome_is_judged);
+        let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
         Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }
 }

@@ -1,8 +1,8 @@
-//! Plans after an edit of what their results depend on, and points that judge nothing.
+//! Plans whose inputs are edited after they were made, and points without a judged quantity.
 
 use super::*;
 
-/// Another friction value in the scene is another task with another result.
+/// A changed friction value in the sweep gives other tasks. The tasks with unchanged values stay finished.
 #[test]
 fn another_number_is_another_task() {
     let directory = planned();
@@ -15,7 +15,7 @@ fn another_number_is_another_task() {
     assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("45 tasks: 30 were finished, 15 done now"));
 }
 
-/// Copies `examples/python`, with the replacement in its program, to the folder `s`.
+/// Copies `examples/python` to the folder `s`, with a replacement in its files.
 fn one_grain(here: &Path, replaced: (&str, &str)) {
     fs::create_dir_all(here.join("s")).unwrap();
     for name in ["SOLVER.toml", "one_grain.py"] {
@@ -24,14 +24,14 @@ fn one_grain(here: &Path, replaced: (&str, &str)) {
     }
 }
 
-/// Returns the output of a plan that is made, done and collected.
+/// Makes a plan, runs it, and returns the output of its report.
 fn collected(here: &Path, plan: &[&str]) -> Answer {
     ok(&grainbench(here, &[plan, &["--plan", "p"]].concat()));
     ok(&grainbench(here, &["run", "--resume", "p"]));
     grainbench(here, &["report", "p"])
 }
 
-/// After an edit of a file that results depend on, the plan is refused, and a new plan runs its tasks again.
+/// If a file on which results depend is edited, the plan is rejected, and a new plan runs its tasks again.
 #[test]
 fn an_edited_input_is_run_again() {
     let directory = tempfile::tempdir().unwrap();
@@ -69,7 +69,7 @@ fn an_edited_input_is_run_again() {
     assert!(collected(here, &["run", "c"]).out.contains("✗ c/plain"), "the claim is wrong now");
 }
 
-/// The conformance of an external solver is tested again after an edit.
+/// If an external solver is edited, its conformance properties are tested again.
 #[test]
 fn an_edited_program_owes_its_conformance_again() {
     let directory = tempfile::tempdir().unwrap();
@@ -88,7 +88,7 @@ fn an_edited_program_owes_its_conformance_again() {
     assert_ne!(owed(), before);
 }
 
-/// Another executable of LAMMPS is another solver.
+/// Another executable of LAMMPS counts as another solver.
 #[test]
 fn another_executable_is_another_task() {
     let directory = tempfile::tempdir().unwrap();
@@ -118,7 +118,8 @@ fn another_executable_is_another_task() {
     }
 }
 
-/// Points without an expectation, and points with a tolerance as large as the scale, are not green with `--strict`.
+/// A point outside its tolerance is red. A sweep with claims of which none was judged is red too. A sweep without claims is
+/// red only with `--strict`.
 #[test]
 fn a_point_that_shows_nothing_is_not_green() {
     let directory = tempfile::tempdir().unwrap();
@@ -128,18 +129,18 @@ fn a_point_that_shows_nothing_is_not_green() {
     let solvers = &solvers.unwrap()[SWEEP.find("[[solvers]]").unwrap()..];
     let record = "[[record]]\nquantity = 'v'\nunit = 'm/s'\nvalue = 'grain.vx'\n";
     let cases = [
-        ("", "0 within, 0 outside or broken, 0 amber, 15 not judged"),
-        ("equals = '900*t'\nallowed = 2\n", "0 within, 0 outside or broken, 15 amber"),
-        ("equals = '900*t'\nallowed = 0.5\n", "0 within, 15 outside or broken, 0 amber"),
-        ("equals = '900*t'\nallowed = 0.5\nscale = '0 - 1e9*mu'\n", "0 within, 15 outside or broken, 0 amber"),
+        ("", "0 within, 0 outside or broken, 0 amber, 15 not judged", 0),
+        ("equals = '900*t'\nallowed = 2\n", "0 within, 0 outside or broken, 15 amber", 1),
+        ("equals = '900*t'\nallowed = 0.5\n", "0 within, 15 outside or broken, 0 amber", 1),
+        ("equals = '900*t'\nallowed = 0.5\nscale = '0 - 1e9*mu'\n", "0 within, 15 outside or broken, 0 amber", 1),
     ];
-    for (keys, counts) in cases {
+    for (keys, counts, code) in cases {
         let text = format!("{head}{record}{keys}{solvers}levels = ['dt=.1']\n");
         fs::write(here.join("sweep.toml"), text).unwrap();
         ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
         ok(&grainbench(here, &["run", "--resume", "p"]));
         let answer = grainbench(here, &["report", "p", "--strict"]);
         assert!(answer.code == Some(1) && answer.out.contains(counts), "{keys}: {}{}", answer.out, answer.err);
-        ok(&grainbench(here, &["report", "p"]));
+        assert_eq!(grainbench(here, &["report", "p"]).code, Some(code), "{keys}");
     }
 }
