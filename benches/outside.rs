@@ -1,7 +1,8 @@
-//! Overhead of external runs through a manifest: for a program that starts for each run, and for a program that keeps
-//! running.
+//! Overhead of running an external program through a manifest. One program is started for each run. A second program is
+//! started once and receives all runs.
 //!
-//! The program writes two samples of a disc. The first printed line gives its own run time.
+//! Each run writes two samples of a disc. The benchmark `the program by itself` starts the first program directly,
+//! without manifest.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark")]
 

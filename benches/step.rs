@@ -1,8 +1,8 @@
 //! Time of a DEM step and of the contact kernel: `cargo bench`.
 //!
-//! `particle-steps` are 10,000 sheared discs in the convention of LAMMPS with 4.7 contacts a disc. They run with the
-//! effects of the scene, without friction, and with friction compiled in at μ = 0. `contact` is one pair in permanent
-//! contact. `lattice` is a square lattice of increasing size, for which the time per grain must be constant.
+//! `particle-steps` runs 10,000 sheared discs in the convention of LAMMPS, with 4.7 contacts per disc. It runs them with
+//! friction, without friction, and with friction compiled in but μ = 0. `contact` runs one pair in permanent contact.
+//! `lattice` runs square lattices of increasing size. Their time per grain and step must be constant.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainbench::cases::registry;
@@ -44,7 +44,7 @@ lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {c
         .expect("the scene is right")
 }
 
-/// Adds friction without an effect to the kernel, through a material that no grain has.
+/// Adds a material with friction that no grain has. The kernel then computes friction, but friction has no effect.
 fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let law = scene.laws[0].expect("a scene of one material");
@@ -72,7 +72,7 @@ fn contact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("contact");
     let case = registry::by_name("collision").expect("a case of the registry");
     let mut scene = case.variant("oblique").expect("the scene is right");
-    // In contact from the start with hardly any motion, so the contact persists.
+    // The grains are in contact from the start and hardly move, so the contact persists.
     scene.grains[1].position = scene.grains[0].position + nalgebra::Vector3::new(2.199, 0.0, 0.0);
     scene.grains.iter_mut().for_each(|grain| (grain.velocity, grain.spin) = (grain.velocity * 0.0, grain.spin * 1e-9));
     group.throughput(Throughput::Elements(1000));

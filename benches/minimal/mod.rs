@@ -1,6 +1,9 @@
-//! Minimal hand-written code for discs on undamped springs, the reference for the kernel of a scene without other
-//! effects. It uses the same method and nothing else: a neighbour list with a skin in rows, forces from the overlap,
-//! kick and drift, and the largest displacement since the list was built.
+//! Minimal hand-written DEM for discs on undamped springs. It is the reference for the kernel of a scene without other
+//! effects.
+//!
+//! It does only what such a scene needs. The neighbour list is built once, with one row per disc, from all pairs whose
+//! gap is below a skin. Each step updates velocities and positions by the forces, tracks the largest displacement since
+//! the list was built, and computes the forces from the overlaps.
 
 /// Discs with the same stiffness.
 pub(crate) struct Minimal {
@@ -13,17 +16,18 @@ pub(crate) struct Minimal {
     /// Rows of the list: the neighbours of disc k are `partner[start[k]..start[k + 1]]`.
     start: Vec<u32>,
     partner: Vec<u32>,
-    /// Material of each disc, and the stiffness of each pair of materials, as in every scene.
+    /// Material of each disc. Like every scene, the code selects the stiffness by the materials of a pair.
     material: Vec<u16>,
+    /// Stiffness of each pair of materials (N/m).
     stiffness: Vec<f64>,
     /// Number of contacts evaluated.
     pub(crate) touching: u64,
-    /// Largest squared displacement of a disc since the list was built.
+    /// Largest squared displacement of a disc since the list was built (m²).
     pub(crate) farthest: f64,
 }
 
 impl Minimal {
-    /// Builds the discs with a list of pairs whose gap is below `skin`.
+    /// Builds discs, given as position (m), radius (m) and mass (kg), with a list of pairs whose gap is below `skin` (m).
     pub(crate) fn new(discs: &[([f64; 2], f64, f64)], stiffness: f64, skin: f64) -> Self {
         let (mut start, mut partner) = (vec![0], Vec::new());
         for (row, (a, radius, _)) in discs.iter().enumerate() {

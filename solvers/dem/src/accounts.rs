@@ -1,10 +1,11 @@
 //! Energy budget of a run, summed from step to step.
 //!
-//! In a step, a wall or a grain with prescribed motion moves by V Δt while the force on it changes from F to F'. Its
-//! work is −½ (F + F')·V Δt. To second order, this is the energy that positions and velocities half a step apart
-//! receive. [`Tangential::lost`](crate::contact::tangential::Tangential::lost) gives the frictional work, and the
-//! energy that tangential springs release when their stiffness changes. The energy left in the tangential spring at the
-//! end of a contact is not counted. It is zero if the surfaces slip at the end, as they do with finite friction.
+//! In a step, a wall or a grain with prescribed motion moves by V Δt, while the force on it changes from F to F'. Its
+//! work is −½ (F + F')·V Δt. To second order in Δt, this is the energy that the other grains receive, although their
+//! velocities are half a step apart from their positions.
+//! [`Tangential::lost`](crate::contact::tangential::Tangential::lost) gives the frictional work, and the energy that
+//! tangential springs release when their stiffness changes. The energy left in the tangential spring at the end of a
+//! contact is not counted. It is zero if the surfaces slip at the end, as they do with finite friction.
 
 use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
@@ -24,7 +25,7 @@ pub(crate) struct Accounts {
     released: f64,
     /// Impulse of walls, of grains with prescribed motion, and of gravity (N s).
     impulse: Vector3<f64>,
-    /// Forces on groups with prescribed motion, then on walls, at the last evaluation (N).
+    /// Forces on groups of grains with prescribed motion, then on walls, at the last evaluation (N).
     forces: Vec<Vector3<f64>>,
 }
 
@@ -36,22 +37,22 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let what = if lossy {
         "damping and rolling resistance"
     } else if scene.driven.iter().any(Driven::is_for_a_while) {
-        "grains that begin or end to be driven"
+        "grains that are driven for a part of the run"
     } else if scene.driven.iter().any(|driven| !driven.motion.is_empty() || driven.spin != Vector3::zeros()) {
         "grains that are driven with a spin or along a motion"
     } else if turning {
-        "walls that turn"
+        "rotating walls"
     } else {
         return None;
     };
-    Some(format!("a probe asks for its energy budget, and what {what} take or give is not added up"))
+    Some(format!("a probe requests the energy budget, which does not include the energy of {what}"))
 }
 
-/// Contribution of a step, from the forces at its end.
+/// Forces, velocities and energies of a step, which [`Accounts::add`] adds to the budget.
 pub(crate) struct Step {
-    /// Forces on groups with prescribed motion, then on walls (N).
+    /// Forces on groups of grains with prescribed motion, then on walls (N).
     pub(crate) forces: Vec<Vector3<f64>>,
-    /// Velocities of groups with prescribed motion, then of walls (m/s).
+    /// Velocities of groups of grains with prescribed motion, then of walls (m/s).
     pub(crate) velocities: Vec<Vector3<f64>>,
     /// Gravity g (m/s²).
     pub(crate) gravity: Vector3<f64>,
@@ -79,7 +80,8 @@ impl Accounts {
         self.forces = step.forces;
     }
 
-    /// Returns the budget at the time of the positions, from the grains at that time and the energy of the springs (J).
+    /// Returns the budget at the time of the positions. `grains` holds the states at that time, `springs` the energy of
+    /// all springs (J).
     pub(crate) fn budget(&self, scene: &Scene, grains: &[GrainState], springs: f64) -> Budget {
         let kinetic = |(state, grain): (&GrainState, &Grain)| {
             0.5 * (state.mass * state.velocity.norm_squared() + grain.inertia * state.spin.norm_squared())

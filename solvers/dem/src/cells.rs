@@ -4,21 +4,22 @@ use crate::geometry::Geometry;
 use grainbench_lanes::Quad;
 use nalgebra::Vector3;
 
-/// Grid over the bounding box of the grains, except for the few very large ones. Cells are at least `reach` wide, so
-/// grains within reach of each other are in the same or adjacent cells. The number of cells is at most a few per grain.
+/// Grid of cells over the bounding box of the grains. Only the few grains that are much larger than the mean have no
+/// cell. Cells are at least `reach` (m) wide, so grains within this distance of each other are in the same or in adjacent
+/// cells. The grid has at most 4 N + 64 cells for N grains.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     low: Vector3<f64>,
     width: Vector3<f64>,
     reach: f64,
     pub(crate) count: [usize; 3],
-    /// First slot of every cell, and the number of grains at the end. Grains without a cell are before the first cell.
+    /// First slot of every cell, then the number of grains. Grains without a cell have the slots before the first cell.
     pub(crate) start: Vec<u32>,
 }
 
 impl Cells {
-    /// Creates the grid, and returns the order that sorts the grains by cell (a stable sort). Grains with radii above
-    /// `limit` have no cell and come first, so that their partners come after them.
+    /// Creates the grid, and returns it with the order that sorts the grains by cell (a stable sort). Grains with radii
+    /// above `limit` (m) have no cell. They come first, so that their partners come after them.
     pub(crate) fn sort<S: Geometry>(place: &[Quad], reach: f64, limit: f64) -> (Self, Vec<u32>) {
         let mut low = Vector3::repeat(f64::INFINITY);
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
@@ -64,7 +65,7 @@ impl Cells {
         (cells, order)
     }
 
-    /// Returns the cell coordinates of a point; those of the nearest cell if it lies outside the grid.
+    /// Returns the cell coordinates of a point (m). A point outside the grid has the coordinates of the nearest cell.
     pub(crate) fn coordinates(&self, position: Vector3<f64>) -> [usize; 3] {
         let mut coordinates = [0; 3];
         for (axis, coordinate) in coordinates.iter_mut().enumerate() {
@@ -75,23 +76,23 @@ impl Cells {
         coordinates
     }
 
-    /// Returns the cell of a slot.
+    /// Returns the index of the cell that contains the grain in a slot.
     pub(crate) fn cell(&self, slot: usize) -> usize {
         self.start.partition_point(|&start| start as usize <= slot) - 1
     }
 
-    /// Returns the coordinates of a cell.
+    /// Returns the cell coordinates of a cell index.
     pub(crate) fn place(&self, cell: usize) -> [usize; 3] {
         let [along, across, _] = self.count;
         [cell % along, cell / along % across, cell / (along * across)]
     }
 
-    /// Returns the largest distance between the centres of two nearby grains with cells (m).
+    /// Returns the distance between the centres (m) below which two grains with cells can be neighbours.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Returns the number of grains without a cell, which have the first slots.
+    /// Returns the number of grains without a cell. They have the first slots.
     pub(crate) fn without(&self) -> usize {
         self.start.first().map_or(0, |&first| first as usize)
     }
@@ -101,7 +102,7 @@ impl Cells {
         (k * self.count[1] + j) * self.count[0] + i
     }
 
-    /// Returns the slots of the cells `from` to `to` (inclusive) of one row.
+    /// Returns the slots of the grains in cells `from` to `to` (inclusive) of the row with cell coordinates `j` and `k`.
     pub(crate) fn row(&self, from: usize, to: usize, j: usize, k: usize) -> std::ops::Range<usize> {
         let row = (k * self.count[1] + j) * self.count[0];
         self.start[row + from] as usize..self.start[row + to + 1] as usize
@@ -113,8 +114,9 @@ mod tests {
     use super::*;
     use grainbench_scene::space::Plane;
 
-    /// On a lattice with the spacing of the cells, each grain has its own cell for any origin. The number of tests per
-    /// grain thus does not grow with the number of grains.
+    /// In a lattice whose spacing is nearly the width of a cell, each cell has one grain, wherever the lattice lies. Only
+    /// the last cells of a row or column also contain the grains on the border of the grid. The number of candidate pairs
+    /// per grain thus does not grow with the number of grains.
     #[test]
     fn a_lattice_has_one_grain_a_cell() {
         for origin in [-100.0, 0.0, 100.0] {
@@ -123,7 +125,7 @@ mod tests {
                 Quad([along(number % 8), along(number / 8), 0.0, 0.4])
             };
             let (cells, order) = Cells::sort::<Plane>(&(0..64).map(at).collect::<Vec<_>>(), 1.0, f64::MAX);
-            // The last grain of a row lies on the border of the grid and shares the previous cell.
+            // The last grain of a row lies on the border of the grid and belongs to the cell of the previous grain.
             assert_eq!(cells.count, [7, 7, 1]);
             let most = (0..7).flat_map(|j| (0..7).map(move |i| (i, j))).map(|(i, j)| cells.row(i, i, j, 0).len()).max();
             assert_eq!((most, order.len()), (Some(4), 64), "from {origin}");

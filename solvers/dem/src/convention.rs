@@ -1,5 +1,5 @@
-//! Conventions in which discrete element codes differ for the same scene. Each is a set of named options, and some sets
-//! have names.
+//! Conventions in which discrete element codes differ for the same scene. A convention is a set of options. Four
+//! conventions have names.
 
 use std::fmt;
 
@@ -9,8 +9,8 @@ pub enum CoulombCap {
     /// Force of the tangential spring. The tangential dashpot is added only while the contact sticks (Cundall & Strack
     /// 1979; LIGGGHTS `tangential history`).
     Spring,
-    /// Force of spring and dashpot together. The spring is reset to match (Luding 2008, Granular Matter 10, 235, eq.
-    /// 22; LAMMPS `gran/hooke/history`).
+    /// Force of spring and dashpot together. The spring displacement is reset so that this force equals the limit
+    /// (Luding 2008, Granular Matter 10, 235, eq. 22; LAMMPS `gran/hooke/history`).
     SpringAndDashpot,
 }
 
@@ -47,11 +47,11 @@ pub enum Tension {
 /// Transport of the tangential and rolling springs at a contact that rotates or whose stiffness changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum History {
-    /// The springs rotate with the normal of the contact, and about the normal with the mean spin of both bodies. In
-    /// the plane, the spring displacement is a scalar along the tangent (Cundall & Strack 1979). If its stiffness
-    /// increases, a tangential spring keeps its force. If its stiffness decreases, the spring keeps its displacement.
-    /// No closed cycle then yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology 233
-    /// (2013) 30-46).
+    /// The springs rotate with the normal of the contact, and about the normal with the mean spin of both bodies. In the
+    /// plane, the spring displacement is a scalar along the tangent (Cundall & Strack 1979). If its stiffness increases,
+    /// a tangential spring keeps its force. If its stiffness decreases, the spring keeps its displacement. A closed
+    /// loading cycle then never yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology
+    /// 233 (2013) 30-46).
     Turned,
     /// The spring displacement is a vector without its normal part (LAMMPS, LIGGGHTS). The force is stiffness times
     /// displacement.
@@ -61,11 +61,12 @@ pub enum History {
 /// Normal along which the velocities of a step are decomposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityNormal {
-    /// Mean of the normals at the start and the end of the step, because velocities belong to its middle. It is
-    /// second-order accurate at rotating contacts.
+    /// Mean of the normals at the start and the end of the step, because velocities belong to the middle of the step. The
+    /// error of the relative velocity at rotating contacts is then of second order in the time step.
     MidStep,
-    /// Normal at the end of the step (Cundall & Strack 1979, LAMMPS, LIGGGHTS). It is first-order accurate at rotating
-    /// contacts. The velocity of a rotating wall is taken at its position at the end of the step.
+    /// Normal at the end of the step (Cundall & Strack 1979, LAMMPS, LIGGGHTS). The error at rotating contacts is of
+    /// first order in the time step. The velocity of a rotating wall is computed from its position at the end of the
+    /// step.
     EndOfStep,
 }
 
@@ -76,25 +77,25 @@ pub enum WallRolling {
     RelativeSpin,
     /// Angular velocity ω of the grain, even at a rotating wall (LAMMPS `wall/gran` with `rolling sds`).
     Spin,
-    /// Surface velocity at the lever arm divided by the distance of the wall, ω (R − δ/2)/(R − δ). Between grains, it
-    /// equals ω (LIGGGHTS `rolling_friction epsd`).
+    /// Surface velocity at the lever arm R − δ/2 divided by the distance R − δ of the wall, ω (R − δ/2)/(R − δ), for
+    /// the overlap δ. Contacts between grains use the relative spin (LIGGGHTS `rolling_friction epsd`).
     Surface,
 }
 
-/// Convention: a set of options.
+/// Set of options that defines a convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Convention {
     /// Name of the solver with this convention.
     pub name: &'static str,
     /// Force to which the Coulomb limit applies.
     pub coulomb_cap: CoulombCap,
-    /// Normal force to which the limit is proportional.
+    /// Normal force to which the Coulomb limit is proportional.
     pub cap_normal: CapNormal,
     /// Lever arm of tangential forces.
     pub torque_arm: TorqueArm,
-    /// Treatment of tension.
+    /// Treatment of a normal dashpot that pulls.
     pub tension: Tension,
-    /// Transport of springs.
+    /// Transport of springs at rotating contacts.
     pub history: History,
     /// Normal along which velocities are decomposed.
     pub velocity_normal: VelocityNormal,
@@ -115,8 +116,8 @@ impl Convention {
         velocity_normal: VelocityNormal::MidStep,
         wall_rolling: WallRolling::RelativeSpin,
     };
-    /// Cundall & Strack 1979 exactly as published. The Coulomb limit applies to the springs, and while the contact
-    /// sticks, the tangential dashpot is added to it without limit.
+    /// Cundall & Strack 1979 exactly as published. The Coulomb limit applies to the tangential spring. While the
+    /// contact sticks, the dashpot is added to the spring without limit.
     pub const CUNDALL_STRACK: Self = Self {
         name: "dem:1979",
         coulomb_cap: CoulombCap::Spring,

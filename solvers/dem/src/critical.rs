@@ -1,4 +1,4 @@
-//! Check of the critical time step during a run, for contacts that stiffen until the time step is too long.
+//! Check of the time step during a run. It finds contacts that are too stiff for the time step.
 
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
@@ -6,29 +6,30 @@ use crate::walls::MovingWall;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
 use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
 
-/// Contact to be checked.
+/// Contact whose critical time step is checked.
 struct CheckedContact<'a> {
     law: Option<&'a ContactLaw>,
-    /// Slot of a grain.
+    /// Slot of the grain that the error message names.
     slot: usize,
     /// Overlap (m).
     overlap: f64,
-    /// Effective radius (m).
+    /// Effective radius R₁R₂/(R₁+R₂), or R at a wall (m).
     radius: f64,
-    /// Larger of the inverse masses (1/kg).
+    /// Inverse mass of the lighter body (1/kg).
     inverse_mass: f64,
 }
 
 impl<S: Geometry> DemSimulation<S> {
-    /// Enables periodic checks of contacts, unless unstable steps are allowed. They apply if the stiffness of contacts
-    /// changes, or if the time step already exceeds the critical one of the scene.
+    /// Enables checks of contacts against the time step during the run, unless unstable steps are allowed. They are
+    /// needed only if the stiffness of contacts depends on the overlap (Hertz), or if the time step already exceeds the
+    /// critical time step of the scene.
     pub(crate) fn follow_critical_step(&mut self, allow_unstable: bool) {
         let curved = self.scene.laws.iter().flatten().any(|law| law.springs.kind() == SpringsKind::HertzMindlin);
         self.follows_critical = !allow_unstable && (curved || self.motion.time_step > self.critical);
     }
 
-    /// Rejects a contact whose critical step 2√(m/k) is below the time step. m is the smaller mass, and k the larger
-    /// one of the normal and tangential stiffness.
+    /// Returns an error if the critical time step 2√(m/k) of a contact is below the time step. m is the smaller mass of
+    /// the two bodies. k is the normal or the tangential stiffness, whichever is larger.
     pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<SimulationFailure>> {
         let grains = &self.grains;
         for share in &self.neighbours.shares {
@@ -87,7 +88,10 @@ impl<S: Geometry> DemSimulation<S> {
             cause: Cause::StiffContact { stiffness },
             time_step,
             critical,
-            advice: format!("a step of at most {:.4e} s, a tenth of that, resolves the contact", 0.1 * critical),
+            advice: format!(
+                "a step of at most {:.4e} s, a tenth of the critical one, resolves the contact",
+                0.1 * critical
+            ),
         }))
     }
 }

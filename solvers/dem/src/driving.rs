@@ -5,7 +5,7 @@ use crate::simulation::DemSimulation;
 use grainbench_scene::scene::Driven;
 use nalgebra::Vector3;
 
-/// Returns true for each of the previous step and this step if motion is prescribed over it.
+/// Returns two flags: true if the motion is prescribed at the previous step, and true if it is prescribed at this step.
 fn moved_before_and_at(driven: &Driven, step: u64, time_step: f64) -> [bool; 2] {
     [step - 1, step].map(|step| driven.is_moved_at(step as f64 * time_step))
 }
@@ -31,8 +31,8 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Shifts the velocity half a step back for grains whose prescribed motion ends at this step, because the
-    /// prescribed velocity is that at the present time.
+    /// Shifts velocities back by half a step for grains whose prescribed motion ends at this step. Their prescribed
+    /// velocity belongs to the present time, but the integration needs the velocity half a step earlier.
     pub(crate) fn let_go(&mut self) {
         let Self { scene, grains, motion, step, .. } = self;
         for driven in &scene.driven {
@@ -43,8 +43,9 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Gives grains their prescribed velocity and spin over this step. It also corrects their positions for the effect
-    /// of gravity and global damping during the time `drifted` (s).
+    /// Sets the prescribed velocity and spin of grains over this step. The grains have already moved with another
+    /// velocity during the last `drifted` seconds. Their positions are corrected to those that the prescribed velocity
+    /// gives.
     pub(crate) fn drive(&mut self, drifted: f64) {
         let (time, time_step, grains) = (self.time(), self.motion.time_step, &mut self.grains);
         for driven in self.scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
@@ -60,7 +61,7 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Returns the force of the free grains on each group with prescribed motion (N).
+    /// Returns the sum of the contact forces on each group of grains with prescribed motion (N).
     pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
         self.scene.driven.iter().map(|driven| self.grains.force_on(&driven.grains)).collect()
     }

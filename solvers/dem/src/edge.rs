@@ -1,4 +1,5 @@
-//! Interface of a simulation for the solver, independent of the compiled contact laws.
+//! Interface between the solver and a simulation. It does not depend on the contact laws for which the simulation was
+//! compiled.
 
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
@@ -9,43 +10,44 @@ use grainbench_scene::record::{Counts, StepState};
 use grainbench_scene::recorder::Recorder;
 use grainbench_scene::solver::SimulationFailure;
 
-/// Interface of a simulation, independent of the compiled contact laws.
+/// Simulation as the solver uses it, in two or three dimensions and with any contact laws.
 pub trait Simulation: Send {
-    /// Takes `steps` cycles.
+    /// Runs `steps` cycles.
     ///
     /// # Errors
-    /// When the state of a grain is no longer finite, or a grain moves by more than its radius in a step.
+    /// When a position or velocity is not finite, when a grain moves by more than its radius in a step, when an
+    /// inserted grain overlaps too much, or when a contact is too stiff for the time step.
     fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>>;
-    /// Clears the history of every contact, as a restart without stored history would.
+    /// Clears the history of every contact, like a restart from a state without contact history.
     fn forget_history(&mut self);
     /// Returns a checkpoint of the state after the last step, with the record so far.
     ///
     /// # Errors
     /// When the checkpoint cannot be stored.
     fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError>;
-    /// Restores the state of a run with the same identity, and returns the record so far.
+    /// Restores the state from a checkpoint of the run with this identity, and returns the record so far.
     ///
     /// # Errors
     /// When the checkpoint belongs to another run or is damaged.
     fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Recorder, CheckpointError>;
     /// Returns the number of dimensions and the stages for which the loops over contacts were compiled, as text.
     fn layout(&self) -> &'static str;
-    /// Returns the counts of steps, pairs and contacts so far, without times.
+    /// Returns the work counters so far, such as steps, pair tests and contact evaluations, without run times.
     fn counts(&self) -> Counts;
     /// Returns the number of cycles taken.
     fn step(&self) -> u64;
     /// Returns the state after the last step as the initial state of another scene, with the name of the solver.
     fn end_state(&self, solver: &str) -> EndState;
-    /// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at
-    /// the same step returns none.
+    /// Returns the state at this step: grains, contacts, walls and energies. It moves out the recorded contacts, so a
+    /// second call at the same step returns none.
     fn look(&mut self) -> StepState;
     /// Returns the state for a snapshot, with averages over the time since the last snapshot.
     fn look_for_snapshot(&mut self) -> StepState;
     /// Returns the number of rows of grains and contacts that a snapshot would have now.
     fn rows(&self) -> u64;
-    /// Returns true if a snapshot would have at most `most_rows` rows now.
+    /// Returns true if individual contacts are recorded and a snapshot would have at most `most_rows` rows now.
     fn shows(&self, most_rows: u64) -> bool;
-    /// Summarises the state at this step, without taking the contacts.
+    /// Summarises the state at this step. The recorded contacts stay in the simulation.
     fn brief(&self) -> Brief;
 }
 

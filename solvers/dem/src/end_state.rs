@@ -1,5 +1,5 @@
-//! Final state of a run, and start of a run from a final state. The state contains grains at the time of their
-//! positions, and contact history.
+//! Final state of a run, and start of a run from a final state. The state contains the grains, with velocities at the
+//! time of their positions, and the contact history.
 
 use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
@@ -12,10 +12,11 @@ use grainbench_scene::end_state::{EndState, Springs, StateGrain};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Separator between the name of a mesh and the number of a part of it.
+/// Separator in the end state, between the name of a mesh wall and the number of a part of its surface.
 const PART: &str = ", part ";
 
-/// Returns the layout of the contact history, as text that changes with the layout.
+/// Returns the layout of the contact history as text. The arguments are the number of history values of the tangential
+/// spring, that of the rolling spring, and the number of dimensions.
 pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
     format!("{tangential} numbers of a tangential and {rolling} of a rolling spring in {dimension} dimensions")
 }
@@ -51,7 +52,7 @@ impl<S: Geometry> DemSimulation<S> {
                 )
                 .collect(),
         };
-        // With several threads, the lists are in another order.
+        // The order of the lists depends on the number of threads, so they are sorted.
         springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
         springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
         let grain = |grain: &grainbench_scene::record::GrainState| StateGrain {
@@ -71,8 +72,8 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Restores the contact history with which the scene starts, before the first list is built. History at walls that
-    /// do not exist is dropped.
+    /// Restores the contact history with which the scene starts. It must be called before the first neighbour list is
+    /// built. The history at walls that the scene does not contain is dropped.
     pub(crate) fn begin_with(&mut self, springs: &Springs) {
         let memory = |numbers: &[f64]| -> Memory<f64> {
             let mut memory = [0.0; MEMORY];
@@ -100,7 +101,7 @@ impl<S: Geometry> DemSimulation<S> {
             let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
             match part {
                 None => wall.near.push((slot, memory(numbers))),
-                // The infinite position prevents the contact from continuing on another part.
+                // The infinite contact point prevents the contact from continuing on another part.
                 Some(group) => wall.at_mesh.held.push(PreviousContact {
                     slot,
                     group,

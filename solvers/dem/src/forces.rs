@@ -1,8 +1,9 @@
-//! Loops over contacts for any combination of contact laws, and the loop over grains at walls.
+//! Loops over contacts between grains, and over contacts of grains with walls, for any combination of contact laws.
 //!
-//! The loops pass contacts to the chain of stages ([`crate::contact`]). They add the results to the forces and torques
-//! on the grains, in the order of the list. Only the loops over walls and over pairs ([`crate::pairs`]) are compiled
-//! for the laws of a scene, the latter also for each instruction set. Recorded pairs are processed one by one.
+//! The loops pass contacts to the chain of stages ([`crate::contact`]). They add the results to the forces and torques on
+//! the grains, in the order of the neighbour list. Loops over walls and over pairs ([`crate::pairs`]) are compiled for
+//! each combination of contact laws. Loops over pairs are also compiled for each instruction set. Pairs are processed one
+//! by one instead of in SIMD registers if contacts are recorded.
 
 use crate::contact::at_wall::WallContact;
 use crate::contact::chain::{Evaluation, Layout};
@@ -41,8 +42,9 @@ impl<'a> Terms<'a> {
 
 /// Loops over contacts for any combination of contact laws.
 pub(crate) trait Forces<S: Geometry>: Send + Sync {
-    /// Adds the forces and torques of the pairs in contact to the sums. With `seen`, it records every contact whose
-    /// first grain is in the summed rows. The number in `pairs` is that of the block.
+    /// Adds the forces and torques of the pairs in contact to the sums. `pairs` is the list of pairs and the index of one
+    /// of its blocks, and `touching` holds the pairs in contact of this block. With `seen`, the method records every
+    /// contact whose first grain is among the summed grains.
     fn of_pairs(
         &self,
         processor: Processor,
@@ -52,7 +54,8 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
         touching: &ContactList,
         seen: Option<&mut RecordedContacts>,
     );
-    /// Adds the forces and torques at a wall, computes the force on the wall, and returns the number of contacts.
+    /// Adds the forces and torques at the wall with index `number` to its grains, and computes the force on the wall.
+    /// Returns the number of contacts.
     fn at_wall(
         &self,
         terms: Terms<'_>,
@@ -63,11 +66,12 @@ pub(crate) trait Forces<S: Geometry>: Send + Sync {
     ) -> u64;
     /// Returns the layout of the contact history.
     fn layout(&self) -> Layout;
-    /// Returns the numbers of history values of the tangential and rolling springs, and the number of dimensions.
+    /// Returns the number of history values of the tangential spring, that of the rolling spring, and the number of
+    /// dimensions.
     fn springs(&self) -> [usize; 3];
     /// Returns true if tangential forces rotate the grains.
     fn turn(&self) -> bool;
-    /// Returns the number of dimensions and the stages as text.
+    /// Returns the type name of the loops. It contains the number of dimensions and the stages.
     fn words(&self) -> &'static str;
 }
 
@@ -109,7 +113,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
     }
 }
 
-/// Chain of a normal, a tangential and a rolling stage in a space.
+/// Chain of a normal stage `N`, a tangential stage `T` and a rolling stage `R`, in two or three dimensions (`S`).
 pub(crate) struct Chain<S, N, T, R>(PhantomData<(S, N, T, R)>);
 
 impl<S, N, T, R> Chain<S, N, T, R> {
@@ -119,7 +123,7 @@ impl<S, N, T, R> Chain<S, N, T, R> {
 }
 
 impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> {
-    /// Loops over grains at a mesh wall. Each grain may be in contact with several parts of the mesh.
+    /// Evaluates the contacts of all grains at a mesh wall. A grain may be in contact with several parts of the mesh.
     fn at_mesh(
         &self,
         terms: Terms<'_>,

@@ -1,4 +1,5 @@
-//! Vectors and spins of one or several numbers at a time, in the plane and in space, for contact laws.
+//! Vectors and spins for contact laws, in two and three dimensions. Each component is one number, or one number per lane
+//! of a SIMD register.
 
 use grainbench_lanes::{Number, Quad};
 use grainbench_scene::space::{Plane, Solid, Space};
@@ -21,13 +22,13 @@ pub(crate) trait Linear<X: Number>:
     /// Returns `yes` where the mask is set, otherwise `no`.
     #[must_use]
     fn choose(mask: X::Mask, yes: Self, no: Self) -> Self;
-    /// Reads the components from the start of a row.
+    /// Reads the components from the first `COUNT` values of `row`.
     fn read(row: &[X]) -> Self;
-    /// Writes the components to the start of a row.
+    /// Writes the components to the first `COUNT` values of `row`.
     fn write(self, row: &mut [X]);
 }
 
-/// Implements an operator by component.
+/// Implements an operator component by component.
 macro_rules! operator {
     ($Operator:ident, $operator:ident) => {
         impl<X: Number, const D: usize> $Operator for Components<X, D> {
@@ -98,15 +99,16 @@ impl<X: Number, const D: usize> Linear<X> for Components<X, D> {
     }
 }
 
-/// Space for vectors of any number type, and the memory layout of a grain.
+/// Two- or three-dimensional space (`Plane` or `Solid`), with vectors of any number type and the memory layout of a grain.
 ///
-/// The unit normal `e` of a contact points from the first grain to the second. In the plane, the tangential direction
-/// is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10). A tangential quantity is the scalar
-/// along it, and thus rotates with the contact. In space, it is a vector perpendicular to `e`.
+/// The unit normal `e` of a contact points from the first grain to the second. In two dimensions, the tangential
+/// direction is `t = (e₂, −e₁)`, the clockwise perpendicular (Cundall & Strack 1979, eq. 10). A tangential quantity is
+/// then a scalar along `t`, and thus rotates with the contact. In three dimensions, a tangential quantity is a vector
+/// perpendicular to `e`.
 ///
-/// The quads of a grain are its position (x, y, z, radius), its velocity (v, inverse mass), its spin (ω), and the sums
-/// of forces and torques. In the plane, the angle replaces z, the spin its velocity and the torque its force, and there
-/// are no further quads.
+/// A grain has five quads (four numbers each): position (x, y, z, radius), velocity (v, inverse mass), spin (ω), and the
+/// sums of forces and of torques. In two dimensions, the angle replaces z, the spin replaces v_z, and the torque replaces
+/// F_z. There are then no quads for spin and torque.
 pub(crate) trait Geometry: Space {
     /// Vector of this space.
     type Vectors<X: Number>: Linear<X>;
@@ -117,43 +119,43 @@ pub(crate) trait Geometry: Space {
 
     /// Returns the vector in a quad.
     fn vector<X: Number>(quad: [X; 4]) -> Self::Vectors<X>;
-    /// Returns the spin of a grain, from the quads of its velocity and of its spin.
+    /// Returns the spin of a grain, from the quads of its velocity (`movement`) and of its spin (`turning`).
     fn spin<X: Number>(movement: [X; 4], turning: [X; 4]) -> Self::Spins<X>;
     /// Returns the quads of a force and a torque, with `zero` in unused components.
     fn load<X: Number>(force: Self::Vectors<X>, torque: Self::Spins<X>, zero: X) -> [[X; 4]; 2];
-    /// Returns a spin or torque with one component in the plane, or three in space.
+    /// Converts a three-dimensional spin or torque to this space. In two dimensions, only the z component is kept.
     fn as_spin<X: Number>(vector: [X; 3]) -> Self::Spins<X>;
-    /// Returns a vector in three dimensions, with `zero` out of the plane.
+    /// Returns a vector with three components; in two dimensions, the third component is `zero`.
     fn whole<X: Number>(vector: Self::Vectors<X>, zero: X) -> [X; 3];
     /// Returns the torque of a force at a lever arm.
     fn torque_of<X: Number>(arm: Self::Vectors<X>, force: Self::Vectors<X>) -> Self::Spins<X>;
     /// Returns the tangential slip velocity of two surfaces in contact. `velocity` is that of the first centre relative
-    /// to the second, and `rolling` is ω₁a₁ + ω₂a₂ with lever arms a.
+    /// to the second. `rolling` is ω₁a₁ + ω₂a₂ with lever arms a and angular velocities ω.
     fn slip<X: Number>(
         velocity: Self::Vectors<X>,
         rolling: Self::Spins<X>,
         normal: Self::Vectors<X>,
     ) -> Self::Tangents<X>;
-    /// Returns the tangential part of a vector.
+    /// Returns the part of a vector perpendicular to the normal.
     fn tangential<X: Number>(vector: Self::Vectors<X>, normal: Self::Vectors<X>) -> Self::Tangents<X>;
     /// Returns a tangential quantity as a vector.
     fn along<X: Number>(tangent: Self::Tangents<X>, normal: Self::Vectors<X>) -> Self::Vectors<X>;
-    /// Returns a relative spin without its normal part, which is twisting and not rolling. In the plane, all of it is
-    /// rolling.
+    /// Returns the rolling part of a relative spin. In three dimensions, the part along the normal is twisting and is
+    /// removed. In two dimensions, the whole spin is rolling.
     fn rolled<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> Self::Spins<X>;
 
-    /// Returns the part of a spin along the normal; zero in the plane.
+    /// Returns the part of a spin along the normal; zero in two dimensions.
     fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
     /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the middle of
-    /// the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In the plane,
-    /// the scalar does not change.
+    /// the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In two
+    /// dimensions, the scalar does not change.
     fn turned<X: Number>(
         tangent: Self::Tangents<X>,
         middle: Self::Vectors<X>,
         normal: Self::Vectors<X>,
         half_twist: X,
     ) -> Self::Tangents<X>;
-    /// Returns a stored rolling angle after the same rotation.
+    /// Returns a stored rolling angle after the rotation of its contact. The arguments are those of `turned`.
     fn turned_spin<X: Number>(
         spin: Self::Spins<X>,
         middle: Self::Vectors<X>,
@@ -161,18 +163,18 @@ pub(crate) trait Geometry: Space {
         half_twist: X,
     ) -> Self::Spins<X>;
 
-    /// Returns the vector in a quad, in three dimensions.
+    /// Returns the vector in a quad as three components. In two dimensions, the third component is zero.
     #[inline(always)]
     fn vector_in_space(quad: &Quad) -> Vector3<f64> {
         let [x, y, z, _] = quad.0;
         Vector3::new(x, y, if Self::DIMENSION == 3 { z } else { 0.0 })
     }
-    /// Writes a vector of this space to the first components of a quad.
+    /// Writes the components of a vector in this space to the first numbers of a quad.
     #[inline(always)]
     fn put(vector: Vector3<f64>, quad: &mut Quad) {
         quad.0[..Self::DIMENSION].copy_from_slice(&vector.as_slice()[..Self::DIMENSION]);
     }
-    /// Returns a vector of this space.
+    /// Converts a vector with three components to a vector of this space.
     #[inline(always)]
     fn vector_of(vector: Vector3<f64>) -> Self::Vectors<f64> {
         Self::vector([vector.x, vector.y, vector.z, 0.0])
@@ -272,10 +274,11 @@ fn cross<X: Number>(Components(a): Components<X, 3>, Components(b): Components<X
     Components([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
-/// Transports a vector ξ that is perpendicular to the normal e at the start of a step to the end of the step. It is
-/// reflected in the plane perpendicular to the middle normal m, which maps e to −e': ξ' = ξ − 2 (ξ·m) m. Then it is
-/// rotated about e' by an angle φ with t = tan φ/2: ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both steps conserve its
-/// length. The factor 1/(1 + t²) is (1 − t²)(1 + t⁴) with an error of t⁸, less than rounding for φ < .02.
+/// Transports a vector ξ that is perpendicular to the normal e at the start of a step to the normal e' at the end of
+/// the step. First, ξ is reflected in the plane perpendicular to the middle normal m, which maps e to −e': ξ' = ξ − 2
+/// (ξ·m) m. Then ξ' is rotated about e' by an angle φ with t = tan φ/2: ξ'' = [(1 − t²) ξ' + 2t e'×ξ']/(1 + t²). Both
+/// operations conserve the length. The factor 1/(1 + t²) is (1 − t²)(1 + t⁴) with an error of t⁸, less than rounding
+/// for φ < .02.
 #[inline(always)]
 fn turned<X: Number>(
     vector: Components<X, 3>,

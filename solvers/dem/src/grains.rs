@@ -1,8 +1,8 @@
-//! Grains in memory, as quads of numbers. Grains are sorted by cell, so that neighbours in space are close in memory. A
-//! grain needs only a few aligned loads.
+//! Grain data in memory, as quads (four numbers each). Grains are sorted by cell, so that grains that are close in space
+//! are close in memory. The data of a grain are then read by a few aligned loads.
 //!
-//! Without tangential forces at contacts there are no torques. Grains then do not rotate, and data needed only for
-//! rotation are neither stored nor computed.
+//! Without tangential forces at contacts there are no torques. In this case, grains do not rotate, and data needed only
+//! for rotation are neither stored nor computed.
 
 use crate::geometry::Geometry;
 use grainbench_lanes::{Quad, take_off};
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 
-/// Slot of an absent grain.
+/// Slot value of a grain that is not inserted yet or is removed.
 pub(crate) const ABSENT: u32 = u32::MAX;
 
 /// All grains that are present, by slot. The slot of a grain changes when the grains are sorted; its index in the scene
@@ -19,13 +19,14 @@ pub(crate) const ABSENT: u32 = u32::MAX;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Grains<S: Geometry> {
-    /// Position (m) and radius (m). In the plane x, y, the angle θ (rad) and the radius.
+    /// Position (m) and radius (m) of each grain. In two dimensions, the angle θ (rad) replaces z.
     pub(crate) place: Vec<Quad>,
-    /// Velocity (m/s) and inverse mass (1/kg). In the plane vx, vy, the spin ω (rad/s) and the inverse mass. In space,
-    /// if grains rotate, each velocity is followed by the angular velocity ω (rad/s) and a copy of the radius (m).
+    /// Velocity (m/s) and inverse mass (1/kg) of each grain. In two dimensions, the spin ω (rad/s) replaces v_z. In
+    /// three dimensions, if grains rotate, each velocity is followed by the angular velocity ω (rad/s) and a copy of
+    /// the radius (m).
     pub(crate) movement: Vec<Quad>,
-    /// Sum of contact forces F (N), without the weight. In the plane Fx, Fy and the torque M (N m). In space, if grains
-    /// rotate, each force is followed by the torque M (N m).
+    /// Sum of contact forces F on each grain (N), without the weight. In two dimensions, the torque M (N m) replaces
+    /// F_z. In three dimensions, if grains rotate, each force is followed by the torque M (N m).
     pub(crate) load: Vec<Quad>,
     /// Inverse moment of inertia 1/I (1/(kg m²)); empty if grains do not rotate.
     pub(crate) inverse_inertia: Vec<f64>,
@@ -39,7 +40,7 @@ pub(crate) struct Grains<S: Geometry> {
 }
 
 impl<S: Geometry> Grains<S> {
-    /// Returns true if these can be the present grains of a scene, in any order.
+    /// Returns true if these grains can be the present grains of a scene, in any order.
     pub(crate) fn is_of(&self, scene: &Scene, rotate: bool) -> bool {
         let Self { place, movement, load, inverse_inertia, material, id, slot, space: _ } = self;
         let count = place.len();
@@ -59,7 +60,8 @@ impl<S: Geometry> Grains<S> {
             && self.has_bodies_of(scene, quads / count.max(1))
     }
 
-    /// Returns true if radii, masses and moments of inertia are those of the scene. A driven grain may have an inverse mass of 0.
+    /// Returns true if radii, masses and moments of inertia are those of the scene. A grain with prescribed motion may
+    /// have an inverse mass of 0.
     fn has_bodies_of(&self, scene: &Scene, quads: usize) -> bool {
         let is_one = |found: f64, expected: f64| found.to_bits() == expected.to_bits();
         self.id.iter().enumerate().all(|(slot, &id)| {
@@ -99,8 +101,8 @@ impl<S: Geometry> Grains<S> {
         grains
     }
 
-    /// Sets the inverse mass of grains to zero, as for a wall, if their motion is prescribed. Otherwise sets it to the
-    /// value of the scene.
+    /// Sets the inverse mass of a group of grains. If `is_moved` is true, the motion of the group is prescribed and its
+    /// inverse mass is zero, as for a wall. Otherwise it is 1/m with the mass m from the scene.
     pub(crate) fn weigh(&mut self, scene: &Scene, driven: &Driven, is_moved: bool) {
         for &grain in &driven.grains {
             let slot = self.slot[grain] as usize;
@@ -110,7 +112,7 @@ impl<S: Geometry> Grains<S> {
         }
     }
 
-    /// Appends a grain with its state and index in the scene.
+    /// Appends a grain in its initial state, with its index `id` in the scene.
     pub(crate) fn enter(&mut self, id: u32, grain: &Grain, rotate: bool) {
         let quad = |vector: Vector3<f64>, last: f64| {
             let mut quad = Quad([0.0, 0.0, 0.0, last]);
@@ -135,7 +137,7 @@ impl<S: Geometry> Grains<S> {
         self.set_spin(slot, grain.spin);
     }
 
-    /// Removes all grains except those in some slots, which keep their order.
+    /// Removes all grains except those in `slots`, which keep their order.
     pub(crate) fn keep(&mut self, slots: &[u32]) {
         self.slot.fill(ABSENT);
         self.reorder(slots);
@@ -146,22 +148,22 @@ impl<S: Geometry> Grains<S> {
         self.place.len()
     }
 
-    /// Returns the number of quads for a grain's velocity and spin, and for its force and torque.
+    /// Returns the number of quads per grain in `movement` (velocity, spin) and in `load` (force, torque).
     pub(crate) fn quads(&self) -> usize {
         quads::<S>(self.rotate())
     }
 
-    /// Returns the index of the first of these quads of a slot.
+    /// Returns the index in `movement` and `load` of the first quad of the grain in a slot.
     pub(crate) fn first_quad(&self, slot: usize) -> usize {
         slot * self.quads()
     }
 
-    /// Returns true if the grains rotate. (Without grains, the result does not matter.)
+    /// Returns true if the grains rotate. Without grains, it returns false, which has no effect.
     pub(crate) fn rotate(&self) -> bool {
         !self.inverse_inertia.is_empty()
     }
 
-    /// Returns the position (m).
+    /// Returns the position of the centre (m).
     pub(crate) fn position(&self, slot: usize) -> Vector3<f64> {
         S::vector_in_space(&self.place[slot])
     }
@@ -176,7 +178,7 @@ impl<S: Geometry> Grains<S> {
         S::vector_in_space(&self.movement[self.first_quad(slot)])
     }
 
-    /// Returns the inverse mass (1/kg).
+    /// Returns the inverse mass (1/kg); zero while the motion of the grain is prescribed.
     pub(crate) fn inverse_mass(&self, slot: usize) -> f64 {
         self.movement[self.first_quad(slot)].0[3]
     }
@@ -186,7 +188,7 @@ impl<S: Geometry> Grains<S> {
         self.rotate().then(|| turned::<S>(&self.movement[self.first_quad(slot)..]))
     }
 
-    /// Returns the rotation angle θ about the z axis since the start (rad); zero in space.
+    /// Returns the rotation angle θ about the z axis since the start (rad); zero in three dimensions.
     pub(crate) fn angle(&self, slot: usize) -> f64 {
         if S::DIMENSION == 2 { self.place[slot].0[2] } else { 0.0 }
     }
@@ -218,12 +220,12 @@ impl<S: Geometry> Grains<S> {
         self.load[at..end].fill(Quad::default());
     }
 
-    /// Returns the total force on a group of grains (N); `group` holds their indices in the scene.
+    /// Returns the sum of the contact forces on a group of grains (N). `group` holds their indices in the scene.
     pub(crate) fn force_on(&self, group: &[usize]) -> Vector3<f64> {
         group.iter().map(|&id| self.force(self.slot[id] as usize)).sum()
     }
 
-    /// Sorts the grains: slot `k` gets the grain of slot `order[k]`.
+    /// Sorts the grains: slot `k` gets the grain of slot `order[k]`. Grains that are not in `order` are dropped.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn gather<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
             if !values.is_empty() {
@@ -244,7 +246,8 @@ impl<S: Geometry> Grains<S> {
     }
 }
 
-/// Grain data that the loops over pairs read. All tables have the same length, so an index is valid in all of them.
+/// Grain data that the loops over pairs read, by slot. `movement` has one or two quads per grain, and `inverse_inertia`
+/// is empty if grains do not rotate.
 #[derive(Clone, Copy)]
 pub(crate) struct GrainTables<'a> {
     pub(crate) place: &'a [Quad],
@@ -264,18 +267,18 @@ pub(crate) struct Sums<'a> {
 }
 
 impl<'a> Sums<'a> {
-    /// Returns a mutable view of the sums.
+    /// Returns the same sums, mutably borrowed for a shorter time.
     pub(crate) fn lent(&mut self) -> Sums<'_> {
         Sums { first: self.first, count: self.count, load: self.load }
     }
 
-    /// Returns true if a slot is one of these slots.
+    /// Returns true if a slot is among the summed slots.
     #[inline(always)]
     pub(crate) fn holds(&self, slot: usize) -> bool {
         slot.wrapping_sub(self.first) < self.count
     }
 
-    /// Returns the sums of all grains; `None` if these slots do not cover all grains.
+    /// Returns the sums of all `grains` grains; `None` if the summed slots do not cover all of them.
     #[inline(always)]
     pub(crate) fn all(&mut self, grains: usize) -> Option<AllGrainSums<'_>> {
         (self.first == 0 && self.count >= grains).then_some(AllGrainSums { grains, load: self.load })
@@ -290,9 +293,9 @@ impl<'a> Sums<'a> {
     }
 }
 
-/// Destination of forces and torques.
+/// Sums to which forces and torques are added.
 pub(crate) trait Loads {
-    /// Returns the force and torque of a grain; `None` if its slot is not included.
+    /// Returns the sums of force and torque of a grain; `None` if its slot is not among the summed slots.
     fn load<const Q: usize>(&mut self, slot: usize) -> Option<&mut [Quad; Q]>;
 }
 
@@ -303,7 +306,7 @@ impl Loads for Sums<'_> {
     }
 }
 
-/// Sums of all grains: every slot is included.
+/// Sums of force and torque for all grains.
 pub(crate) struct AllGrainSums<'a> {
     grains: usize,
     load: &'a mut [Quad],
@@ -317,7 +320,7 @@ impl Loads for AllGrainSums<'_> {
 }
 
 impl<S: Geometry> Grains<S> {
-    /// Returns the data that are read and the sums.
+    /// Returns the tables that a force evaluation reads, and the sums to which it adds forces and torques.
     pub(crate) fn parts(&mut self) -> (GrainTables<'_>, Sums<'_>) {
         let Self { place, movement, load, inverse_inertia, material, id, .. } = self;
         let count = place.len();
@@ -325,12 +328,13 @@ impl<S: Geometry> Grains<S> {
     }
 }
 
-/// Returns the number of quads for a grain's velocity and spin, and for its force and torque.
+/// Returns the number of quads per grain in `movement` (velocity, spin) and in `load` (force, torque).
 fn quads<S: Geometry>(rotate: bool) -> usize {
     if rotate && S::DIMENSION == 3 { 2 } else { 1 }
 }
 
-/// Returns a spin or torque: the third number of a quad in the plane, a separate quad in space.
+/// Returns a spin or torque from the quads of a grain. In two dimensions, it is the third number of the first quad. In
+/// three dimensions, it is the second quad.
 fn turned<S: Geometry>(quads: &[Quad]) -> Vector3<f64> {
     if S::DIMENSION == 2 { Vector3::new(0.0, 0.0, quads[0].0[2]) } else { S::vector_in_space(&quads[1]) }
 }

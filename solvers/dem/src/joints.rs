@@ -1,5 +1,5 @@
-//! Joints of walls, which are edges of segments and rectangles that lie on another wall. A grain at such an edge
-//! touches both walls at one point and has one contact there.
+//! Joints of walls. A joint is an end of a segment or an edge of a rectangle that lies on another wall. A grain at a
+//! joint touches both walls at one point, but only one of them exerts a force there.
 
 use crate::contact::MEMORY;
 use crate::geometry::Geometry;
@@ -9,15 +9,17 @@ use grainbench_scene::overlap::distance;
 use grainbench_scene::scene::{Wall, WallShape};
 use nalgebra::Vector3;
 
-/// Largest distance of an edge from a wall on which it lies, in lengths of the edge's wall.
+/// Largest distance of an edge from another wall at which the edge counts as lying on it, relative to the length of the
+/// edge's wall.
 const ON_WALL: f64 = 1e-9;
-/// Relative difference of distances that rounding can cause.
+/// Relative difference up to which two distances count as equal.
 const ROUNDING: f64 = 1e-12;
 
 /// Edges of each wall that lie on other walls.
 #[derive(Debug, Default)]
 pub(crate) struct Joints {
-    /// For each wall, its joined edges: the index of the edge, and the walls on which it lies.
+    /// Joined edges of each wall, as pairs of the index of the edge and the indices of the walls on which it lies. The
+    /// list is empty if there are no joints.
     of: Vec<Vec<(usize, Vec<usize>)>>,
 }
 
@@ -37,8 +39,8 @@ impl Joints {
         if edge_lists.iter().all(Vec::is_empty) { Self::default() } else { Self { of: edge_lists } }
     }
 
-    /// Finds the grains at joined edges whose contact belongs to another wall. It moves their springs to that wall, so
-    /// that a grain keeps its springs when it moves over a joint.
+    /// Marks the grains at joined edges whose contact belongs to another wall. It moves their contact history to that
+    /// wall, so that a grain keeps its springs when it moves over a joint.
     pub(crate) fn look<S: Geometry>(&self, walls: &mut [MovingWall], grains: &Grains<S>) {
         for (number, edges) in self.of.iter().enumerate().filter(|(_, edges)| !edges.is_empty()) {
             let mut near = std::mem::take(&mut walls[number].near);
@@ -60,8 +62,8 @@ impl Joints {
     }
 }
 
-/// Returns the wall that has the contact of a grain at `at` instead of wall `number`. It is the nearer of two joined
-/// walls. If both are at the same distance, it is the wall with the smaller index.
+/// Returns the wall to which the contact of a grain at `at` (m) belongs; `None` if it is wall `number`. The contact
+/// belongs to the nearer of two joined walls. At equal distances, it belongs to the wall with the smaller index.
 fn owner(walls: &[MovingWall], number: usize, edges: &[(usize, Vec<usize>)], at: Vector3<f64>) -> Option<usize> {
     let wall = &walls[number];
     let distance = wall.facing(at).distance;
@@ -75,10 +77,10 @@ fn owner(walls: &[MovingWall], number: usize, edges: &[(usize, Vec<usize>)], at:
     joined.filter(is_owner).min().copied()
 }
 
-/// Edge of a wall, by its ends (m); both are equal for the end of a segment.
+/// Edge of a wall, given by its two end points (m). Both points are equal if the edge is an end of a segment.
 struct Edge {
     ends: [Vector3<f64>; 2],
-    /// Length (m) of the wall.
+    /// Length of the segment, or of the longer side of the rectangle (m).
     size: f64,
 }
 
@@ -90,7 +92,7 @@ impl Edge {
     }
 }
 
-/// Returns the edges of a wall: the ends of a segment, or the sides of a rectangle at the start and the end of each of
+/// Returns the edges of a wall. A segment has two ends. A rectangle has four sides, at the start and the end of each of
 /// its two directions.
 fn edges(shape: &WallShape) -> Vec<Edge> {
     match shape {
@@ -112,7 +114,8 @@ fn edges(shape: &WallShape) -> Vec<Edge> {
     }
 }
 
-/// Returns the edges at which the point of a wall nearest to `at` lies; none if it is inside.
+/// Returns the indices of the edges on which the nearest point of a wall to `at` (m) lies; `None` if this point is in
+/// the interior.
 fn nearest_edges(shape: &WallShape, at: Vector3<f64>) -> [Option<usize>; 2] {
     let end = |from: &Vector3<f64>, along: Vector3<f64>, first: usize| {
         let part = (at - from).dot(&along) / along.norm_squared();
@@ -125,7 +128,8 @@ fn nearest_edges(shape: &WallShape, at: Vector3<f64>) -> [Option<usize>; 2] {
     }
 }
 
-/// Returns true if two walls keep their relative position. Pistons move by forces.
+/// Returns true if two walls keep their relative position. Two walls of which one is a piston never do, because forces
+/// move a piston.
 fn moves_alike(wall: &Wall, other: &Wall) -> bool {
     wall.motion == other.motion && wall.piston.is_none() && other.piston.is_none()
 }

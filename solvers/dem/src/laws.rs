@@ -1,4 +1,4 @@
-//! Contact laws of a scene in the form that kernels read. There is one row of numbers per pair of materials.
+//! Contact laws of a scene in the form that kernels read. There is one set of constants per pair of materials.
 
 use crate::contact::Options;
 use grainbench_lanes::{Lanes, Quad, SimdPack, WIDEST};
@@ -6,13 +6,13 @@ use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::Scene;
 
-/// Numbers of a contact law, one or several at a time. The stages of a kernel determine the type of law, so a stage
-/// reads its numbers without a check. [`ContactLaw`] documents each number.
+/// Constants of one contact law, or of several contact laws at a time. The type of the law is fixed by the stages for
+/// which a kernel is compiled, so a stage reads its constants without a check. [`ContactLaw`] documents each constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Constants<X> {
     /// Constants of the springs: k_n and k_s (N/m), or E* and G* (Pa).
     pub(crate) springs: [X; 2],
-    /// Friction tan φ.
+    /// Coefficient of friction tan φ.
     pub(crate) friction: X,
     /// Cohesion c (N).
     pub(crate) cohesion: X,
@@ -22,7 +22,8 @@ pub(crate) struct Constants<X> {
     pub(crate) normal_damping: X,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub(crate) tangential_damping: X,
-    /// Damping ratio ζ for the coefficient of restitution, given the end of contact in the convention.
+    /// Damping ratio ζ that gives the coefficient of restitution. It depends on whether the convention ends a contact at
+    /// zero overlap or at zero force.
     pub(crate) damping_ratio: X,
     /// Coefficient of rolling resistance μ_r.
     pub(crate) rolling_friction: X,
@@ -31,8 +32,8 @@ pub(crate) struct Constants<X> {
 }
 
 impl Constants<f64> {
-    /// Returns the numbers of a law. A law without friction has no tangential spring or dashpot, even if other laws of
-    /// the scene have friction.
+    /// Returns the constants of a law. A law without friction has no tangential spring or dashpot, even if other laws
+    /// of the scene have friction.
     fn new(law: &ContactLaw, options: &Options) -> Self {
         let [normal, tangential] = law.springs.constants();
         let if_sheared = |number: f64| if law.has_friction() { number } else { 0.0 };
@@ -50,22 +51,23 @@ impl Constants<f64> {
     }
 }
 
-/// Returns the damping ratio ζ for the coefficient of restitution of a law, given the end of contact in a convention.
+/// Returns the damping ratio ζ that gives the coefficient of restitution of a law. It depends on whether the convention
+/// ends a contact at zero overlap or at zero force.
 pub(crate) fn damping_ratio(law: &ContactLaw, options: &Options) -> f64 {
     if options.may_pull() { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) }
 }
 
 /// Laws between all pairs of materials.
 pub(crate) struct Laws {
-    /// Laws, row by row: one material with all materials.
+    /// Law of each pair of materials. Each row holds the laws of one material with all materials.
     laws: Vec<Constants<f64>>,
-    /// Laws as quads: springs, friction and cohesion; dashpots; rolling.
+    /// The same laws as three tables of quads: springs, friction and cohesion; dashpots; rolling resistance.
     quads: [Vec<Quad>; 3],
     material_count: usize,
 }
 
 impl Laws {
-    /// Returns the laws of a scene in a convention.
+    /// Creates the laws of a scene with the options of a convention.
     pub(crate) fn new(scene: &Scene, options: &Options) -> Self {
         let constants =
             |law: &Option<ContactLaw>| law.as_ref().map(|law| Constants::new(law, options)).unwrap_or_default();
@@ -93,7 +95,7 @@ impl Laws {
         usize::from(one) * self.material_count + usize::from(other)
     }
 
-    /// Returns the indices of the laws between the grains of some pairs.
+    /// Returns the law indices of up to `WIDEST` pairs, whose grains have the slots `first` and `second`.
     #[inline(always)]
     pub(crate) fn numbers(&self, material: &[u16], [first, second]: [&[usize; WIDEST]; 2]) -> [usize; WIDEST] {
         let mut numbers = [0; WIDEST];
@@ -108,7 +110,7 @@ impl Laws {
         &self.laws[self.number(one, other)]
     }
 
-    /// Returns the laws with these indices, in lanes.
+    /// Returns the laws with these indices, one law per lane.
     #[inline(always)]
     pub(crate) fn gather<L: Lanes>(&self, lanes: L, numbers: &[usize; WIDEST]) -> Constants<SimdPack<L>> {
         let [normal, tangential, friction, cohesion] = gathered(lanes, &self.quads[0], numbers);
@@ -129,39 +131,41 @@ impl Laws {
     }
 }
 
-/// Returns the quads of a table at the indices `at`, in lanes.
+/// Gathers the quads of a table at the indices `at`, one quad per lane. The first pack of the result holds the first
+/// numbers of all quads, the second pack the second numbers, and so on.
 #[inline(always)]
 pub(crate) fn gathered<L: Lanes>(lanes: L, table: &[Quad], at: &[usize; WIDEST]) -> [SimdPack<L>; 4] {
     gathered_of(lanes, table.as_chunks::<1>().0, 0, at)
 }
 
-/// Returns one of the several quads of each entry, in lanes.
+/// Gathers one quad of each table entry at the indices `at`, like `gathered`. `number` is the index of the quad in an
+/// entry.
 #[inline(always)]
 pub(crate) fn gathered_of<L: Lanes, const N: usize>(
     lanes: L,
     table: &[[Quad; N]],
-    material: usize,
+    number: usize,
     at: &[usize; WIDEST],
 ) -> [SimdPack<L>; 4] {
-    let [a, b, c, d] = lanes.gather(table, material, at);
+    let [a, b, c, d] = lanes.gather(table, number, at);
     [SimdPack::new(lanes, a), SimdPack::new(lanes, b), SimdPack::new(lanes, c), SimdPack::new(lanes, d)]
 }
 
-/// Returns, in lanes, the differences of a quad between the entries at `to` and at `from`. The fourth number is the sum
-/// instead.
+/// Returns the difference of a quad between the table entries at `to` and at `from`, for each lane. The fourth number is
+/// the sum instead of the difference. `number` is the index of the quad in an entry.
 #[inline(always)]
 pub(crate) fn between<L: Lanes, const N: usize>(
     lanes: L,
     table: &[[Quad; N]],
-    material: usize,
+    number: usize,
     [from, to]: [&[usize; WIDEST]; 2],
 ) -> [SimdPack<L>; 4] {
-    let [a, b, c, d] = lanes.between(table, material, from, to);
+    let [a, b, c, d] = lanes.between(table, number, from, to);
     [SimdPack::new(lanes, a), SimdPack::new(lanes, b), SimdPack::new(lanes, c), SimdPack::new(lanes, d)]
 }
 
-/// Returns as many indices as a register holds. The indices are checked once against the length of the tables, so that
-/// no table needs a further check.
+/// Converts the first `L::WIDTH` slots to table indices. Each index is checked once against the length of the tables, so
+/// that no table needs a further check.
 ///
 /// # Panics
 /// When an index is out of range.

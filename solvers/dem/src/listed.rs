@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Number of listed pairs in a block. The contacts of a block are found before their forces are computed. Blocks are
-/// small enough for their grains to stay in the cache, and large enough that little is lost at their end. A multiple of
-/// eight.
+/// small enough for the data of their grains to stay in the cache. They are large enough that the incomplete register at
+/// the end of a block costs little. The number is a multiple of eight.
 pub(crate) const BLOCK: usize = 2048;
 
 /// Contact history of a block of pairs, with one list for each history value. Each list contains zero as its first
 /// entry, and then one value for each contact of the last evaluation, in order. Lists of unused values are empty.
 pub(crate) type BlockHistory = [Vec<f64>; MEMORY];
 
-/// Pairs of grains, in rows: a row holds the partners of one grain. Partners, rows and shifts are padded after the last
-/// pair so that registers can be filled.
+/// Pairs of grains in rows. Each row holds the partners of one grain. Rows, partners and shifts are padded after the last
+/// pair, so that the last register can be filled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pairs {
-    /// First row of the partition. Pairs of other rows come before and after the pairs of the partition's own rows.
+    /// First own row of the partition. The own rows are consecutive; pairs of other rows come before and after them.
     #[serde(skip)]
     first_row: usize,
     /// Index of the first pair of every own row, and the end of the last row.
@@ -28,11 +28,11 @@ pub(crate) struct Pairs {
     pub(crate) row: Vec<u32>,
     /// Slot of the partner of each pair.
     pub(crate) partner: Vec<u32>,
-    /// Shift of each pair across a periodic face (m), which is added to the position of the first grain. Empty without
-    /// such pairs.
+    /// Shift of each pair across a periodic face (m), which is added to the position of the first grain. Empty if no
+    /// pair crosses a periodic face.
     pub(crate) shift: Vec<Quad>,
-    /// Bit of each pair, set if it was in contact at the last evaluation; the first of eight pairs is the lowest bit.
-    /// Empty without contact history.
+    /// One bit per pair, set if the pair was in contact at the last evaluation. Each byte holds eight pairs; the first
+    /// pair is the lowest bit. Empty without contact history.
     pub(crate) touches: Vec<u8>,
     /// Contact history, by blocks of pairs. Empty without contact history.
     pub(crate) memory: Vec<BlockHistory>,
@@ -56,7 +56,8 @@ impl Pairs {
         self.partner.len() - WIDEST
     }
 
-    /// Lists the partners of each row that `partners` returns, with empty contact history.
+    /// Lists pairs with empty contact history. For each row, `partners` appends the partners, and their shifts if pairs
+    /// cross a periodic face.
     pub(crate) fn list(
         rows: Range<usize>,
         layout: Layout,
@@ -77,7 +78,7 @@ impl Pairs {
         pairs
     }
 
-    /// Creates a list of pairs in contact, with their history, for a number of rows.
+    /// Creates a list of `rows` rows with the given pairs, all in contact, and their history.
     pub(crate) fn remembering(rows: usize, layout: Layout, springs: &[(u32, u32, Memory<f64>)]) -> Self {
         let mut sorted: Vec<&(u32, u32, Memory<f64>)> = springs.iter().collect();
         sorted.sort_by_key(|(row, ..)| *row);
@@ -98,7 +99,7 @@ impl Pairs {
         pairs
     }
 
-    /// Returns row, partner and history of each pair in contact in its own rows.
+    /// Returns row, partner and history of each pair in the partition's own rows that was in contact at the last evaluation.
     pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, Memory<f64>)> {
         let own = self.own();
         self.places().into_iter().enumerate().filter_map(move |(at, place)| {
@@ -108,7 +109,7 @@ impl Pairs {
         })
     }
 
-    /// Adds padding after the last pair so that registers can be filled.
+    /// Adds padding after the last pair, so that the last register can be filled.
     fn fill_up(&mut self) {
         for places in [&mut self.row, &mut self.partner] {
             places.resize(places.len() + WIDEST, 0);
@@ -118,8 +119,9 @@ impl Pairs {
         }
     }
 
-    /// Selects pairs from lists with consecutive rows: the pairs in `rows`, and other pairs whose partners `keep`
-    /// accepts. Order and contact history are kept. The own rows of the result are `rows`.
+    /// Selects pairs from the lists of consecutive partitions: all pairs of `rows`, and pairs of other rows whose partner
+    /// `keep` accepts. The order and the contact history of the pairs do not change. The own rows of the result are
+    /// `rows`.
     pub(crate) fn chosen(lists: &[&Self], rows: Range<usize>, keep: impl Fn(usize) -> bool) -> Self {
         if lists.iter().all(|list| list.start == [0]) {
             return Self::empty();
@@ -164,7 +166,7 @@ impl Pairs {
         chosen
     }
 
-    /// Returns the range of pairs in its own rows.
+    /// Returns the index range of the pairs in the partition's own rows.
     pub(crate) fn own(&self) -> Range<usize> {
         let end = |end_index: Option<&u32>| end_index.map_or(0, |&end| end as usize);
         end(self.start.first())..end(self.start.last())
@@ -175,7 +177,8 @@ impl Pairs {
         self.touches.get(pair / WIDEST).is_some_and(|bits| bits >> (pair % WIDEST) & 1 == 1)
     }
 
-    /// Returns true if this is a valid list for a number of grains: rows are consecutive, and each pair has its data.
+    /// Returns true if the list is valid for a number of grains and this layout of the contact history: rows are
+    /// consecutive, and each pair has its data.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { start, row, partner, shift, touches, memory, first_row: _ } = self;
         let Some(count) = partner.len().checked_sub(WIDEST) else { return false };
@@ -204,7 +207,7 @@ impl Pairs {
             && row.iter().chain(partner).all(|&slot| (slot as usize) < grains.max(1))
     }
 
-    /// Returns the index of a pair in its own rows.
+    /// Returns the index of the pair of `row` and `partner`; `None` if the own rows of the partition do not contain it.
     pub(crate) fn find(&self, row: u32, partner: u32) -> Option<usize> {
         let row = (row as usize).checked_sub(self.first_row)?;
         let range = *self.start.get(row)? as usize..*self.start.get(row + 1)? as usize;
@@ -212,7 +215,8 @@ impl Pairs {
         Some(range.start + at)
     }
 
-    /// Returns the history index in its block of every pair in contact at the last evaluation; zero for other pairs.
+    /// Returns, for every pair, the index of its history in the history of its block; zero if the pair was not in
+    /// contact at the last evaluation.
     pub(crate) fn places(&self) -> Vec<u32> {
         let mut touched = 0;
         let place = |pair: usize| {
@@ -226,8 +230,9 @@ impl Pairs {
         (0..self.len()).map(place).collect()
     }
 
-    /// Copies the history of a pair of another list to pair `at`, which must follow the previous one. If `exchanged` is
-    /// given, the roles of the first and second grain are exchanged.
+    /// Copies the history of pair `from` of the list `other` to pair `at` of this list. `place` is the index of this
+    /// history in its block of `other`. Pairs must be filled in increasing order. `exchanged` is given if the first and
+    /// the second grain have changed roles.
     pub(crate) fn take(&mut self, at: usize, other: &Self, (from, place): (usize, u32), exchanged: Option<&Layout>) {
         self.touches[at / WIDEST] |= 1 << (at % WIDEST);
         let memories = self.memory[at / BLOCK].iter_mut().zip(&other.memory[from / BLOCK]);
@@ -238,9 +243,9 @@ impl Pairs {
         }
     }
 
-    /// Prepares the history of a block for a number of contacts. If the contacts are unchanged, it is updated in place.
-    /// Otherwise it is rebuilt, and `before` receives the previous history. Padding follows the last contact so that
-    /// registers can be filled.
+    /// Prepares the history of a block for `count` contacts. Without `before`, the pairs in contact are unchanged, and
+    /// their history stays in place. With `before`, the previous history moves there, and the evaluation writes a new
+    /// one. Padding follows the last contact, so that the last register can be filled.
     pub(crate) fn make_room(&mut self, block: usize, count: usize, before: Option<&mut BlockHistory>) {
         let Some(memory) = self.memory.get_mut(block) else { return };
         if let Some(before) = before {
@@ -257,7 +262,7 @@ impl Pairs {
         }
     }
 
-    /// Removes the padding of a block's history after a number of contacts has been written.
+    /// Removes the padding after the history of the `count` contacts of a block.
     pub(crate) fn remember(&mut self, block: usize, count: usize) {
         if let Some(memory) = self.memory.get_mut(block) {
             memory.iter_mut().for_each(|values| values.truncate(1 + count));
@@ -274,7 +279,7 @@ fn nothing(layout: Layout) -> BlockHistory {
     std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)])
 }
 
-/// Reserves memory for more entries. A list grows by at least an eighth, because it may have millions of entries.
+/// Reserves memory for more entries. A full list grows by at least an eighth, because it may have millions of entries.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
     if list.capacity() - list.len() < more {
         list.reserve_exact(more.max(list.len() / 8));
@@ -285,7 +290,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
 mod tests {
     use super::*;
 
-    /// Checks of lists that another program could have written to a checkpoint.
+    /// A list that does not fit the number of grains, as in a damaged checkpoint, is rejected.
     #[test]
     fn lists_of_other_grains_are_told() {
         let layout = Layout { numbers: 1, exchanged: [1.0; MEMORY] };

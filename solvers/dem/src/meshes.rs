@@ -10,20 +10,18 @@ use grainbench_scene::mesh::{Mesh, SphereContact};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Largest displacement of a continuing contact from one part of the surface to another in a step, relative to the
-/// grain radius. Grains move by only a fraction of their radius in a step.
+/// Largest distance, in grain radii, at which a contact continues on another part of the surface. In one step, a grain
+/// moves by only a small fraction of its radius.
 const GOES_ON: f64 = 0.1;
 
-/// Contact in the last evaluation.
+/// Contact between a grain and the mesh in the last force evaluation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PreviousContact {
-    /// Slot of the grain.
     pub(crate) slot: u32,
-    /// Patch, ridge or corner.
+    /// Index of the patch, ridge or corner of the surface.
     pub(crate) group: u32,
     /// Contact point in the coordinates of the surface (m).
     pub(crate) point: Vector3<f64>,
-    /// Contact history.
     pub(crate) memory: Memory<f64>,
 }
 
@@ -32,19 +30,20 @@ pub(crate) struct PreviousContact {
 pub(crate) struct MeshContacts {
     /// Slot of every nearby grain, and the end of its range in `triangles`, sorted by slot.
     near: Vec<(u32, u32)>,
-    /// Triangles near each grain.
+    /// Indices of the triangles near each grain, grain by grain.
     triangles: Vec<u32>,
-    /// Contacts, sorted by slot.
+    /// Contacts of the last force evaluation, sorted by slot.
     pub(crate) held: Vec<PreviousContact>,
-    /// Buffers for the contacts of a grain, and for those of the next evaluation.
+    /// Buffer for the contacts of one grain.
     #[serde(skip)]
     found: Vec<SphereContact>,
+    /// Buffer for the contacts of the present force evaluation.
     #[serde(skip)]
     next: Vec<PreviousContact>,
 }
 
 impl MeshContacts {
-    /// Returns true if the data fit a number of grains and a surface.
+    /// Returns true if the lists are consistent and valid for `grains` grains and this surface.
     pub(crate) fn is_of(&self, grains: usize, mesh: &Mesh) -> bool {
         let (faces, mut from) = (mesh.surface.triangles().len(), 0);
         let ends_rise = self.near.iter().all(|&(_, end)| {
@@ -61,24 +60,25 @@ impl MeshContacts {
             && self.held.iter().all(|held| (held.slot as usize) < grains)
     }
 
-    /// Returns true if there are no data.
+    /// Returns true if there are neither nearby grains nor contacts.
     pub(crate) fn is_empty(&self) -> bool {
         self.near.is_empty() && self.triangles.is_empty() && self.held.is_empty()
     }
 
-    /// Returns the number of nearby pairs of grain and triangle.
+    /// Returns the number of listed pairs of a grain and a triangle.
     pub(crate) fn pairs(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Starts a new list. Returns the previous contacts.
+    /// Clears the list of nearby triangles, and moves out the contacts of the last force evaluation.
     pub(crate) fn begin_list(&mut self) -> Vec<PreviousContact> {
         self.near.clear();
         self.triangles.clear();
         std::mem::take(&mut self.held)
     }
 
-    /// Lists the triangles within a distance (m) of a grain. Grains must be listed in order of their slots.
+    /// Appends the triangles within a distance `reach` (m) of a grain centre. Grains must be appended in order of their
+    /// slots.
     pub(crate) fn list(&mut self, mesh: &Mesh, slot: usize, place: Vector3<f64>, reach: f64) {
         mesh.surface.near(mesh.within(place), reach, &mut self.triangles);
         let end = self.triangles.len() as u32;
@@ -106,7 +106,7 @@ impl MeshContacts {
             let (place, radius) = (grains.position(slot as usize), grains.radius(slot as usize));
             mesh.surface.touched(mesh.within(place), radius, &triangles[from as usize..end as usize], found);
             from = end;
-            // Grains that are no longer near have no contacts.
+            // Previous contacts of grains that are no longer near are skipped.
             before += held[before..].iter().take_while(|other| other.slot < slot).count();
             let count = held[before..].iter().take_while(|other| other.slot == slot).count();
             let own = &held[before..before + count];
@@ -122,8 +122,9 @@ impl MeshContacts {
     }
 }
 
-/// Returns the history of a contact. It comes from the same part of the surface, or from the nearest part that the
-/// grain has just left. In the second case, no other new contact may be nearer to that part.
+/// Returns the history with which a contact is evaluated. It is that of the previous contact on the same part of the
+/// surface. A contact on a new part continues the nearest previous contact whose part the grain has left. It must be at
+/// most `GOES_ON` radii away, and no other new contact may be nearer to it. Otherwise the history is zero.
 fn remembered(own: &[PreviousContact], found: &[SphereContact], touched: &SphereContact, radius: f64) -> Memory<f64> {
     if let Some(same) = own.iter().find(|held| held.group == touched.group) {
         return same.memory;
@@ -143,8 +144,8 @@ mod tests {
     use super::*;
     use crate::contact::MEMORY;
 
-    /// A contact continues on another part of the surface if that part is at most a tenth of the radius away. Of two
-    /// parts, it continues on the nearer one. At a larger distance, a new contact begins.
+    /// A contact continues on another part of the surface if its new contact point is at most a tenth of the radius away.
+    /// If two parts are so close, it continues on the nearer one. At a larger distance, a new contact begins.
     #[test]
     fn a_contact_goes_on_where_it_can_have_gone() {
         let at = |x: f64| Vector3::new(x, 0.0, 0.0);

@@ -1,11 +1,13 @@
-//! Integration of Newton's law for every grain by central differences, with gravity and global damping if the scene has
+//! Integration of Newton's law for every grain by central differences, with gravity g and global damping if the scene has
 //! them.
 //!
 //! ```text
 //! v ← keep·v + gain·(F/m + g)        x ← x + v Δt        ω ← keep·ω + gain·M/I
 //! ```
 //!
-//! Source: Cundall & Strack, Géotechnique 29 (1979) 47–65, eqs. 22 and 22a, and eqs. 35 and 36 with global damping.
+//! Here x, v and ω are position, velocity and spin, F and M force and torque, m and I mass and moment of inertia. Without
+//! global damping, keep = 1 and gain = Δt. Source: Cundall & Strack, Géotechnique 29 (1979) 47–65, eqs. 22 and 22a, and
+//! eqs. 35 and 36 with global damping.
 
 use crate::geometry::Geometry;
 use crate::grains::Grains;
@@ -14,10 +16,10 @@ use nalgebra::Vector3;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Global damping of the equation of motion, or its absence.
+/// Global damping of the equation of motion, or no damping.
 trait Drag {
-    /// Returns `keep`, the fraction of a velocity that remains after a step, and `gain` (s), the factor of the
-    /// acceleration. They depend on the damping rate α (1/s) and the time step Δt (s).
+    /// Returns `keep`, the fraction of a velocity that remains after a step, and `gain` (s), the factor by which the
+    /// acceleration is multiplied. The arguments are the damping rate α (1/s) and the time step Δt (s).
     fn factors(rate: f64, time_step: f64) -> (f64, f64);
     /// Returns `keep · velocity`, without arithmetic if there is no damping.
     fn keep(velocity: f64, keep: f64) -> f64;
@@ -36,7 +38,8 @@ impl Drag for NoDrag {
     }
 }
 
-/// Force −α m v, evaluated at mid-step: v ← [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) (Cundall & Strack 1979, eq. 35).
+/// Damping force −α m v (α: damping rate, m: mass), evaluated at mid-step: v ← [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) with
+/// the acceleration a (Cundall & Strack 1979, eq. 35).
 struct MassProportional;
 
 impl Drag for MassProportional {
@@ -53,7 +56,7 @@ impl Drag for MassProportional {
 /// Gravity, global damping and time step, common to all grains.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion {
-    /// Gravity g (m/s²), without an out-of-plane component in two dimensions.
+    /// Gravity g (m/s²). Its out-of-plane component is zero in two dimensions.
     pub(crate) gravity: Vector3<f64>,
     /// Rate α of global damping (1/s).
     pub(crate) global_damping: f64,
@@ -61,12 +64,12 @@ pub(crate) struct Motion {
     pub(crate) time_step: f64,
 }
 
-/// Data of grains that motion reads and writes.
+/// Grain data that the integration reads and writes.
 pub(crate) struct MotionData<'a> {
     place: &'a mut [Quad],
     movement: &'a mut [Quad],
     load: &'a mut [Quad],
-    /// Number of quads for a grain's velocity and spin, and for its force and torque.
+    /// Number of quads per grain in `movement` (velocity, spin) and in `load` (force, torque).
     quads: usize,
     inverse_inertia: &'a [f64],
 }
@@ -101,8 +104,8 @@ impl<'a> MotionData<'a> {
 }
 
 impl Motion {
-    /// Moves grains over one step by the forces on them, and sets the forces to zero. Returns the square of the largest
-    /// speed (m²/s²), infinite if any speed is NaN.
+    /// Moves grains over one step by the forces and torques on them, then sets forces and torques to zero. Returns the
+    /// square of the largest speed (m²/s²); infinite if any speed is NaN.
     pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: MotionData<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
             (true, true) => processor.run(Drift::<S, NoDrag, false>::new(self, grains)),
@@ -112,14 +115,15 @@ impl Motion {
         }
     }
 
-    /// Returns the velocity (m/s) half a step before, for a grain with this velocity (m/s) and without contacts.
+    /// Returns the velocity half a step earlier (m/s) of a grain without contacts that has the velocity `velocity` (m/s)
+    /// now.
     pub(crate) fn half_before(&self, velocity: Vector3<f64>) -> Vector3<f64> {
         let half = 0.5 * self.time_step;
         velocity * (1.0 + self.global_damping * half) - self.gravity * half
     }
 
-    /// Shifts the velocities of grains that start to move freely to half a step before, so that the first cycle ends
-    /// half a step after it.
+    /// Shifts the velocities and spins of grains back by half a step, when the grains start to move freely. The first
+    /// cycle then gives the velocities half a step after the start.
     pub(crate) fn step_back_half<S: Geometry>(&self, grains: &mut Grains<S>, slots: impl Iterator<Item = usize>) {
         let half = 0.5 * self.time_step;
         let drag = 1.0 + self.global_damping * half;
@@ -149,8 +153,8 @@ impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
     }
 }
 
-/// Factors of a step, as the numbers of a quad, so that a quad is updated as one register. The fourth number, an
-/// inverse mass or a radius, does not change because zero is added to it.
+/// Factors of a step. Each has one value for each number of a quad, so that a quad is updated as one register. The
+/// fourth number of a quad is an inverse mass or a radius; its factors leave it unchanged.
 struct Step {
     keep: [f64; 4],
     gain: [f64; 4],
@@ -170,7 +174,8 @@ impl Step {
         }
     }
 
-    /// Adds the effect of forces to velocities, with these inverse masses. Returns the new velocities.
+    /// Updates a velocity or spin by the force or torque, sets the force or torque to zero, and returns the new velocity
+    /// or spin. `inverse` holds the inverse mass or inverse moment of inertia for each number of the quad.
     #[inline(always)]
     fn push<D: Drag, const GRAVITY: bool>(&self, velocity: &mut Quad, load: &mut Quad, inverse: [f64; 4]) -> Quad {
         let (before, forces) = (velocity.0, load.0);
@@ -187,7 +192,8 @@ impl Step {
         Quad(after)
     }
 
-    /// Moves a grain by its velocity; in the plane also its angle by its spin. Returns the square of the speed.
+    /// Advances a position by its velocity. In two dimensions, the angle is advanced by the spin in the same way.
+    /// Returns the square of the speed (m²/s²).
     #[inline(always)]
     fn carry<S: Geometry>(&self, Quad(place): &mut Quad, Quad(velocity): Quad) -> f64 {
         for axis in 0..4 {
@@ -206,7 +212,7 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
     fn run<L: Lanes>(self, _: L) -> f64 {
         let step = Step::new::<D>(self.motion);
         let MotionData { place, movement, load, quads, inverse_inertia } = self.grains;
-        // The bits of non-negative numbers, read as integers, are in the same order as the numbers, with NaN last.
+        // Read as integers, the bits of non-negative numbers have the same order as the numbers, with NaN last.
         let mut fastest = 0;
         if quads == 2 {
             let movement = movement.as_chunks_mut::<2>().0;

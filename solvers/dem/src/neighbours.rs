@@ -1,5 +1,6 @@
 //! Neighbour list of pairs that may come into contact. Pairs are listed if their gap is smaller than a skin. The list
-//! is rebuilt only when a grain or wall has moved by half of the skin.
+//! is rebuilt when a grain or wall has moved by half of the skin, when grains are inserted or removed, and when a wall
+//! is removed.
 //!
 //! The list has one row per grain and contains each pair once. Contact history is stored beside the list, in the order
 //! of the pairs in contact. Pairs across periodic faces are in a separate list with their shifts, so that the main loop
@@ -17,14 +18,14 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Neighbour list.
+/// Neighbour list of all grains, divided into thread partitions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Neighbours {
-    /// Partitions of the rows, in order; a single one for runs with one thread and in checkpoints.
+    /// Partitions, in the order of their rows. Checkpoints and runs with one thread have a single partition.
     pub(crate) shares: Vec<ThreadPartition>,
     /// Positions of the grains when the list was built (m).
     pub(crate) reference: Vec<Quad>,
-    /// Skin: pairs with smaller gaps are listed (m).
+    /// Skin (m): pairs with gaps smaller than the skin are listed.
     pub(crate) skin: f64,
     /// Step at which the list was built.
     pub(crate) built_at: u64,
@@ -33,7 +34,8 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Returns true if the list has a single partition that is valid for `grains` grains and this layout.
+    /// Returns true if the list has a single partition that is valid for `grains` grains and this layout of the contact
+    /// history.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         self.reference.len() == grains && matches!(&self.shares[..], [whole] if whole.is_of(grains, layout))
     }
@@ -43,12 +45,12 @@ impl Neighbours {
         self.shares.iter().map(ThreadPartition::pairs).sum()
     }
 
-    /// Creates an empty list.
+    /// Creates an empty list with this skin (m).
     pub(crate) fn new(skin: f64) -> Self {
         Self { shares: Vec::new(), reference: Vec::new(), skin, built_at: 0, builds: 0 }
     }
 
-    /// Returns the list in `count` partitions.
+    /// Returns a copy of the list, divided into `count` partitions.
     pub(crate) fn in_shares(&self, count: usize) -> Self {
         let Self { reference, skin, built_at, builds, .. } = self;
         let rows = rows_of(reference.len(), count);
@@ -56,12 +58,13 @@ impl Neighbours {
         Self { shares, reference: reference.clone(), skin: *skin, built_at: *built_at, builds: *builds }
     }
 
-    /// Wraps the positions into the domain, sorts the grains, and lists the pairs in `count` partitions. Contacts keep
-    /// their history.
+    /// Wraps positions into the periodic domain, sorts the grains by cell, and lists the pairs in `count` partitions.
+    /// Contacts keep their history.
     ///
-    /// `slots` holds the slots of the grains in the previous list, [`crate::grains::ABSENT`] for grains inserted since.
-    /// Without `slots`, they are unchanged. `largest` is the largest radius up to `limit` (m). The few grains above
-    /// `limit` search all cells within their reach; this requires axes that are not periodic.
+    /// `slots` holds, for the grain in each slot before the sort, its slot in the previous list;
+    /// [`crate::grains::ABSENT`] if the grain was inserted later. Without insertions and removals, `slots` is `None`.
+    /// `largest` is the largest radius that does not exceed `limit` (m). The few grains with radii above `limit` have no
+    /// cell and search all cells within their reach. This search requires that no axis is periodic.
     pub(crate) fn rebuild<S: Geometry>(
         &mut self,
         team: &Team,
@@ -109,7 +112,7 @@ impl Neighbours {
         self.builds += 1;
     }
 
-    /// Returns the largest displacement of a grain since the pairs were listed (m); infinite if it is NaN.
+    /// Returns the largest displacement of a grain since the list was built (m); infinite if any displacement is NaN.
     pub(crate) fn farthest<S: Geometry>(&self, grains: &Grains<S>) -> f64 {
         let away = |(now, then): (&Quad, &Quad)| {
             let away = S::vector(now.0) - S::vector(then.0);
@@ -139,7 +142,8 @@ pub(crate) fn wrapped(mut position: Vector3<f64>, domain: &Domain, dimension: us
     position
 }
 
-/// Returns true if the gap between two grains is smaller than the skin (m). The first grain is already shifted.
+/// Returns true if the gap between two grains is smaller than the skin (m). The position of the first grain must
+/// include the periodic shift.
 #[inline(always)]
 fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     let between = S::vector(b.0) - S::vector(a.0);
@@ -147,9 +151,9 @@ fn is_near<S: Geometry>(a: &Quad, b: &Quad, skin: f64) -> bool {
     between.dot(between) < reach * reach
 }
 
-/// Lists each near pair of some rows inside the domain once, in the row of the grain with the lower slot. A grain may
-/// thus move as soon as its row has been processed. Each grain is tested against later grains in its own cell and in
-/// the following cells.
+/// Lists the near pairs of the grains in `rows` inside the domain. Each pair is listed once, in the row of the grain with
+/// the lower slot. A grain may thus move as soon as its row has been processed. Each grain is tested against later grains
+/// in its own cell and in the adjacent cells that follow.
 fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range<usize>, layout: Layout) -> Pairs {
     let without = cells.without();
     let mut cell = if without < place.len() { cells.cell(rows.start.clamp(without, place.len() - 1)) } else { 0 };
@@ -166,7 +170,8 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
         let [i, j, k] = at;
         let (left, right) = (i.saturating_sub(1), (i + 1).min(cells.count[0] - 1));
         let mut scan = |range: Range<usize>| {
-            // A branch would be unpredictable, so every candidate is written, and those that are not near are overwritten.
+            // A branch here would be mispredicted often. Therefore every candidate is written, and the next one
+            // overwrites a candidate that is not near.
             let mut count = partners.len();
             partners.resize(count + range.len(), 0);
             for other in range {
@@ -187,7 +192,7 @@ fn near_pairs<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, rows: Range
     })
 }
 
-/// Finds the partners near a very large grain, which has no cell. They are all grains in the cells within its reach,
+/// Finds the partners of a grain that is too large for a cell. Candidates are all grains in the cells within its reach,
 /// and later grains without a cell.
 fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slot: usize, partners: &mut Vec<u32>) {
     let (grain, without) = (&place[slot], cells.without());
@@ -224,7 +229,7 @@ fn half_of_the_shifts(domain: &Domain) -> Vec<Vector3<f64>> {
     shifts
 }
 
-/// Lists each near pair of some rows across a periodic face once, with its shift (m).
+/// Lists the near pairs of the grains in `rows` across periodic faces. Each pair is listed once, with its shift (m).
 fn pairs_across<S: Geometry>(
     place: &[Quad],
     cells: &Cells,
@@ -330,7 +335,8 @@ mod tests {
         }
     }
 
-    /// Two of the grains are ten times as large as most others, and a third one is far from all cells.
+    /// Each near pair is listed once, although three grains are ten times as large as all others and have no cell. One of
+    /// the three is far from all cells.
     #[test]
     fn lists_what_is_near_to_large_grains_once() {
         let (radius, large, skin) = (0.1, 1.0, 0.05);

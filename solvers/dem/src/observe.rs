@@ -1,5 +1,4 @@
-//! Output of a simulation at a step. It contains grains with their velocities at the time of the positions, contacts,
-//! walls and energies.
+//! Output of a simulation at a step: grains with their velocities at the time of the positions, contacts, walls and energies.
 
 use crate::geometry::Geometry;
 use crate::grains::ABSENT;
@@ -10,8 +9,8 @@ use grainbench_scene::record::{self, GrainState, Snapshot, StepState, WallState}
 use grainbench_scene::scene::{Driven, Scene};
 use nalgebra::Vector3;
 
-/// Returns the state at this step: grains, contacts, walls and energies. It takes the contacts, so a second call at the
-/// same step returns none.
+/// Returns the state at this step: grains, contacts, walls and energies. It moves out the recorded contacts, so a
+/// second call at the same step returns none.
 pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState {
     let touching = simulation.touching();
     let contacts = simulation.take_contacts();
@@ -70,7 +69,8 @@ pub(crate) fn grain_states<S: Geometry>(simulation: &DemSimulation<S>) -> impl I
     })
 }
 
-/// Returns a grain, with its velocity (m/s) and spin (rad/s) advanced from half a step before to the time of the positions.
+/// Returns the state of a grain. The velocity (m/s) and the spin (rad/s) are advanced by half a step, to the time of the
+/// position.
 fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainState {
     let (scene, grains) = (&simulation.scene, &simulation.grains);
     let slot = grains.slot[id] as usize;
@@ -100,8 +100,8 @@ fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainSt
     }
 }
 
-/// Returns the angular velocity (rad/s) of a grain without torques. Only global damping acts, once per step (Cundall &
-/// Strack 1979, eq. 36).
+/// Returns the angular velocity (rad/s) after `step` steps of a grain without torques. Only global damping acts on it,
+/// once per step (Cundall & Strack 1979, eq. 36).
 fn free_spin(scene: &Scene, start: Vector3<f64>, time_step: f64, step: u64) -> Vector3<f64> {
     let half = 0.5 * scene.global_damping * time_step;
     start * libm::pow((1.0 - half) / (1.0 + half), step as f64)

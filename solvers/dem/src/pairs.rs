@@ -1,4 +1,4 @@
-//! Loop over pairs in contact, as many at a time as a register holds.
+//! Loop over pairs in contact. It processes as many pairs at a time as a SIMD register holds.
 
 use crate::contact::chain::Answer;
 use crate::contact::normal::Normal;
@@ -17,41 +17,44 @@ use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, ScalarBackend, Si
 use grainbench_scene::record::Partner;
 use std::marker::PhantomData;
 
-/// Loop over pairs in contact. The velocity and spin of each grain take `Q` quads.
+/// Loop over pairs in contact, for the stages `N`, `T` and `R` of the contact law. The velocity and spin of each grain
+/// take `Q` quads.
 pub(crate) struct PairLoop<'a, S: Geometry, N, T, R, const Q: usize> {
     terms: Terms<'a>,
     touching: &'a ContactList,
     grains: GrainTables<'a>,
     sums: Sums<'a>,
     shift: &'a [Quad],
-    /// Contact history of the block, which is overwritten. If the block is unchanged, it still holds the previous
-    /// history.
+    /// Contact history of the block, which the loop overwrites. If the same pairs were in contact in the previous
+    /// evaluation, it still holds the previous history. Otherwise `touching` holds the previous history.
     memory: [&'a mut [f64]; MEMORY],
     seen: Option<&'a mut RecordedContacts>,
     chain: PhantomData<(S, N, T, R)>,
 }
 
-/// Number of registers of pairs whose distances are computed before their forces. Square roots and divisions have long
-/// latencies, so several of them overlap. The number is small enough to stay in registers. The widest vectors do not
-/// use it, because storing the distances costs as much as the overlap saves.
+/// Number of SIMD registers of pairs whose distances are computed before their forces. Square roots and divisions have
+/// long latencies, so it is faster to start several of them at a time. The number is small enough for the results to stay
+/// in registers. Loops with the widest registers do not use it, because storing the distances costs as much time as this
+/// saves.
 const ROUND: usize = 8;
 
-/// Distances between the grains of pairs.
+/// Distances between the grains of one pair, or of several pairs at a time.
 #[derive(Clone, Copy)]
 struct PairDistances<S: Geometry, X: Number> {
     /// Vector from the first centre to the second (m).
     between: S::Vectors<X>,
-    /// Its length (m), and the inverse of the length (1/m).
+    /// Distance d between the centres (m).
     distance: X,
+    /// Inverse distance 1/d (1/m).
     inverse_distance: X,
     /// Sum of the radii (m).
     reach: X,
-    /// Radii R (m), if they are read together with the positions.
+    /// Radii R (m); zero if no law needs them or if they are read together with the spins.
     radii: [X; 2],
 }
 
 impl<S: Geometry, L: Lanes> PairDistances<S, SimdPack<L>> {
-    /// Returns placeholder values.
+    /// Returns zeros, as initial values of a buffer.
     #[inline(always)]
     fn none(lanes: L) -> Self {
         let zero = SimdPack::splat(lanes, 0.0);
@@ -67,7 +70,7 @@ struct Slots {
 }
 
 impl Slots {
-    /// Reads the slots of pairs and checks them against the number of grains.
+    /// Reads the slots of pairs and checks that they are below the number of grains.
     ///
     /// # Panics
     /// When a slot is out of range.
@@ -78,7 +81,7 @@ impl Slots {
 }
 
 impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> PairLoop<'a, S, N, T, R, Q> {
-    /// Number of history values.
+    /// Number of history values of a contact.
     const NUMBERS: usize = T::NUMBERS + R::NUMBERS;
 
     /// Creates the loop over the pairs of a block.
@@ -97,7 +100,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         Self { terms, touching, grains, sums, shift, memory, seen, chain: PhantomData }
     }
 
-    /// Runs the loop. Recorded contacts are processed one by one.
+    /// Runs the loop with an instruction set of the processor. If contacts are recorded, it processes them one by one.
     pub(crate) fn run_on(self, processor: Processor) {
         if self.seen.is_some() {
             self.run(ScalarBackend::<1>);
@@ -106,7 +109,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// Computes the distances between the grains of some pairs.
+    /// Computes the distances between the grains of the contacts in one register. `from` is the index of the first of
+    /// these contacts in the contact list.
     #[inline(always)]
     fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> PairDistances<S, SimdPack<L>> {
         let (Slots { first, second }, zero) = (slots, SimdPack::splat(lanes, 0.0));
@@ -135,7 +139,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         PairDistances { between, distance, inverse_distance: distance.like(1.0) / distance, reach, radii }
     }
 
-    /// Prepares some pairs for the chain of stages.
+    /// Gathers the data of the pairs in one register for the stages of the contact law.
     #[inline(always)]
     fn pair<'l, L: Lanes>(
         &self,
@@ -193,7 +197,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// Reads the history of some contacts.
+    /// Reads the previous history of the contacts in one register, which start at index `from` of the contact list.
     #[inline(always)]
     fn remembered<L: Lanes>(&self, lanes: L, from: usize) -> Memory<SimdPack<L>> {
         let mut memory = [SimdPack::splat(lanes, 0.0); MEMORY];
@@ -224,7 +228,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         memory
     }
 
-    /// Stores the history of some contacts.
+    /// Stores the history of the contacts in one register, which start at index `from` of the contact list.
     #[inline(always)]
     fn remember<L: Lanes>(&mut self, memory: &Memory<SimdPack<L>>, from: usize) {
         for (number, now) in memory.iter().zip(&mut self.memory).take(Self::NUMBERS) {
@@ -232,7 +236,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// Adds the forces and torques of `count` contacts, one after the other.
+    /// Adds the forces and torques of `count` contacts to the sums of their grains, in the order of the contacts.
     #[inline(always)]
     fn add<L: Lanes>(&mut self, lanes: L, answer: &Answer<S, SimdPack<L>>, slots: &Slots, count: usize) {
         let zero = SimdPack::splat(lanes, 0.0);
@@ -245,7 +249,8 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         }
     }
 
-    /// Adds the quads of force and torque to the first grain of each contact, and their counterparts to the second.
+    /// Adds force and torque of each contact to its first grain. The second grain receives the opposite force and its own
+    /// torque.
     #[inline(always)]
     fn add_to<L: Lanes>(
         lanes: L,
@@ -338,13 +343,13 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
     }
 }
 
-/// Returns one quad per lane.
+/// Transposes four registers to one quad per lane.
 #[inline(always)]
 fn spread<L: Lanes>(lanes: L, [a, b, c, d]: [SimdPack<L>; 4]) -> [Quad; WIDEST] {
     lanes.quads([a.register(), b.register(), c.register(), d.register()])
 }
 
-/// Returns two quads per lane.
+/// Transposes eight registers to two quads per lane.
 #[inline(always)]
 fn spread_pairs<L: Lanes>(lanes: L, [[a, b, c, d], [e, f, g, h]]: [[SimdPack<L>; 4]; 2]) -> [L::Pair; WIDEST] {
     let one = [a.register(), b.register(), c.register(), d.register()];

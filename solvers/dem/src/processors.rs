@@ -1,5 +1,5 @@
-//! Tests of the loops over pairs, which are compiled for every instruction set and run on several threads. All variants
-//! must give the same results.
+//! Tests of the loops over pairs. They are compiled for every instruction set and run on one or more threads. All
+//! variants must give the same results.
 
 use crate::convention::Convention;
 use crate::geometry::Geometry;
@@ -13,8 +13,8 @@ use grainbench_scene::space::Space;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Returns grains of two materials in a box with periodic faces and a floor. Some are in contact at the start, others
-/// collide later.
+/// Returns a scene with grains of two materials in a box with periodic faces and a floor. Some grains are in contact at
+/// the start, others collide later.
 fn scene(dimension: usize) -> Scene {
     let vector = |x: f64, y: f64, z: f64| {
         let all = [x, y, z];
@@ -68,7 +68,8 @@ fn state<S: Geometry>(mut simulation: DemSimulation<S>, path: Processor) -> Stri
     format!("{:?} {listed:?} {contacts:?} {energies:?} {:?}", simulation.grains, simulation.cost)
 }
 
-/// Returns laws with every combination of effects. Some effects apply to only one of the materials.
+/// Returns the name and two contact laws for every combination of effects. The second law has neither rolling
+/// resistance nor damping.
 fn laws() -> Vec<(String, ContactLaw, ContactLaw)> {
     let mut laws = Vec::new();
     for effects in 0..16_u32 {
@@ -140,7 +141,8 @@ fn runs_leave_the_same_bits_on_all_paths_and_threads_in_space() {
     same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene, convention), team));
 }
 
-/// Grains moved within a block end at the same state as in single cycles.
+/// A call with many cycles moves grains directly after their forces are computed. It gives the same bits as one call per
+/// cycle.
 #[test]
 fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     let mut scene = scene(3);
@@ -156,8 +158,8 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     }
 }
 
-/// Returns a ball that approaches beads from below. It is so much larger than the beads that it has no cell of the
-/// grid. Its pairs fill more than one block, and its contacts are in the first.
+/// Returns a scene in which a ball approaches beads from below. The ball is so much larger than the beads that it has
+/// no cell in the search grid. Its pairs fill more than one block, and its contacts are in the first block.
 fn ball_under_beads() -> Scene {
     let text = "title = 'ball'\ndimension = 3\nduration = 1.0\nlargest_initial_overlap = 0.5\nmaterials.m.density = 1000.0\n\
          [contacts.all]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\ntangential_stiffness = 6.0e5\nfriction = 0.3\n\
@@ -168,8 +170,8 @@ fn ball_under_beads() -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Partners of a ball must not move before the row of the ball, for any number of combined cycles and any number of
-/// threads.
+/// In a call with many cycles, the beads must not move before the forces in the row of the ball are computed. The final
+/// state must not depend on the number of cycles per call or on the number of threads.
 #[test]
 fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     let scene = ball_under_beads();
@@ -186,7 +188,7 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     assert!(end(60, Team::new(3)) == alone, "three threads");
 }
 
-/// All contacts are listed, even after the skin has grown.
+/// All contacts are in the neighbour list, even after the skin has grown.
 #[test]
 fn whatever_touches_is_listed_while_the_skin_widens() {
     let scene = ball_under_beads();
@@ -207,7 +209,8 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
     assert!(simulation.neighbours.skin > first, "the skin has widened");
 }
 
-/// A checkpoint of another program could hold a different radius beside the spin, which would change the lever arm.
+/// A checkpoint is rejected if the radius stored beside a spin differs from the radius of the grain. The stored radius is
+/// the lever arm of tangential forces.
 #[test]
 fn a_radius_beside_a_spin_is_that_of_its_grain() {
     use crate::grains::Grains;

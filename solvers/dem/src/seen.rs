@@ -1,4 +1,4 @@
-//! Contacts recorded in the last force evaluation, for snapshots and the energy budget.
+//! Contacts recorded in a force evaluation, for snapshots and the energy budget.
 
 use crate::contact::chain::Answer;
 use crate::geometry::Geometry;
@@ -7,10 +7,10 @@ use grainbench_lanes::Number;
 use grainbench_scene::record::{ContactState, Partner};
 use nalgebra::Vector3;
 
-/// Contacts in the last recorded force evaluation.
+/// Contacts of the last force evaluation in which contacts were recorded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RecordedContacts {
-    /// Individual contacts as in a snapshot, if they are recorded. Output takes them away.
+    /// Individual contacts as in a snapshot; empty if only energies are recorded. Output moves them out of this list.
     pub(crate) contacts: Vec<ContactState>,
     /// True if individual contacts are recorded.
     one_by_one: bool,
@@ -20,7 +20,7 @@ pub(crate) struct RecordedContacts {
     pub(crate) energies: Vec<Energies>,
 }
 
-/// Spring energy of a contact, and its work in one step.
+/// Spring energy of a contact, and the energies that it dissipated or released in one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Energies {
     /// Energy in the springs (J).
@@ -51,7 +51,8 @@ impl RecordedContacts {
         reserve(&mut self.energies, more);
     }
 
-    /// Records an answer; of several answers in lanes, the first. `centre` (m) and `radius` (m) are those of the first grain.
+    /// Records the result of a contact of the grain with id `grain`, whose centre is `centre` (m) and whose radius is
+    /// `radius` (m). If the result contains several contacts in lanes, only the first one is recorded.
     pub(crate) fn add<S: Geometry, X: Number>(
         &mut self,
         answer: &Answer<S, X>,

@@ -1,9 +1,9 @@
-//! Thread partition of the neighbour list. It contains the pairs of some rows, and the pairs of other rows with a grain
-//! of the partition.
+//! Thread partition of the neighbour list. A partition contains the pairs of its own rows, and pairs of other rows
+//! whose partner is one of its grains.
 //!
-//! A pair between grains of two partitions is in both. Each partition computes its force for its own grain, from the
-//! same numbers. The forces on a grain are summed in the order of the whole list, so the result does not depend on the
-//! number of partitions.
+//! A pair of grains from two partitions is in both partitions. Each partition computes the force of this pair for its own
+//! grain, from the same numbers. The forces on a grain are summed in the order of the whole list, so the result does not
+//! depend on the number of partitions.
 
 use crate::contact::chain::Layout;
 use crate::forces::{Forces, Terms};
@@ -19,28 +19,30 @@ use std::ops::Range;
 /// Smallest number of grains in a partition. With fewer grains, threads wait for each other longer than they work.
 pub(crate) const FEWEST: usize = 500;
 
-/// Thread partition of the rows.
+/// Part of the neighbour list that one thread processes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct ThreadPartition {
-    /// Own rows, which are the slots of its grains.
+    /// Own rows of the list. A row has the slot of its grain as index.
     pub(crate) rows: Range<usize>,
     /// Nearby pairs inside the domain.
     pub(crate) near: Pairs,
     /// Nearby pairs across a periodic face.
     pub(crate) across: Pairs,
-    /// Working memory.
+    /// Working memory of force evaluations, which checkpoints do not contain.
     #[serde(skip)]
     work: Work,
 }
 
-/// Working memory of a partition between force evaluations.
+/// Working memory of a partition. Recorded contacts remain until the next evaluation that records contacts.
 #[derive(Clone, Debug, Default)]
 struct Work {
-    /// Pairs in contact of a block.
+    /// Pairs in contact in the present block. The first list is for pairs across a periodic face, the second for all
+    /// others.
     touching: [ContactList; 2],
-    /// Recorded contacts: of pairs across a face, and of other pairs.
+    /// Recorded contacts. The first list is for pairs across a periodic face, the second for all others.
     seen: [RecordedContacts; 2],
-    /// Index in the history of every pair: across a face, and of other pairs.
+    /// History index of each pair in the previous list. The first list is for pairs across a periodic face, the second
+    /// for all others.
     places: [Vec<u32>; 2],
 }
 
@@ -48,13 +50,13 @@ struct Work {
 pub(crate) struct Evaluation<'a, S: Geometry> {
     /// Loops over contacts.
     pub(crate) forces: &'a dyn Forces<S>,
-    /// Instruction set for these loops.
+    /// Instruction set of the loops over contacts.
     pub(crate) processor: Processor,
     /// Parameters common to all contacts.
     pub(crate) terms: Terms<'a>,
     /// True if contacts are recorded.
     pub(crate) record: bool,
-    /// True if they are recorded individually.
+    /// True if contacts are recorded individually, not only their energies.
     pub(crate) one_by_one: bool,
 }
 
@@ -70,7 +72,8 @@ impl ThreadPartition {
         Self { rows, near: Pairs::empty(), across: Pairs::empty(), work: Work::default() }
     }
 
-    /// Selects the pairs in some rows, and the pairs that involve their grains.
+    /// Creates the partition with these rows from the partitions of the whole list. It contains the pairs in `rows`,
+    /// and pairs in other rows whose partner is in `rows`.
     pub(crate) fn reaching(shares: &[Self], rows: Range<usize>) -> Self {
         let lists = |pairs_of: fn(&Self) -> &Pairs| shares.iter().map(pairs_of).collect::<Vec<_>>();
         let chosen = |lists: &[&Pairs]| Pairs::chosen(lists, rows.clone(), |partner| rows.contains(&partner));
@@ -81,7 +84,8 @@ impl ThreadPartition {
         }
     }
 
-    /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout.
+    /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout of the contact
+    /// history.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
         let Self { near, across, rows, .. } = self;
         let shifted = across.shift.len() == across.partner.len() || across.len() == 0;
@@ -92,19 +96,19 @@ impl ThreadPartition {
             && across.is_of(grains, layout)
     }
 
-    /// Finds the index in the history of every pair.
+    /// Computes the history index of every pair, for `take_over`.
     pub(crate) fn find_places(&mut self) {
         self.work.places = [self.across.places(), self.near.places()];
     }
 
-    /// Takes over the contact history of the `old` partitions, for grains sorted in this `order`. The history indices
-    /// must be known.
+    /// Copies the contact history from the `old` partitions, for which `find_places` must have been called. `order`
+    /// holds, for the grain in each slot, its slot in the old partitions.
     pub(crate) fn take_over(&mut self, old: &[Self], order: &[u32], layout: &Layout) {
         if old.is_empty() {
             return;
         }
         let found = |a: u32, b: u32| {
-            // A grain inserted since then has no row.
+            // An inserted grain has no row in the old partitions.
             let share = old.get(old.partition_point(|share| share.rows.end <= a as usize))?;
             let mut lists = [&share.near, &share.across].into_iter().zip(share.work.places.iter().rev());
             lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, (from, places[from]))))
@@ -134,17 +138,17 @@ impl ThreadPartition {
         self.near.own().len() + self.across.own().len()
     }
 
-    /// Returns the recorded contacts: of pairs across a face, and of other pairs.
+    /// Returns the recorded contacts: first those across a periodic face, then all others.
     pub(crate) fn seen(&self) -> &[RecordedContacts; 2] {
         &self.work.seen
     }
 
-    /// Returns mutable access to the recorded contacts, from which they can be taken.
+    /// Returns mutable access to the recorded contacts, in the order of `seen`.
     pub(crate) fn seen_mut(&mut self) -> &mut [RecordedContacts; 2] {
         &mut self.work.seen
     }
 
-    /// Returns the lists in the order of evaluation: pairs across a face, then other pairs.
+    /// Returns the lists in the order of evaluation: pairs across a periodic face, then all other pairs.
     pub(crate) fn lists(&mut self) -> [List<'_>; 2] {
         let Self { rows, near, across, work: Work { touching, seen: [seen_across, seen_near], .. } } = self;
         let [touching_across, touching_near] = touching;
@@ -154,7 +158,7 @@ impl ThreadPartition {
         ]
     }
 
-    /// Computes the forces of the partition's pairs. Returns the number of contacts in its own rows.
+    /// Computes the forces of the partition's pairs. Returns the number of contacts in the own rows of the partition.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
@@ -172,18 +176,19 @@ impl ThreadPartition {
     }
 }
 
-/// List under evaluation, block by block.
+/// List of pairs that a force evaluation processes block by block.
 pub(crate) struct List<'a> {
     rows: Range<usize>,
     pairs: &'a mut Pairs,
     touching: &'a mut ContactList,
     seen: &'a mut RecordedContacts,
-    /// Number of contacts in its own rows so far.
+    /// Number of contacts in the partition's own rows so far.
     own: u64,
 }
 
 impl List<'_> {
-    /// Returns the blocks of pairs, to be evaluated in order. With `one_by_one`, contacts are recorded individually.
+    /// Clears the recorded contacts and returns the blocks of pairs, which must be evaluated in order. With
+    /// `one_by_one`, contacts are recorded individually.
     pub(crate) fn blocks(&mut self, one_by_one: bool) -> impl Iterator<Item = Range<usize>> + use<> {
         self.seen.begin(one_by_one);
         blocks(self.pairs.len())
@@ -221,13 +226,13 @@ impl List<'_> {
         pairs.remember(number, touching.count);
     }
 
-    /// Returns the row of the first pair after a block; `None` after the last block. All pairs of the grains in earlier
-    /// rows have been evaluated.
+    /// Returns the row of the first pair after a block; `None` for the last block. After the evaluation of the block, the
+    /// forces on the grains of all earlier rows are complete.
     pub(crate) fn row_after(&self, block: &Range<usize>) -> Option<usize> {
         (block.end < self.pairs.len()).then(|| self.pairs.row[block.end] as usize)
     }
 
-    /// Returns the number of contacts in its own rows.
+    /// Returns the number of contacts in the partition's own rows.
     pub(crate) fn own(self) -> u64 {
         self.own
     }

@@ -1,7 +1,7 @@
 //! Simulation of one scene by the calculation cycle of Cundall & Strack.
 //!
 //! A cycle moves the grains by the forces of the previous cycle ([`crate::motion`]) and moves the walls. It rebuilds
-//! the neighbour list if necessary ([`crate::neighbours`]), and computes the forces for the next cycle
+//! the neighbour list if necessary ([`crate::neighbours`]). Then it computes the forces for the next cycle
 //! ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
@@ -28,14 +28,15 @@ use grainbench_scene::scene::{Driven, Probe, Scene};
 use grainbench_scene::solver::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
 use nalgebra::Vector3;
 
-/// Radius, in mean radii, above which a grain has no cell of the grid. Cells of its size would hold hundreds of other grains.
+/// Radius above which a grain has no cell in the search grid, in mean radii. Cells as large as such a grain would contain
+/// hundreds of other grains.
 const FAR_LARGER: f64 = 4.0;
 
-/// Steps between two checks of contact stiffness. A collision takes about thirty steps at a tenth of the critical time
-/// step, and a check costs about as much as a step.
+/// Number of steps between two checks of the contact stiffness. At a tenth of the critical time step, a collision takes
+/// about thirty steps. A check costs about as much as a step.
 const STEPS_BETWEEN_LOOKS: u64 = 32;
 
-/// Simulation in a space of two or three dimensions.
+/// Simulation in two or three dimensions.
 pub(crate) struct DemSimulation<S: Geometry> {
     pub(crate) scene: Scene,
     laws: Laws,
@@ -48,21 +49,22 @@ pub(crate) struct DemSimulation<S: Geometry> {
     joints: Joints,
     /// Loops over contacts, compiled for the laws of the scene.
     pub(crate) forces: Box<dyn Forces<S>>,
-    /// Instruction set for these loops.
+    /// Instruction set of the loops over contacts.
     pub(crate) processor: Processor,
     /// Threads of the run.
     team: Team,
     /// Smallest number of grains in a thread partition.
     pub(crate) fewest_in_a_share: usize,
-    /// Contacts with walls in the last recorded force evaluation.
+    /// Contacts with walls in the last force evaluation that recorded contacts.
     seen_at_walls: RecordedContacts,
-    /// Step whose contacts are recorded; `None` after they have been taken.
+    /// Step at which contacts were last recorded; `None` before the first recording and after `take_contacts` has moved
+    /// the contacts out.
     seen_at: Option<u64>,
-    /// Largest number of rows of grains and contacts in a wanted snapshot.
+    /// Largest sum of the numbers of grains and contacts for which individual contacts are recorded.
     most_rows: u64,
-    /// True if every recorded step needs individual contacts.
+    /// True if a probe or the mean stress of grains needs individual contacts at every recorded step.
     looks_at_contacts: bool,
-    /// True if the last recorded contacts are individual contacts, not only their energies.
+    /// True if the last recording contains individual contacts, not only their energies.
     one_by_one: bool,
     /// Number of contacts in the last force evaluation.
     contacts: u64,
@@ -76,9 +78,9 @@ pub(crate) struct DemSimulation<S: Geometry> {
     pub(crate) follows_critical: bool,
     /// Number of cycles taken.
     pub(crate) step: u64,
-    /// Upper bound of the displacement of any grain since the pairs were listed (m).
+    /// Upper bound of the displacement of any grain since the neighbour list was built (m).
     pub(crate) travelled: f64,
-    /// Largest speed of a group with prescribed motion (m/s).
+    /// Largest prescribed speed of a group of grains (m/s).
     driven_speed: f64,
     /// Upper bound of the distance from any wall's centre of rotation to any grain (m).
     pub(crate) extent: f64,
@@ -86,7 +88,8 @@ pub(crate) struct DemSimulation<S: Geometry> {
     /// True if the energy budget is requested.
     pub(crate) accounting: bool,
     pub(crate) accounts: Accounts,
-    /// Mean V σ of grains, if snapshots request it.
+    /// Sums for the time average of V σ (volume times stress) of each grain; `None` unless snapshots contain this
+    /// average.
     pub(crate) mean_virial: Option<Box<MeanVirial>>,
     /// Mass of the grains without prescribed motion (kg).
     free_mass: f64,
@@ -95,7 +98,8 @@ pub(crate) struct DemSimulation<S: Geometry> {
 }
 
 impl<S: Geometry> DemSimulation<S> {
-    /// Sets up a scene: computes the initial forces, and shifts velocities half a step back so that all cycles are alike.
+    /// Sets up the simulation of a scene. It computes the initial forces and shifts all velocities back by half a step,
+    /// so that the first cycle does not differ from later ones.
     pub(crate) fn new(
         scene: &Scene,
         forces: Box<dyn Forces<S>>,
@@ -177,18 +181,19 @@ impl<S: Geometry> DemSimulation<S> {
         self.seen_at_walls.energies.iter().chain(list_energies(0)).chain(list_energies(1))
     }
 
-    /// Returns the number of rows of grains and contacts.
+    /// Returns the number of rows of a snapshot: the number of grains plus the number of contacts in the last force
+    /// evaluation.
     pub(crate) fn rows(&self) -> u64 {
         self.grains.len() as u64 + self.contacts
     }
 
-    /// Returns true if a snapshot has individual contacts and at most `most_rows` rows.
+    /// Returns true if the last recording contains individual contacts and a snapshot has at most `most_rows` rows.
     pub(crate) fn shows(&self, most_rows: u64) -> bool {
         self.one_by_one && self.rows() <= most_rows
     }
 
-    /// Returns an upper bound of the number of contacts before the first force evaluation. It counts all pairs listed
-    /// at walls.
+    /// Returns an upper bound of the number of contacts, before the first force evaluation. It counts overlapping pairs
+    /// of grains, and all pairs listed at walls, even without overlap.
     fn touching_at_start(&self) -> usize {
         let touch = |a: usize, b: usize, shift: Vector3<f64>| {
             let apart = self.grains.position(b) - self.grains.position(a) - shift;
@@ -208,23 +213,24 @@ impl<S: Geometry> DemSimulation<S> {
         pairs.sum::<usize>() + self.walls.iter().map(MovingWall::pairs).sum::<usize>()
     }
 
-    /// Returns the numbers of contacts and of slipping contacts in this step; `None` if they were not recorded or have
-    /// been taken.
+    /// Returns the number of contacts and the number of slipping contacts in this step; `None` if contacts were not
+    /// recorded, or if `take_contacts` has moved them out.
     pub(crate) fn touching(&self) -> Option<[usize; 2]> {
         self.seen_at.filter(|&at| at == self.step)?;
         let lists = self.neighbours.shares.iter().flat_map(ThreadPartition::seen).chain([&self.seen_at_walls]);
         Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
     }
 
-    /// Takes the contacts of this step, sorted by the id of their first grain; `None` if they were not recorded or have
-    /// been taken. For each grain, contacts with walls come first, then contacts across periodic faces.
+    /// Moves the individual contacts of this step out of the simulation; `None` if they were not recorded or were moved
+    /// out before. The contacts are sorted by the id of their first grain. For each grain, contacts with walls come
+    /// first, then contacts across periodic faces, then all other contacts.
     pub(crate) fn take_contacts(&mut self) -> Option<Vec<ContactState>> {
         self.seen_at.take().filter(|&at| at == self.step && self.one_by_one)?;
         let [mut before, mut contacts] = [std::mem::take(&mut self.seen_at_walls.contacts), Vec::new()];
         for share in &mut self.neighbours.shares {
             before.append(&mut share.seen_mut()[0].contacts);
         }
-        // The largest list is not copied if there is only one partition.
+        // With a single partition, the largest list is moved, not copied.
         for share in &mut self.neighbours.shares {
             let mut others = std::mem::take(&mut share.seen_mut()[1].contacts);
             if contacts.is_empty() {
@@ -242,7 +248,7 @@ impl<S: Geometry> DemSimulation<S> {
         Some(contacts)
     }
 
-    /// Adds the recorded contacts of this step to the mean V σ, if the step is one of its samples.
+    /// Adds the recorded contacts of this step to the sums of V σ, if this step is sampled.
     fn add_virials(&mut self) {
         let Self { mean_virial, neighbours, seen_at_walls, scene, step, .. } = self;
         if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(*step)) {
@@ -252,19 +258,19 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Takes `steps` cycles.
+    /// Runs `steps` cycles.
     pub(crate) fn take_cycles(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
         let team = self.team.clone();
         team.lead(|| self.cycles(steps))
     }
 
     fn cycles(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
-        // If no other operation comes between the force evaluation and the motion, each block of grains is moved
-        // directly after its forces.
+        // Without an energy budget and without grains of prescribed motion, nothing happens between the force evaluation
+        // and the motion of the grains. The grains are then moved directly after their forces are computed.
         let at_once = !self.accounting && self.scene.driven.is_empty();
         let mut has_moved = false;
         for left in (0..steps).rev() {
-            // The last cycle records its contacts for output.
+            // Contacts are recorded for the energy budget, for output after the last cycle, and for the mean of V σ.
             let looked_at = self.mean_virial.as_ref().is_some_and(|mean| mean.is_due(self.step + 1));
             let (record, move_on) = (self.accounting || left == 0 || looked_at, at_once && left > 0);
             self.cycle(record, has_moved, move_on)?;
@@ -276,9 +282,9 @@ impl<S: Geometry> DemSimulation<S> {
         Ok(())
     }
 
-    /// Takes one cycle: motion by the previous forces, unless the grains have moved already, motion of walls, and the
-    /// next forces. With `move_on`, the grains move after the force evaluation. With `record`, the contacts are
-    /// recorded.
+    /// Runs one cycle. It moves the grains by the forces of the last evaluation (unless `has_moved`), moves the walls,
+    /// and computes the new forces. With `move_on`, the grains move again directly after the force evaluation. With
+    /// `record`, the contacts are recorded.
     fn cycle(&mut self, record: bool, has_moved: bool, move_on: bool) -> Result<(), Box<SimulationFailure>> {
         let half_skin = 0.5 * self.neighbours.skin;
         if !has_moved {
@@ -329,7 +335,8 @@ impl<S: Geometry> DemSimulation<S> {
         self.travel(fastest);
     }
 
-    /// Computes the forces and torques at all contacts. Spring displacements grow by the slip and roll during `elapsed` (s).
+    /// Computes the forces and torques at all contacts. `elapsed` is the time since the last evaluation (s); springs
+    /// are displaced by the slip and the rolling during this time. `record` and `move_on` are as in `cycle`.
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
         let Self {
             laws,
@@ -386,12 +393,12 @@ impl<S: Geometry> DemSimulation<S> {
         }
     }
 
-    /// Adds a step to the travelled distance. `fastest` is the square of the largest speed (m²/s²).
+    /// Adds the displacement of one step to the upper bound `travelled`. `fastest` is the square of the largest speed (m²/s²).
     fn travel(&mut self, fastest: f64) {
         self.travelled += fastest.sqrt().max(self.driven_speed) * self.motion.time_step;
     }
 
-    /// Returns the time of the positions (s).
+    /// Returns the time to which the positions belong (s). The velocities belong to a time half a step earlier.
     pub(crate) fn time(&self) -> f64 {
         self.step as f64 * self.motion.time_step
     }
@@ -419,12 +426,12 @@ impl<S: Geometry> DemSimulation<S> {
         self.walls.iter_mut().for_each(MovingWall::forget);
     }
 
-    /// Returns true if grains are to be inserted until a time (s).
+    /// Returns true if grains are due for insertion at a time (s).
     fn has_comers(&self, time: f64) -> bool {
         self.scene.stays.entered_by(time) > self.entered
     }
 
-    /// Returns true if grains are to be removed at this step.
+    /// Returns true if grains are due for removal at this step.
     fn has_leavers(&self) -> bool {
         let Some(removal) = self.scene.stays.removal.filter(|removal| self.step.is_multiple_of(removal.every)) else {
             return false;
@@ -432,8 +439,8 @@ impl<S: Geometry> DemSimulation<S> {
         (0..self.grains.len()).any(|slot| removal.takes(self.grains.position(slot), S::DIMENSION))
     }
 
-    /// Inserts and removes grains that are due at this step. Returns the previous slot of each grain; `None` if nothing
-    /// changed.
+    /// Inserts and removes the grains that are due at this step. Returns, for the grain in each slot, its previous slot,
+    /// or [`ABSENT`] for an inserted grain. Returns `None` if nothing changed.
     fn come_and_go(&mut self) -> Option<Vec<u32>> {
         let time = self.step as f64 * self.motion.time_step;
         let coming = self.entered..self.scene.stays.entered_by(time);
@@ -458,7 +465,8 @@ impl<S: Geometry> DemSimulation<S> {
         Some(slots)
     }
 
-    /// Adjusts the skin to the number of steps for which the list has lasted.
+    /// Adjusts the skin by the cost model of [`crate::skin`], from the number of pairs and the number of steps since the
+    /// neighbour list was built.
     fn fit_skin(&mut self) {
         let Self { neighbours, grains, mean_radius, step, .. } = self;
         let pairs = neighbours.pairs();
@@ -467,7 +475,7 @@ impl<S: Geometry> DemSimulation<S> {
         neighbours.skin = skin::next(neighbours.skin, *mean_radius, counts, S::DIMENSION);
     }
 
-    /// Rebuilds the neighbour list, after a check of every grain.
+    /// Checks the state of every grain, inserts and removes grains, and rebuilds the neighbour lists of grains and walls.
     fn rebuild(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
@@ -517,7 +525,8 @@ impl<S: Geometry> DemSimulation<S> {
         Ok(())
     }
 
-    /// Returns the largest radius of a grain in a cell of the grid, and the radius above which grains have no cell (m).
+    /// Returns two radii (m): the largest radius of a grain with a cell in the search grid, and the radius above which
+    /// grains have no cell. With a periodic axis, all grains have cells.
     fn radii_of_cells(&self) -> [f64; 2] {
         let limit = if self.scene.is_periodic() { f64::MAX } else { FAR_LARGER * self.mean_radius };
         if self.largest_radius <= limit {
@@ -527,8 +536,8 @@ impl<S: Geometry> DemSimulation<S> {
         [radii.filter(|radius| *radius <= limit).fold(0.0, f64::max), limit]
     }
 
-    /// Returns an error if an inserted grain overlaps another grain or a wall too much. `slots` holds the previous
-    /// slots, which are absent for inserted grains.
+    /// Returns an error if an inserted grain overlaps another grain or a wall by more than `LARGEST_ENTRY_OVERLAP`.
+    /// `slots` holds the previous slot of each grain, or [`ABSENT`] for an inserted grain.
     fn refuse_crowded(&self, slots: &[u32]) -> Result<(), Box<SimulationFailure>> {
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
         for slot in (0..slots.len()).filter(|&slot| slots[slot] == ABSENT) {
@@ -570,20 +579,20 @@ impl<S: Geometry> DemSimulation<S> {
         Ok(())
     }
 
-    /// Returns the error for a grain that broke the run, with advice on the time step.
+    /// Returns the error for a grain with an invalid state, with advice on the time step or on the insertion of grains.
     fn broken(&self, slot: usize, position: Vector3<f64>, cause: Cause) -> Box<SimulationFailure> {
         let stable = stable_fraction(&self.scene);
         let fraction = self.motion.time_step / self.critical;
         let advice = if matches!(cause, Cause::CameIntoGrain { .. } | Cause::CameIntoWall { .. }) {
-            "pour at a lower rate, from higher up, or fewer grains".to_owned()
+            "pour fewer grains, at a lower rate or from a higher place".to_owned()
         } else if fraction > stable {
             format!(
-                "{stable:.3} of the critical step ({:.4e} s) is stable for any packing of equal grains",
+                "{stable:.3} of the critical time step ({:.4e} s) is stable for any packing of equal grains",
                 stable * self.critical
             )
         } else {
-            "the step is within what is stable for any packing of equal grains: look at velocities, wall motion and \
-             initial overlaps"
+            "the time step is stable for any packing of equal grains: check velocities, wall motion and initial \
+             overlaps"
                 .to_owned()
         };
         Box::new(SimulationFailure {
@@ -599,8 +608,8 @@ impl<S: Geometry> DemSimulation<S> {
     }
 }
 
-/// Computes the forces of all pairs. With `motion`, it moves each block of grains as soon as its forces are complete.
-/// Returns the number of contacts and the square of the largest speed (m²/s²).
+/// Computes the forces of all pairs. With `motion`, the grains of each block are moved as soon as their forces are
+/// complete. Returns the number of contacts and the square of the largest speed (m²/s²; zero without `motion`).
 fn evaluate_and_move<S: Geometry>(
     whole: &mut ThreadPartition,
     evaluation: &Evaluation<'_, S>,

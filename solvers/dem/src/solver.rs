@@ -1,4 +1,5 @@
-//! Discrete element method as a solver. It selects the kernel once, before the first step, and produces the record.
+//! Discrete element method as a solver. It selects the compiled loops over contacts before the first step, runs the
+//! simulation and produces the record.
 
 use crate::contact::Options;
 use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
@@ -26,39 +27,39 @@ use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, RunOption
 use grainbench_scene::space::{Plane, Solid};
 use grainbench_scene::terms::{Limitation, Terms};
 
-/// Discrete element method in one convention.
+/// Discrete element method with one contact convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dem {
-    /// Contact convention, such as the dashpot in the Coulomb limit.
+    /// Contact convention, such as the force to which the Coulomb limit applies.
     pub convention: Convention,
     /// Defect, for negative controls only.
     pub defect: Option<Defect>,
-    /// True if a run continues although its time step exceeds the critical one of a contact.
+    /// True if a run continues although its time step exceeds the critical time step of a contact.
     pub allow_unstable: bool,
 }
 
-/// Reason for limitations: decomposition of velocities at the end of a step.
+/// Reason for limitations: velocities are decomposed along the normal at the end of a step.
 const END_OF_STEP: &str = "velocities are decomposed along the normal at the end of the step, and a wall that turns has the \
                            velocity of its place there: first order in ΩΔt";
 
-/// Limitations of the 1979 paper as published.
+/// Limitations of the method of Cundall & Strack (1979) as published.
 const OF_1979: &[Limitation] = &[
     Limitation { property: "objectivity", quantity: "place off in the end", at_most: 2e-3, because: END_OF_STEP },
     Limitation { property: "order", quantity: "order in the time step of the end", at_most: 1.0, because: END_OF_STEP },
 ];
 
-/// Reason for limitations: rolling resistance at walls in LAMMPS and LIGGGHTS.
-const OWN_SPIN: &str = "the rolling stage at a wall takes the spin of the grain and not that relative to the wall, in \
-                        LAMMPS and in LIGGGHTS: a wall that turns drives the grain";
+/// Reason for limitations: LAMMPS and LIGGGHTS use the spin of the grain for rolling resistance at walls.
+const OWN_SPIN: &str = "rolling resistance at a wall uses the spin of the grain and not the spin relative to the wall, \
+                        in LAMMPS and in LIGGGHTS: a rotating wall drives the grain";
 
-/// Limitations of LAMMPS and LIGGGHTS.
+/// Limitations of the conventions of LAMMPS and LIGGGHTS.
 const OF_PROGRAMS: &[Limitation] = &[
     Limitation {
         property: "objectivity",
         quantity: "place off in the end, under twist",
         at_most: 5e-3,
-        because: "the tangential spring is projected on the tangent plane and does not follow a contact that turns about its \
-                  normal",
+        because: "the tangential spring is projected on the tangent plane and does not follow a rotation of the \
+                  contact about its normal",
     },
     Limitation { property: "objectivity", quantity: "place off in the end", at_most: 0.05, because: OWN_SPIN },
     Limitation { property: "objectivity", quantity: "spin × radius off in the end", at_most: 0.25, because: OWN_SPIN },
@@ -67,8 +68,9 @@ const OF_PROGRAMS: &[Limitation] = &[
         property: "passivity",
         quantity: "work gained",
         at_most: 0.35,
-        because: "the tangential force is the present stiffness times all displacement: a contact that is pressed under shear \
-                  gains the energy by which the stiffness grows, 1 − 1/√2 of the spring's here",
+        because: "the tangential force is the present stiffness times the whole displacement: a contact that is \
+                  compressed under shear gains energy as its stiffness grows, here 1 − 1/√2 of the energy of the \
+                  spring",
     },
 ];
 
@@ -86,25 +88,25 @@ impl Dem {
         }
     }
 
-    /// Creates the method in a convention.
+    /// Creates the solver with a convention, without a defect and with the check of the time step.
     #[must_use]
     pub const fn new(convention: Convention) -> Self {
         Self { convention, defect: None, allow_unstable: false }
     }
 
-    /// Returns the method with a defect, for negative controls.
+    /// Returns the solver with a defect, for negative controls.
     #[must_use]
     pub const fn with_defect(self, defect: Defect) -> Self {
         Self { defect: Some(defect), ..self }
     }
 
-    /// Returns the method without the check of the time step against the critical one of contacts.
+    /// Returns the solver without the check of the time step against the critical time step of contacts.
     #[must_use]
     pub const fn allowing_unstable_steps(self) -> Self {
         Self { allow_unstable: true, ..self }
     }
 
-    /// Sets up a scene with a time step (s), for callers that advance the simulation themselves.
+    /// Sets up the simulation of a scene with a time step (s), for callers that advance it themselves.
     ///
     /// # Errors
     /// When the scene is not supported or its initial state is not valid.
@@ -112,8 +114,8 @@ impl Dem {
         self.start_on(scene, time_step, 1, u64::MAX)
     }
 
-    /// Sets up a scene on at most `threads` threads. Individual contacts are recorded for at most `most_rows` rows of
-    /// grains and contacts.
+    /// Sets up the simulation of a scene with a time step (s) on at most `threads` threads. Individual contacts are
+    /// recorded only if there are at most `most_rows` grains and contacts together.
     ///
     /// # Errors
     /// When the scene is not supported or its initial state is not valid.
@@ -142,8 +144,8 @@ impl Dem {
         let own = words(forces.springs());
         if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != own) {
             let reason = format!(
-                "its contacts begin with springs of another law or convention, {} for {own} (`springs = false` beside the state \
-                 leaves them out)",
+                "its contacts begin with springs of another law or convention, {} instead of {own} (`springs = false` \
+                 next to the state omits them)",
                 springs.layout
             );
             return Err(RunError::Unsupported { solver: self.name(), reason });
@@ -154,34 +156,37 @@ impl Dem {
         Ok(Box::new(simulated))
     }
 
-    /// Returns the run to which a checkpoint belongs.
+    /// Returns the description of a run. Its identity is stored in checkpoints, so that a checkpoint of another run is
+    /// rejected.
     fn run_of<'a>(&self, scene: &'a Scene, time_step: f64, steps: u64, layout: &'static str) -> Run<'a> {
         let solver = format!("{} ({})", self.name(), self.convention.words().join(", "));
         Run { solver, scene, time_step, steps, layout }
     }
 
-    /// Rejects a scene that cannot be run with rigid grains on springs.
+    /// Rejects a scene with deformable bodies, with an energy budget that cannot be computed, or with a contact law
+    /// without stiffness.
     fn refuse(&self, scene: &Scene) -> Result<(), RunError> {
         let unsupported = |reason: String| Err(RunError::Unsupported { solver: self.name(), reason });
         if let Some(what) = scene.needs_deformable() {
-            return unsupported(format!("it has {what}, and grains are rigid here"));
+            return unsupported(format!("it has {what}, but the grains of this solver are rigid"));
         }
         if let Some(reason) = crate::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
             return unsupported(reason);
         }
         if scene.laws.iter().flatten().any(|law| !law.has_stiffness()) {
-            return unsupported("a contact law gives friction and no stiffness".to_owned());
+            return unsupported("a contact law has friction and no stiffness".to_owned());
         }
         Ok(())
     }
 
-    /// Rejects a time step (s) at which springs are stable but dashpots are not. A dashpot near or above critical
-    /// damping then supplies energy, without any other sign of failure.
+    /// Rejects a time step (s) at which springs are stable but dashpots are not. In this case, a dashpot near or above
+    /// critical damping supplies energy, and the run shows no other sign of failure.
     fn refuse_lagging_dashpots(&self, scene: &Scene, time_step: f64) -> Result<(), RunError> {
         let (damped, undamped) = damped_step(scene, &self.convention);
         if time_step > damped && time_step <= undamped {
             return Err(self.resolution_error(format!(
-                "expected at most {damped:.4e} s, where the dashpot of a contact is stable, found a step of {time_step:.4e} s"
+                "expected a time step of at most {damped:.4e} s, at which the dashpot of a contact is stable, found \
+                 {time_step:.4e} s"
             )));
         }
         Ok(())
@@ -246,7 +251,7 @@ impl Dem {
     }
 }
 
-/// Returns the loops over contacts in the plane, for the effects of a scene and a convention.
+/// Returns the loops over contacts in two dimensions, for the effects of a scene and a convention.
 pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Plane>> {
     match convention.history {
         History::Turned => chain::<Plane, Coulomb<Turned>>(scene),
@@ -254,7 +259,7 @@ pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Pl
     }
 }
 
-/// Returns the loops over contacts in space.
+/// Returns the loops over contacts in three dimensions, for the effects of a scene and a convention.
 pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Solid>> {
     match convention.history {
         History::Turned => chain::<Solid, Coulomb<Turned>>(scene),
@@ -262,7 +267,7 @@ pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<So
     }
 }
 
-/// Returns the loops over contacts for the effects of a scene, with `T` if it has friction.
+/// Returns the loops over contacts for the effects of a scene. `T` is the tangential stage if the scene has friction.
 fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
     let effects = Effects::from_scene(scene);
     // All laws of a scene that have springs are of one kind.
@@ -276,7 +281,7 @@ fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
     }
 }
 
-/// Adds the stages that follow a normal stage.
+/// Returns the loops over contacts with normal stage `N` and the tangential and rolling stages that the effects need.
 fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn Forces<S>> {
     match (effects.friction, effects.rolling_resistance) {
         (false, _) => Box::new(Chain::<S, N, Frictionless, FreeRolling>::new()),
@@ -285,7 +290,7 @@ fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn 
     }
 }
 
-/// Simulation that the main loop advances step by step.
+/// Simulation as the main loop runs it, with the identity of the run.
 struct RunningSimulation<'a> {
     simulation: Box<dyn Simulation>,
     run: Run<'a>,

@@ -1,4 +1,4 @@
-//! Stable time steps of packings of equal grains and of damped contacts.
+//! Stable time steps of packings of equal grains and of contacts with dashpots.
 
 use crate::contact::Options;
 use crate::convention::Convention;
@@ -6,11 +6,12 @@ use crate::laws::damping_ratio;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::{Dimension, Scene};
 
-/// Returns a fraction of the critical step `2√(m/k_n)` at which every packing of equal grains is stable.
+/// Returns a fraction f of the critical step `2√(m/k_n)` at which every packing of equal grains is stable.
 ///
-/// It bounds the largest frequency of a grain with `z` contacts whose neighbours move against it: ω² ≤ z (k_n/m) (1 +
-/// κ(1 + mR²/I)), κ = k_s/k_n. Hence f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for discs and z = 12
-/// for spheres. For the square lattice (z = 4), the bound is exact at κ = 0 and κ = 1.
+/// The fraction follows from an upper bound of the largest frequency ω of a grain with `z` contacts, whose neighbours
+/// move in the opposite direction: ω² ≤ z (k_n/m) (1 + κ(1 + mR²/I)) with κ = k_s/k_n. Hence
+/// f = 2/(ω · 2√(m/k_n)) = 1/√(z(1 + κ(1 + mR²/I))), with z = 6 for discs and z = 12 for spheres. For the square lattice
+/// (z = 4), the bound is exact at κ = 0 and κ = 1.
 #[must_use]
 pub fn stable_fraction(scene: &Scene) -> f64 {
     let contacts = match scene.dimension {
@@ -25,16 +26,17 @@ pub fn stable_fraction(scene: &Scene) -> f64 {
     1.0 / (contacts * (1.0 + worst * (1.0 + 1.0 / scene.grain_shape.inertia_factor()))).sqrt()
 }
 
-/// Returns the largest step (s) at which a dashpot at a single contact is stable in a convention, and the largest step
-/// (s) without the dashpot. Both refer to the contact with the smallest stable step, and are infinite without damping.
+/// Returns two time steps (s) for one contact: the largest stable step with its dashpot, and the largest stable step
+/// without. The contact is the one with the smallest stable step. Both are infinite if no contact is damped.
 ///
-/// The dashpot uses the velocity of half a step before. The equation λ² − (2 − θ² − 2ζθ)λ + 1 − 2ζθ = 0 with θ = ωΔt,
-/// ω² = k/m* and ζ = c/(2√(k m*)) reaches λ = −1 at θ = 2(√(1 + ζ²) − ζ). For ζ = 3/4, this is half of the undamped
-/// limit 2.
+/// The dashpot uses the velocity half a step earlier. In each step, the overlap is multiplied by λ, with λ² − (2 − θ² −
+/// 2ζθ)λ + 1 − 2ζθ = 0, θ = ωΔt, ω² = k/m* and ζ = c/(2√(k m*)). Here k is the stiffness, c the viscosity and m* the
+/// effective mass. The limit λ = −1 is reached at θ = 2(√(1 + ζ²) − ζ). For ζ = 3/4, this is 1, half of the limit 2
+/// without damping.
 #[must_use]
 pub fn damped_step(scene: &Scene, convention: &Convention) -> (f64, f64) {
     let options = Options::from_convention(convention);
-    // The two lightest grains of every material.
+    // Masses of the two lightest grains of every material (kg).
     let mut lightest = vec![[f64::INFINITY; 2]; scene.materials.len()];
     for grain in &scene.grains {
         let [first, second] = &mut lightest[usize::from(grain.material)];

@@ -1,7 +1,6 @@
-//! State of a simulation between two steps, from which it continues bit for bit.
+//! State of a simulation between two steps. A run that continues from this state gives the same results bit for bit.
 //!
-//! The order of the pairs in the neighbour list is part of the state, because it affects the last bit of the force
-//! sums.
+//! The order of the pairs in the neighbour list is part of the state, because it affects the last bit of the force sums.
 
 use crate::accounts::Accounts;
 use crate::geometry::Geometry;
@@ -16,7 +15,7 @@ use grainbench_scene::record::Counts;
 use grainbench_scene::recorder::Recorder;
 use serde::{Deserialize, Serialize};
 
-/// Stored state. The order of the fields is the order of the bytes in a checkpoint.
+/// Content of a checkpoint. The order of the fields is the order of the bytes in the checkpoint.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct State<S: Geometry> {
@@ -79,7 +78,7 @@ impl<S: Geometry> DemSimulation<S> {
         self.neighbours = state.neighbours.in_shares(self.shares());
         self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
         self.step = state.step;
-        // This bound is not stored. Infinity makes the next cycle compute it.
+        // The displacement bound is not stored. Infinity makes the next cycle compute it.
         self.travelled = f64::INFINITY;
         self.extent = state.extent;
         self.cost = state.cost;

@@ -1,5 +1,5 @@
-//! Selection of the listed pairs in contact, for which laws are evaluated. It processes as many pairs at a time as a
-//! register holds.
+//! Selection of the pairs in contact from the listed pairs. As many pairs are tested at a time as a SIMD register holds.
+//! Contact laws are evaluated only for pairs in contact.
 
 use crate::geometry::{Geometry, Linear};
 use crate::laws::{between, gathered, places};
@@ -8,33 +8,33 @@ use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, WIDEST};
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Returns the blocks of a number of listed pairs.
+/// Returns the index ranges of the blocks into which a list of pairs is divided.
 pub(crate) fn blocks(pairs: usize) -> impl Iterator<Item = Range<usize>> {
     (0..pairs).step_by(BLOCK).map(move |from| from..(from + BLOCK).min(pairs))
 }
 
-/// Pairs in contact, in the order of the list.
+/// Pairs in contact in one block of the neighbour list, in the order of the list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactList {
-    /// Number of pairs.
+    /// Number of pairs in contact.
     pub(crate) count: usize,
-    /// Slot of the first grain of each pair, its row in the list. Padded after the last pair so that a register can be
-    /// filled.
+    /// Slot of the first grain of each pair. The pair is in this grain's row of the neighbour list. Copies of the last
+    /// entry follow, so that the last register is full.
     pub(crate) first: Vec<u32>,
     /// Slot of the second grain of each pair.
     pub(crate) second: Vec<u32>,
-    /// Index of each pair in the list; only for lists with shifts.
+    /// Index of each pair in the neighbour list; only for lists with periodic shifts.
     pub(crate) pair: Vec<u32>,
     /// True if the same pairs were in contact at the last evaluation.
     pub(crate) steady: bool,
     /// For each contact, its index in the previous history of the block; 0 for a new contact.
     pub(crate) remembered: Vec<u32>,
-    /// Previous history of the block, if the history is rebuilt.
+    /// Previous history of the block, if the pairs in contact have changed.
     pub(crate) before: BlockHistory,
 }
 
 impl ContactList {
-    /// Finds the pairs in contact of a block of listed pairs. Blocks must be processed in order.
+    /// Finds the pairs in contact in a block of listed pairs. Blocks must be processed in order.
     pub(crate) fn find<S: Geometry>(
         &mut self,
         processor: Processor,
@@ -55,7 +55,7 @@ impl ContactList {
     }
 }
 
-/// Loop over listed pairs.
+/// Loop over the listed pairs of a block that finds the pairs in contact.
 struct Find<'a, S: Geometry> {
     place: &'a [Quad],
     pairs: &'a mut Pairs,
@@ -120,7 +120,7 @@ impl<S: Geometry> Kernel for Find<'_, S> {
     }
 }
 
-/// Fills with consecutive integers.
+/// Fills a slice with consecutive integers that start at `from`.
 #[inline(always)]
 fn count_up(numbers: &mut [u32], from: usize) {
     for (lane, number) in numbers.iter_mut().enumerate() {
@@ -128,10 +128,10 @@ fn count_up(numbers: &mut [u32], from: usize) {
     }
 }
 
-/// Mask of eight bits.
+/// Mask with the bits of eight pairs set.
 const ALL: u32 = 255;
 
-/// Returns eight integers of a row, from an index.
+/// Returns the eight integers of a slice that start at index `from`.
 #[inline(always)]
 fn eight(values: &[u32], from: usize) -> [u32; WIDEST] {
     let mut eight = [0; WIDEST];

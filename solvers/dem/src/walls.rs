@@ -14,31 +14,33 @@ use serde::{Deserialize, Serialize};
 /// Slots or ids of grains near a wall, with their contact history.
 pub(crate) type WallNeighbours = Vec<(u32, Memory<f64>)>;
 
-/// Wall during the run.
+/// Wall with its present position, its motion over the last step, and nearby grains.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingWall {
     wall: Wall,
-    /// Present shape.
+    /// Shape at the present position.
     pub(crate) shape: WallShape,
     centre: Vector3<f64>,
     displacement: Displacement,
     at_list: Displacement,
-    /// Mean velocity over the last step (m/s), and spin (rad/s) about the centre.
+    /// Mean velocity of the centre over the last step (m/s).
     velocity: Vector3<f64>,
+    /// Angular velocity about the centre over the last step (rad/s).
     spin: Vector3<f64>,
-    /// True if the velocity of a point is its mean over the last step; otherwise it is that at the end of the step.
+    /// True if velocities of wall points are means over the last step; false if they are velocities at the end of the step.
     mid_step: bool,
-    /// Factors c₁ and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) at r from the centre.
+    /// Factors c₁ (dimensionless) and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) of a point at r from the centre,
+    /// with velocity V of the centre and angular velocity Ω.
     swing: [f64; 2],
-    /// Grains near the wall, by slot.
+    /// Slots of the grains near the wall, with contact history.
     pub(crate) near: WallNeighbours,
     /// True for each entry of `near` whose contact belongs to a joined wall; empty without joints.
     pub(crate) covered: Vec<bool>,
-    /// Nearby grains of a mesh, which replace `near`.
+    /// Nearby grains and contacts of a mesh. A mesh uses them instead of `near`.
     pub(crate) at_mesh: MeshContacts,
     /// Force of the grains on the wall in the last force evaluation (N).
     pub(crate) force: Vector3<f64>,
-    /// Displacement of a pressed wall along its normal (m), and its speed half a step before (m/s).
+    /// For a piston: displacement along its normal (m), and speed half a step earlier (m/s).
     pressed: [f64; 2],
     /// True if the wall has been removed.
     gone: bool,
@@ -67,7 +69,7 @@ impl WallMemory {
     }
 }
 
-/// Wall as seen from a grain.
+/// View from a grain to the nearest point of a wall: direction, distance, and velocity of the point.
 pub(crate) struct WallView {
     /// Unit vector from the grain to the wall.
     pub(crate) normal: Vector3<f64>,
@@ -78,8 +80,8 @@ pub(crate) struct WallView {
 }
 
 impl MovingWall {
-    /// Creates the wall at its initial position. With `mid_step`, velocities are means over a step, otherwise those at
-    /// its end.
+    /// Creates the wall at its initial position. With `mid_step`, velocities of wall points are means over a step,
+    /// otherwise velocities at the end of the step.
     pub(crate) fn new(wall: &Wall, mid_step: bool) -> Self {
         let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
@@ -110,7 +112,7 @@ impl MovingWall {
         self.velocity
     }
 
-    /// Returns the mesh; `None` for other walls.
+    /// Returns the mesh; `None` if the wall is not a mesh.
     pub(crate) fn mesh(&self) -> Option<&Mesh> {
         if let WallShape::Mesh(mesh) = &self.shape { Some(mesh) } else { None }
     }
@@ -159,29 +161,29 @@ impl MovingWall {
         self.gone
     }
 
-    /// Removes the wall if its time (s) has come. Returns true if it is removed now.
+    /// Removes the wall if `time` (s) has reached its removal time. Returns true if this call removes it.
     pub(crate) fn take_away(&mut self, time: f64) -> bool {
         let now = !self.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
         self.gone |= now;
         now
     }
 
-    /// Returns the piston, the acceleration along the normal due to piston and grains (m/s²), and the normal; `None`
-    /// without a piston.
+    /// Returns the data of a piston: its parameters, its acceleration along the normal due to the piston force and the
+    /// grains (m/s²), and its normal. Returns `None` for a wall without piston.
     fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
         let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, &self.shape) else { return None };
         Some((piston, (piston.force + self.force.dot(normal)) / piston.mass, *normal))
     }
 
-    /// Sets the speed of a pressed wall at rest to its value half a step before the start.
+    /// Sets the speed of a piston to its value half a step before the start. A piston is at rest at the start.
     pub(crate) fn step_back_half(&mut self, time_step: f64) {
         if let Some((_, acceleration, _)) = self.pressure() {
             self.pressed[1] = -0.5 * acceleration * time_step;
         }
     }
 
-    /// Moves the wall to its position at `time`, one step after the last call. A pressed wall moves by the force that
-    /// the grains exerted on it at that call, like a grain.
+    /// Moves the wall to its position at `time` (s), over one step. The motion of a piston is integrated like that of a
+    /// grain, with the force of the grains in the last force evaluation.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let motion = &self.wall.motion;
         let pressure = self.pressure();
@@ -209,7 +211,8 @@ impl MovingWall {
         self.shape = self.wall.shape.moved(motion, &displacement);
     }
 
-    /// Returns an upper bound of the displacement (m) since the list was built, for parts within `extent` (m) of the centre.
+    /// Returns an upper bound of the displacement since the neighbour list was built (m), for points within `extent` (m)
+    /// of the centre of rotation.
     pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
         let translation = (self.displacement.translation - self.at_list.translation).norm();
         translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent
@@ -221,8 +224,8 @@ impl MovingWall {
         self.near.clear();
     }
 
-    /// Lists the triangles near each grain, if the wall is a mesh. `ids` are the ids of the grains in the previous
-    /// order of slots. Returns false for other walls.
+    /// Lists the triangles near each grain, and moves the contacts of the last force evaluation to the new slots of their
+    /// grains. `ids` holds the id of the grain in each old slot. Returns false if the wall is not a mesh.
     pub(crate) fn list_triangles<S: Geometry>(&mut self, grains: &Grains<S>, ids: &[u32], skin: f64) -> bool {
         if self.mesh().is_none() {
             return false;
@@ -247,8 +250,8 @@ impl MovingWall {
         true
     }
 
-    /// Returns the slot of each nearby grain and its distance from the wall (m). For a mesh, these are the contacts of
-    /// the last evaluation.
+    /// Returns the slot of each nearby grain and its distance from the wall (m). For a mesh, it returns the grains in
+    /// contact in the last force evaluation.
     pub(crate) fn distances<S: Geometry>(&self, grains: &Grains<S>) -> impl Iterator<Item = (usize, f64)> {
         let near = self.near.iter().map(|&(slot, _)| {
             let slot = slot as usize;
@@ -268,7 +271,7 @@ impl MovingWall {
         (point - self.centre).norm()
     }
 
-    /// Returns the wall as seen from a grain at `at`.
+    /// Returns direction, distance and velocity of the point of the wall nearest to a grain whose centre is at `at` (m).
     #[inline(always)]
     pub(crate) fn facing(&self, at: Vector3<f64>) -> WallView {
         let (nearest, normal, distance) = match &self.shape {
@@ -284,7 +287,8 @@ impl MovingWall {
         WallView { normal, distance, velocity: self.velocity_at(nearest) }
     }
 
-    /// Returns the mesh part of a contact as seen from a grain at `at`.
+    /// Returns direction, distance and velocity of the contact point `touched` on a mesh, for a grain whose centre is at
+    /// `at` (m).
     pub(crate) fn facing_part(&self, mesh: &Mesh, at: Vector3<f64>, touched: &SphereContact) -> WallView {
         let normal = mesh.turn * touched.direction;
         WallView { normal, distance: touched.distance, velocity: self.velocity_at(at + normal * touched.distance) }
@@ -307,9 +311,9 @@ impl MovingWall {
     }
 }
 
-/// Returns the factors of the mean velocity over a step Δt (s) in which a wall rotates by θ (rad): c₁ = sin θ/θ and
-/// c₂ = Δt (1 − cos θ)/θ². They follow from (r − r₀)/Δt, where r₀ = r − sin θ n×r + (1 − cos θ) n×(n×r) is r rotated
-/// back by θ about n.
+/// Returns the factors c₁ = sin θ/θ and c₂ = Δt (1 − cos θ)/θ² (s) of the mean velocity of a wall point. θ (rad) is the
+/// angle by which the wall rotates in a step Δt (s). The mean velocity is (r − r₀)/Δt. The vector r₀ = r − sin θ n×r + (1
+/// − cos θ) n×(n×r) is r rotated back by θ about n. Without `mid_step`, c₁ = 1 and c₂ = 0.
 fn swing(angle: f64, time_step: f64, mid_step: bool) -> [f64; 2] {
     if !mid_step || angle == 0.0 {
         return [1.0, 0.0];

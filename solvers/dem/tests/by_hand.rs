@@ -1,5 +1,6 @@
-//! Forces, moments and energies computed by hand. Most grains are so heavy that forces do not move them. The response
-//! of a contact to a prescribed motion is then exact to rounding, including the effect of the time step.
+//! Comparison of forces, moments and energies with values computed by hand. Most grains are so heavy that forces do not
+//! move them. The response of a contact to a prescribed motion is then exact to rounding, including the effect of the
+//! time step.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -15,12 +16,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use support::{column, last, run, run_at};
 
-/// Ten significant digits. Sums over some thousand steps lose at most three of sixteen digits, and differences of
-/// lengths with an overlap of a tenth lose one.
+/// Relative tolerance. A number has sixteen significant digits. Sums over some thousand steps lose at most three digits.
+/// The difference of two lengths that are ten times as large as the resulting overlap loses one digit.
 const ROUNDING: f64 = 1e-10;
 
-/// Material 1e17 times as dense as water, with stiff springs (N/m) and a dashpot (s). Its friction holds any shear
-/// force.
+/// Material 10¹⁷ times as dense as water, with springs of 1e6 N/m (normal) and 5e5 N/m (tangential) and
+/// stiffness-proportional damping of 0.02 s. The coefficient of friction is so large that contacts do not slip.
 const HEAVY: &str = "materials.h.density = 1.0e20\n\
     contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3, \
     stiffness_damping = 0.02 }\n";
@@ -41,14 +42,15 @@ fn closely(found: Vector3<f64>, expected: Vector3<f64>) {
     assert!((found - expected).norm() <= ROUNDING * expected.norm(), "{found:?} for {expected:?}");
 }
 
-/// A displaced spring rotates by a quarter turn with its contact: a wall rotates about the centre of a sphere that
-/// rotates without slip. F_s keeps its length and stays perpendicular to the normal.
+/// A displaced tangential spring rotates by a quarter turn with its contact. A wall rotates about the centre of a
+/// sphere, and the sphere rotates so that it does not slip. The tangential force F_s keeps its length and stays
+/// perpendicular to the normal.
 ///
 /// The wall is d = .45 m from the centre, and the radius R is .5 m. The surfaces move together if the sphere rotates at
-/// d/R = .9 of the wall's rate. An additional .1 rad/s during .01 s displaces the spring by s = .1 · .45 · .01 m, less
-/// the fraction (3/24) (ω Δt)² by which a chord is shorter than its arc. A spring that rotates keeps this displacement.
-/// If the normal part is removed in each of N steps, a fraction cos^N(π/2N) remains: 1 − π²/(8N), and more for
-/// displacement that was added later.
+/// d/R = .9 of the wall's rate. An additional .1 rad/s of the wall during .01 s displaces the spring by s = .1 · .45 ·
+/// .01 m, less the fraction (3/24) (ω Δt)² by which a chord is shorter than its arc. A spring that rotates keeps this
+/// displacement. If each of N steps removes the normal part instead, a fraction cos^N(π/2N) ≈ 1 − π²/(8N) remains, and
+/// more of the displacement that was added later.
 #[test]
 fn a_stretched_spring_swings_with_its_contact() {
     let steps = 1000;
@@ -66,8 +68,8 @@ fn a_stretched_spring_swings_with_its_contact() {
     for convention in [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS] {
         let record = run_at(&text, convention, &Resolution::TimeStep(1e-3));
         let contact = end(&record).told_contacts()[0];
-        // The normal points from the sphere to the wall: −y at the start, +x after the quarter turn. The wall first
-        // moved along +x and drags the sphere with it; this direction has become +y.
+        // The normal points from the sphere to the wall: along −y at the start, along +x after the quarter turn. The
+        // wall first moved along +x and drags the sphere with it. After the quarter turn, this direction is +y.
         assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{convention}: {:?}", contact.normal);
         let force = 5.0e5 * 0.1 * 0.45 * 0.01;
         assert!(contact.shear_force.dot(&contact.normal).abs() < ROUNDING * force, "{:?}", contact.shear_force);
@@ -77,8 +79,9 @@ fn a_stretched_spring_swings_with_its_contact() {
     }
 }
 
-/// A paddle rotates about its end and is in contact with a disc at rest: F_n = k δ + β k v with v = ω l, where l is the
-/// distance along the paddle from its end to the disc. If it rotates away from the disc, its dashpot pulls.
+/// A paddle rotates about its end and is in contact with a disc at rest. The force is F_n = k δ + β k v with v = ω l,
+/// where l is the distance along the paddle from its end to the contact point. If the paddle rotates away from the
+/// disc, its dashpot pulls.
 #[test]
 fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
     for spin in [0.5, -0.5] {
@@ -95,11 +98,12 @@ fn a_paddle_feels_its_dashpot_by_its_velocity_where_it_touches() {
     }
 }
 
-/// A distant paddle comes into contact although nothing else moves. The neighbours of the paddle must be updated when
-/// it may have rotated far enough, for a grain at .05 m or at 3 m from the axis of rotation.
+/// A distant paddle rotates until it touches a disc at rest. The neighbour list must be rebuilt before the paddle can
+/// reach the disc, for discs at 0.05 m and at 3 m from the axis of rotation.
 ///
-/// Either the near end P of the paddle passes the disc at an angle of .3 rad before the end of its rotation, or its
-/// side does: F_n = k δ + β k u·n with n from the nearest point P to the disc and its velocity u = ω e_z × P.
+/// In the first case, the near end of the paddle touches the disc, in the other cases its side. The force is F_n = k δ +
+/// β k u·n. Here n is the unit vector from the nearest point P of the paddle to the disc, and u = ω e_z × P is the
+/// velocity of P.
 #[test]
 fn a_paddle_that_comes_from_afar_is_felt() {
     for (grain, ends, angle) in
@@ -130,9 +134,10 @@ fn a_paddle_that_comes_from_afar_is_felt() {
     }
 }
 
-/// A turntable rotates at .3 rad/s under a sphere at rest, 1 m from its axis, where it moves by ω × r = .3 m/s along y.
-/// It drags the sphere along +y by the dashpot β k_s ω r and the spring k_s ω r n Δt, and receives the opposite force.
-/// The spring rotates with the mean spin of both bodies, ω/2: a displacement of j steps ago has rotated by j ω Δt/2.
+/// A turntable rotates at .3 rad/s under a sphere at rest, 1 m from the axis, where the turntable moves by ω × r = .3
+/// m/s along y. In n steps, it drags the sphere along +y by the dashpot force β k_s ω r and the spring force k_s ω r n
+/// Δt. The opposite force acts on the turntable. The spring rotates with the mean spin of both bodies, ω/2: a
+/// displacement of j steps ago has rotated by j ω Δt/2.
 #[test]
 fn a_turntable_drags_by_its_velocity_where_it_touches() {
     let record = heavy(
@@ -148,12 +153,12 @@ fn a_turntable_drags_by_its_velocity_where_it_touches() {
     let expected = Vector3::new(-drag * back * 1e-4, drag * (0.02 + along * 1e-4), 1.0e6 * 0.005);
     closely(end(&record).grains[0].force.unwrap(), expected);
     closely(end(&record).walls[0].force.unwrap(), -expected);
-    // R e × F_s with e = −z, R = .1 m: the torque starts a rotation of the sphere about +x.
+    // The torque is R e × F_s with e = −z and R = .1 m. It starts a rotation of the sphere about +x.
     closely(end(&record).grains[0].torque.unwrap(), Vector3::new(0.1 * expected.y, -0.1 * expected.x, 0.0));
 }
 
-/// A belt under a fixed disc displaces the spring by V t: F_s = k_s V (β + t). The test resolves a belt that is a
-/// hundredth faster.
+/// A belt with velocity V under a disc at rest displaces the tangential spring by V t: F_s = k_s V (β + t). The test
+/// distinguishes a belt that is faster by a hundredth.
 #[test]
 fn a_belt_stretches_its_spring_by_its_way() {
     let force = |speed: f64| {
@@ -173,9 +178,9 @@ fn a_belt_stretches_its_spring_by_its_way() {
     close(force(1.01 * 0.25), 1.01 * expected);
 }
 
-/// Newton's law for a rolling grain, from snapshots alone. Between two snapshots, v and ω change by the mean of the
-/// forces and moments: m (v' − v) = ½ (F + F') Δt + m g Δt and I (ω' − ω) = ½ (M + M') Δt. This is exact if velocities
-/// are half a step apart from positions. At the contact with a plane below, M = R F_x about z.
+/// Snapshots of a rolling grain satisfy Newton's law. Between two snapshots, v and ω change by the mean of the forces
+/// and moments: m (v' − v) = ½ (F + F') Δt + m g Δt and I (ω' − ω) = ½ (M + M') Δt. This is exact if velocities are
+/// half a step apart from positions. At the contact with a plane below, M = R F_x about z.
 #[test]
 fn grains_turn_by_the_moments_that_snapshots_show() {
     // Discs have I = ½ m R² and m = π R² ρ, spheres I = ⅖ m R² and m = 4/3 π R³ ρ, with R = .1 m and ρ = 1000 kg/m³.
@@ -221,8 +226,9 @@ fn grains_turn_by_the_moments_that_snapshots_show() {
     }
 }
 
-/// The energy ½ I ω² of a freely spinning grain, in the system energies and in the budget. A disc of .1 m and 1000
-/// kg/m³ at 3 rad/s has ½ · .15708 · 9 = .70686 J; a sphere at (1, −2, 2) rad/s has ½ · .0167552 · 9 = .0753982 J.
+/// A freely spinning grain has the energy ½ I ω² in the system energies and in the budget. A disc of .1 m and 1000
+/// kg/m³ at 3 rad/s has ½ · .15708 · 9 = .70686 J. A sphere of the same radius and density at (1, −2, 2) rad/s has ½ ·
+/// .0167552 · 9 = .0753982 J.
 #[test]
 fn spinning_grains_have_their_energy() {
     for (dimension, position, spin, energy) in [
@@ -243,8 +249,8 @@ fn spinning_grains_have_their_energy() {
     }
 }
 
-/// Global damping reduces a spin by the same factor as a velocity, (1 − αΔt/2)/(1 + αΔt/2) in each step. This holds
-/// with friction, when torques change the spins, and without friction.
+/// Global damping reduces a spin by the same factor as a velocity, (1 − αΔt/2)/(1 + αΔt/2) in each step. In a scene with
+/// friction, the spins are integrated. In a scene without friction, they are computed from the number of steps.
 #[test]
 fn spins_are_damped_as_velocities_are() {
     for (dimension, vector, spin, omega) in
@@ -260,7 +266,7 @@ fn spins_are_damped_as_velocities_are() {
             );
             let record = run_at(&text, Convention::DEFAULT, &Resolution::TimeStep(0.01));
             let expected = 3.0 * (0.99_f64 / 1.01).powi(40);
-            // The reported value is the mean of two half steps, with a relative error of (αΔt/2)².
+            // The reported value is the mean of the values half a step before and after, with a relative error of (αΔt/2)².
             for column in ["g.vx", omega] {
                 assert!((last(&record, column) / expected - 1.0).abs() < 1.1e-4, "{dimension}, {column}");
             }
@@ -268,8 +274,8 @@ fn spins_are_damped_as_velocities_are() {
     }
 }
 
-/// At the ends of a segment and the edges and corners of a rectangle, the force acts from the nearest point to the
-/// centre of the grain. It is (3, 4)/5 of k δ, and (2, 3, 6)/7 of k δ, with δ = .01 m.
+/// At the ends of a segment and at the edges and corners of a rectangle, the force acts along the line from the nearest
+/// point to the centre of the grain. With δ = .01 m, it is k δ (3, 4)/5 or k δ (2, 3, 6)/7.
 #[test]
 fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     let force = |dimension: u8, wall: &str, position: &str, radius: f64| {
@@ -289,9 +295,9 @@ fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     closely(force(3, rectangle, "[0.4, 2.3, -0.4]", 0.51), Vector3::new(0.0, 6e3, -8e3));
 }
 
-/// The three dashpots of a linear contact add up, F_n = k δ + (β k + γ m* + 2ζ √(k m*)) δ̇, between grains and at a
-/// wall. For discs of .1 m with 1000 and 3000 kg/m³, m* = 7.5 π kg; at a wall, m* = 10 π kg. For e = .5, ζ = ln 2/√(π²
-/// + ln² 2).
+/// The three dashpots of a linear contact add up, between grains and at a wall: F_n = k δ + (β k + γ m* + 2ζ √(k m*))
+/// δ̇. For discs of .1 m with 1000 and 3000 kg/m³, m* = 7.5 π kg; at a wall, m* = 10 π kg. For e = .5, ζ = ln 2/√(π² +
+/// ln² 2).
 #[test]
 fn dashpots_add_up() {
     let ratio = 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt();
@@ -312,16 +318,16 @@ fn dashpots_add_up() {
         let (force, step) = (column(&record, "c.normal_force"), record.provenance.time_step);
         let dashpot = 1.0e-4 * 1.0e6 + 30.0 * mass + 2.0 * ratio * (1.0e6 * mass).sqrt();
         let expected = 1.0e6 * overlap[2] + dashpot * (overlap[2] - overlap[1]) / step;
-        // The rate is the difference of two overlaps of 1 mm, which differ by about 1e-4 m per step; this loses five
-        // digits.
+        // The overlap rate is the difference of two overlaps of 1 mm, which differ by about 1e-4 m per step. This
+        // difference loses five digits.
         assert!((force[2] / expected - 1.0).abs() < 1e-9, "{} for {expected}", force[2]);
     }
 }
 
-/// Rolling resistance between two discs with opposite spins, so that their surfaces do not slip. The moment is k_r θ +
-/// 2η √(I k_r) Ω with k_r = 2.25 k μ² R_eff², R_eff = R/2, and the angle θ of one disc relative to the other. I is the
-/// moment of inertia of both discs about the contact: 3/2 m R² of each disc, half as much for two equal discs. The
-/// spring energy is ½ k_r θ².
+/// Rolling resistance between two discs with opposite spins, whose surfaces do not slip. The moment is k_r θ + 2η √(I
+/// k_r) Ω with k_r = 2.25 k μ² R_eff², R_eff = R/2, and the rolling angle θ and angular velocity Ω of one disc relative
+/// to the other. Each disc has the moment of inertia 3/2 m R² about the contact; I is half of that for two equal discs.
+/// The spring energy is ½ k_r θ².
 #[test]
 fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
     // Spins of .5 and −.5 rad/s, R = .1 m, δ = 1 mm, μ = .1: the spring yields at k_r θ = μ R_eff k δ = 5 N m.
@@ -348,10 +354,10 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
     }
 }
 
-/// A sphere and the turntable below it rotate about their common normal at Ω = 200 rad/s. The sphere rolls at ω = 1
-/// rad/s about a fixed axis. In each step the rolling angle grows by ω Δt along x and rotates with the contact. Its
-/// part from j steps ago has rotated by jφ, with tan φ/2 = Ω Δt/2 for one step. The moment is M = −k_r θ with k_r =
-/// 2.25 k μ_r² R². Friction adds the torque R e × F.
+/// A sphere and the turntable below it rotate about their common normal at Ω = 200 rad/s. The sphere also rolls at ω =
+/// 1 rad/s about a fixed axis along x. In each step, the rolling angle grows by ω Δt along x and rotates with the
+/// contact. The part that was added j steps ago has rotated by jφ, with tan φ/2 = Ω Δt/2 for one step. The moment is M
+/// = −k_r θ with k_r = 2.25 k μ_r² R². Friction adds the torque R e × F.
 #[test]
 fn a_rolling_spring_turns_with_its_contact() {
     let text = "materials.h.density = 1.0e20\n\
@@ -374,9 +380,9 @@ fn a_rolling_spring_turns_with_its_contact() {
     );
 }
 
-/// A spinning disc approaches a floor. The rolling moment has yielded at μ_r R F_n, with F_n as in the Coulomb limit of
-/// the convention. In the convention of 1979 it is the force of the spring, k δ. By default it is the force of spring
-/// and dashpot, k δ + β k v.
+/// A spinning disc approaches a floor. The rolling spring yields at the moment μ_r R F_n, with F_n as in the Coulomb
+/// limit of the convention. In the convention of 1979, F_n is the spring force k δ. By default, it is the force of
+/// spring and dashpot, k δ + β k v.
 #[test]
 fn a_rolling_spring_yields_at_the_normal_force_of_the_convention() {
     for (convention, dashpot) in [(Convention::CUNDALL_STRACK, 0.0), (Convention::DEFAULT, 1.0)] {
@@ -393,9 +399,9 @@ fn a_rolling_spring_yields_at_the_normal_force_of_the_convention() {
     }
 }
 
-/// The largest stable step of a spring with a dashpot that uses the velocity of half a step before is 2/ω (√(1 + ζ²) −
-/// ζ). For two discs of m = 10 π kg (m* = 5 π kg) with k = 1e6 N/m, ω = √(k/m*) = 252.313 /s. With e = .5, ζ = .215454,
-/// and the step is 6.4007 ms. Without the dashpot it is 2/ω = 7.9266 ms. At a wall, m* = m, and both steps are longer.
+/// A dashpot that uses the velocity half a step earlier reduces the largest stable step to 2/ω (√(1 + ζ²) − ζ). For two
+/// discs of m = 10 π kg (m* = 5 π kg) with k = 1e6 N/m, ω = √(k/m*) = 252.313 /s. With e = .5, ζ = .215454, and the step
+/// is 6.4007 ms. Without the dashpot, it is 2/ω = 7.9266 ms. At a wall, m* = m, and both steps are longer.
 #[test]
 fn a_dashpot_shortens_the_stable_step() {
     let step = |partner: &str| {
@@ -419,8 +425,9 @@ fn a_dashpot_shortens_the_stable_step() {
     }
 }
 
-/// A frictional disc slides over the seam of two segments as over one segment: one contact, and the spring goes on.
-/// Counted twice at the seam, the normal force would double; without its spring, the shear force would begin at zero.
+/// A disc with friction moves over the joint of two segments as over one segment. At the joint it has one contact, and
+/// its tangential spring continues. With two contacts, the normal force would double. With a new spring, the shear
+/// force would start again at zero.
 #[test]
 fn a_joint_of_two_segments_is_one_wall() {
     let text = |walls: &str| {
@@ -449,9 +456,10 @@ fn a_joint_of_two_segments_is_one_wall() {
     }
 }
 
-/// A small sphere hits one with ten times its radius from each side of the axes: v′ = v (m − M)/(m + M), M/m = 1000. Other
-/// small spheres move the cells of the search, so that the large sphere reaches beyond the cells within its own radius. A
-/// contact that is found late begins with an overlap, whose energy is many times the initial one.
+/// A small sphere (mass m, velocity v) hits a large sphere with ten times its radius (mass M = 1000 m), along each axis
+/// and from both sides. It rebounds with v′ = v (m − M)/(m + M). Other small spheres shift the cells of the search
+/// grid, so that the large sphere reaches beyond the cells within its own radius. A contact that is found late begins
+/// with an overlap whose energy is many times the initial energy.
 #[test]
 fn a_large_grain_finds_small_ones_at_its_poles() {
     for axis in 0..3 {
@@ -468,14 +476,15 @@ fn a_large_grain_finds_small_ones_at_its_poles() {
                 text += &format!("[grains.n{other}]\nmaterial = 'm'\nradius = 0.1\nposition = [{at}, -3.0, -3.0]\n");
             }
             let found = side * last(&run(&text), ["small.vx", "small.vy", "small.vz"][axis]);
-            // The contact begins and ends within a step, with an overlap up to v Δt: twice (ω Δt)² of the energy, ω Δt = .04.
+            // The contact begins and ends between two evaluations, with overlaps of up to v Δt. The start and the end
+            // each change the energy by up to (ω Δt)² of its value, with ω Δt = .04.
             assert!((found / (0.5 * 999.0 / 1001.0) - 1.0).abs() < 3.2e-3, "axis {axis}, side {side}: {found} m/s");
         }
     }
 }
 
-/// A disc at the ridge of two segments, at the end of a segment below a plane, and at the common edge of two rectangles
-/// has one contact. A disc in a valley has two.
+/// One contact: a disc at the ridge of two segments, a disc on a plane above the end of a segment, and a sphere at the
+/// common edge of two rectangles. Two contacts: a disc in a valley and a disc above a gap.
 #[test]
 fn joined_edges_have_one_contact() {
     let force = |text: &str, dimension: u32| {
@@ -508,13 +517,14 @@ fn joined_edges_have_one_contact() {
     assert_eq!(force(&(sphere + &plate("left", -1.0) + &plate("right", 0.0)), 3), 1.0);
 }
 
-/// Two discs that stick together rotate as one body and keep an unloaded spring: surfaces rotate along arcs and centres
-/// move along chords. With the arc for the chord, the slip is θ²/24 of the arc in each step.
+/// Two grains that stick together rotate as one body, by θ in a step. Their tangential spring must stay unloaded. Surface
+/// points move along arcs and centres along chords, which are shorter. If surface velocities were not multiplied by
+/// chord/arc = 1 − θ²/24, each step would add a slip of θ²/24 of the arc.
 #[test]
 fn rigid_rotation_causes_no_slip() {
     let (rate, step, distance) = (10.0, 1e-2, 1.0 - 1e-8);
     let chord = 2.0 * (0.5_f64 * rate * step).sin() / step;
-    // The velocity belongs to half a step before the first position; heavy discs keep it for one step.
+    // The velocity is that of the middle of the first step, along the chord. Heavy grains keep it for one step.
     let angle = 0.5 * rate * step;
     let velocity = [0.5 * distance * chord * angle.sin(), -0.5 * distance * chord * angle.cos()];
     for dimension in [2, 3] {

@@ -15,7 +15,7 @@ fn every_convention_conforms() {
     }
 }
 
-/// Runs of 10⁵ steps with bouncing grains, if `GRAINBENCH_LONG=1` is set.
+/// Runs of 10⁵ steps with bouncing grains gain no energy. They are made only if `GRAINBENCH_LONG=1` is set.
 #[test]
 fn nothing_gains_energy_in_the_long_run() {
     if std::env::var_os("GRAINBENCH_LONG").is_none_or(|value| value != "1") {

@@ -1,4 +1,5 @@
-//! Grains whose motion is prescribed for a part of the run: free before and after, with infinite mass in between.
+//! Grains whose motion is prescribed for a part of the run. During this part they have infinite mass. Before and after
+//! this part they move freely.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -11,9 +12,11 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use support::{MATERIAL, column, last, run, run_at};
 
-/// Gravity (m/s²), upward velocity of the prescribed motion (m/s), and its start and end (s).
+/// Gravity (m/s²).
 const GRAVITY: f64 = 10.0;
+/// Upward velocity of the prescribed motion (m/s).
 const SPEED: f64 = 0.5;
+/// Start and end of the prescribed motion (s).
 const SPAN: [f64; 2] = [0.2, 0.5];
 
 fn thrown(driven: &str, time_step: f64) -> Record {
@@ -25,9 +28,9 @@ fn thrown(driven: &str, time_step: f64) -> Record {
     run_at(&text, Convention::CUNDALL_STRACK, &Resolution::TimeStep(time_step))
 }
 
-/// y = −g t²/2 before the prescribed motion, then a straight line, then free flight with the prescribed velocity. The
-/// result is exact to rounding, because central differences are exact for constant forces. The initial horizontal
-/// velocity lasts until the prescribed motion starts.
+/// The disc falls by g t²/2 before the prescribed motion, then moves along a straight line, and then flies freely,
+/// starting with the prescribed velocity. The result is exact to rounding, because central differences are exact for
+/// constant forces. The initial horizontal velocity lasts until the prescribed motion starts.
 #[test]
 fn a_disc_falls_is_lifted_and_falls_again() {
     let driven =
@@ -44,20 +47,20 @@ fn a_disc_falls_is_lifted_and_falls_again() {
     for (at, time) in record.series.time.iter().enumerate() {
         let (y, vy) = (column(&record, "g.y")[at], column(&record, "g.vy")[at]);
         assert!((y - exact(*time)).abs() < 1e-12, "{time}: {y} for {}", exact(*time));
-        // In the step in which the prescribed motion starts, the grain has both velocities.
+        // The velocity jumps when the prescribed motion starts, so it is not compared there.
         assert!((time - start).abs() < 1e-6 || (vy - velocity(*time)).abs() < 1e-11, "{time}: {vy}");
         let x = 0.3 * time.min(start);
         assert!((column(&record, "g.x")[at] - x).abs() < 1e-12);
     }
-    // A disc with prescribed motion during the whole run, or without it, does not follow this solution.
+    // A disc whose motion is always prescribed, or never, does not follow this solution.
     let always = thrown(&format!("[driven.d]\ngrains = 'g'\nvelocity = [0.0, {SPEED}]"), 1e-3);
     assert!(
         (last(&always, "g.y") - exact(0.8)).abs() > 0.1 && (last(&thrown("", 1e-3), "g.y") - exact(0.8)).abs() > 0.1
     );
 }
 
-/// During its prescribed motion, a disc acts on the dashpot of a contact like a wall; before and after, it has its own
-/// mass.
+/// While its motion is prescribed, a disc acts on the dashpot of a contact like a wall of infinite mass. Before and
+/// after, it acts with its own mass.
 #[test]
 fn a_disc_has_its_mass_before_and_after() {
     let rebound = |span: &str| {
@@ -71,8 +74,8 @@ fn a_disc_has_its_mass_before_and_after() {
         let record = run(&text);
         [last(&record, "free.vx"), last(&record, "held.vx")]
     };
-    // The contact lasts from .1 s to .13 s. Against a wall, the velocity becomes −.5 m/s; between equal discs, (1 ∓
-    // .5)/2 m/s.
+    // The contact lasts from .1 s to .13 s. With e = .5 and an initial velocity of 1 m/s, a disc rebounds from a wall
+    // with −.5 m/s. After a contact between equal discs, the velocities are (1 ∓ .5)/2 m/s.
     for held in ["start = 0.05", "stop = 0.3", "start = 0.05\nstop = 0.3", ""] {
         let [free, other] = rebound(held);
         assert!((free + 0.5).abs() < 5e-3 && other == 0.0, "{held}: {free}, {other}");
@@ -84,7 +87,7 @@ fn a_disc_has_its_mass_before_and_after() {
     }
 }
 
-/// Invalid times are rejected with the name of the key and the expected value.
+/// Invalid times are rejected with an error that names the key and the expected value.
 #[test]
 fn times_that_make_no_span_are_refused() {
     let refused = |span: &str, says: &str| {

@@ -1,4 +1,4 @@
-//! Number of compiled kernels, and check that each holds only the stages that its scene needs.
+//! Tests of the number of compiled kernels, and of their stages: each kernel has only the stages that its scene needs.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,14 +13,15 @@ use grainbench_scene::source::SceneSource;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Number of compiled kernels, in the plane and in space. There are four normal stages, each without friction (1), or
-/// with friction (4): with or without rolling resistance, for two transports of springs at rotating contacts.
+/// Number of compiled kernels, in two and three dimensions. There are four normal stages. Each is combined with no
+/// friction (1 kernel), or with friction (4 kernels): with or without rolling resistance, for two transports of springs
+/// at rotating contacts.
 ///
 /// A kernel consists of two loops: one over pairs, for each instruction set, and one over walls. A new effect or option
 /// that multiplies kernels changes this number.
 const KERNELS: usize = 2 * 4 * (1 + 4);
 
-/// Returns a contact law with every effect on, with Hertz's law instead of linear springs if requested.
+/// Returns a contact law with every effect, for Hertz contacts or for linear springs.
 fn law_with_everything(hertz: bool) -> ContactLaw {
     let law = ContactLaw {
         friction: 0.5,
@@ -40,7 +41,7 @@ fn law_with_everything(hertz: bool) -> ContactLaw {
     }
 }
 
-/// Returns two grains and a moving wall, with every effect on.
+/// Returns a scene of two grains and a moving wall with every effect, for Hertz contacts or for linear springs.
 fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
     let vector = |value: &str| vec![value; dimension].join(", ");
     let (high, gravity) = (vector("10.0"), vector("1.0"));
@@ -72,7 +73,7 @@ fn effects() -> impl Iterator<Item = Effect> {
     Effect::ALL.into_iter().filter(|effect| effect.concerns(Method::Dem))
 }
 
-/// Returns every combination of effects, in two and three dimensions, with linear springs and with Hertz contacts.
+/// Returns a scene for every combination of effects, in two and three dimensions, with linear springs and with Hertz contacts.
 fn scenes() -> Vec<Scene> {
     let switches: Vec<Effect> = effects().filter(|effect| *effect != Effect::Hertz).collect();
     let mut scenes = Vec::new();
@@ -88,7 +89,7 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Returns every combination of the options of a convention.
+/// Returns all combinations of two values of each option of a convention, except for the normal of velocities.
 fn conventions() -> Vec<Convention> {
     let mut conventions = vec![Convention::CUNDALL_STRACK];
     let mut vary = |options: [fn(&mut Convention); 2]| {
@@ -129,7 +130,7 @@ fn no_more_kernels_are_compiled_than_known() {
     assert_eq!(kernels.len(), KERNELS, "{}", listed.join("\n"));
 }
 
-/// The name of a kernel contains the stage of an effect exactly if the effect is present.
+/// The name of a kernel contains the stage of an effect if and only if the scene has this effect.
 #[test]
 fn a_kernel_has_no_stage_for_what_is_absent() {
     for scene in scenes() {

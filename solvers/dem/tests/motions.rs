@@ -12,7 +12,7 @@ use support::{column, last, run_at};
 
 const STEP: f64 = 1.0 / 1024.0;
 
-/// Runs a single disc with a prescribed motion.
+/// Runs a single disc with the prescribed motion `driven` and no contacts.
 fn carried(driven: &str) -> Record {
     let text = format!(
         "dimension = 2\nduration = 2.0\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n\
@@ -27,8 +27,9 @@ fn worst(record: &Record, name: &str, exact: impl Fn(f64) -> f64) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-/// Positions agree with the function to the rounding of a sum of 2048 steps. Velocities are means over the two adjacent
-/// steps; their error is (2πfΔt)²/6 of 2πfA.
+/// Positions agree with the sine (amplitude A, frequency f) to the rounding of a sum of 2048 steps. Each velocity is the
+/// mean of the velocities over the two adjacent steps. Its error is at most a fraction (2πfΔt)²/6 of the largest velocity
+/// 2πfA.
 #[test]
 fn a_grain_is_carried_by_a_sine() {
     let record = carried("motion = [{ sine = { amplitude = [0.3, 0.0], frequency = 1.5 } }]");
@@ -61,7 +62,7 @@ fn a_grain_is_carried_by_a_ramp_and_a_table_beside_its_velocity() {
     assert!(worst(&record, "g.x", exact) < 1e-13 && (last(&record, "g.y") - 0.2).abs() < 1e-13);
 }
 
-/// Runs a disc between a floor and a wall with a prescribed downward motion.
+/// Runs a disc between a fixed floor and a lid with the prescribed motion `motion`.
 fn pressed(motion: &str) -> Record {
     let text = format!(
         "dimension = 2\nduration = 0.5\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
@@ -84,19 +85,20 @@ fn a_table_that_samples_a_line_is_the_line_to_the_bit() {
     let table = "motion = [{ table = [[0.0, 0.0, 0.0], [0.25, 0.0625, -0.001953125], [1.0, 0.25, -0.0078125]] }]";
     assert_eq!(bits(&line), bits(&pressed(table)));
     assert!(last(&line, "lid.force_y") != 0.0);
-    // A table with a point off the line is another motion.
+    // A table with a point off the line gives different samples.
     assert_ne!(bits(&line), bits(&pressed(&table.replace("-0.001953125", "-0.002"))));
 }
 
 #[test]
 fn a_wall_by_a_sine_presses_as_its_place_says() {
     let record = pressed("motion = [{ sine = { amplitude = [0.0, -1e-4], frequency = 0.5 } }]");
-    // At a quarter period, the lid has moved by 1e-4 m and is at rest. The slow displacement is shared by the disc's
-    // two contacts.
+    // The run ends after a quarter period (.5 s). The lid has moved by 1e-4 m and is at rest. Each of the disc's two
+    // contacts takes half of this slow displacement.
     let (force, y) = (last(&record, "lid.force_y"), last(&record, "g.y"));
     let slow = pressed("motion = [{ velocity = [0.0, -2e-4], ramp = 0.0625 }]");
     assert!(force > 0.0 && (0.1 - y - 0.5e-4).abs() < 0.3e-4, "{force} {y}");
-    // v (t − T/2) with T = 1/16 s: .46875 s at 2e-4 m/s, which is .9375 of the displacement of the sine.
+    // After a ramp of T = 1/16 s, the displacement of the lid is v (t − T/2) = 2e-4 m/s · .46875 s, which is .9375 of
+    // the displacement of the sine. The disc moves by half of it.
     assert!((last(&slow, "g.y") - 0.1 + 0.46875e-4).abs() < 0.3e-4);
 }
 

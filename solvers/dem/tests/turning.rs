@@ -30,9 +30,9 @@ fn way_round(record: &Record) -> f64 {
     angles.windows(2).map(|pair| (pair[1] - pair[0] + TAU + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).sum()
 }
 
-/// Returns a sphere of m = ρ 4πR³/3 at rest on the wall of a drum that rotates at Ω = 10 rad/s. It orbits at Ω with the
-/// spin Ω. Its contact force is m Ω² (1.1 m − R + δ) = k_n δ, and there is no rolling against which rolling resistance
-/// acts.
+/// Returns the scene of a sphere of mass m = ρ 4πR³/3 that sticks to the wall of a drum of radius D = 1.1 m rotating at
+/// Ω = 10 rad/s. The sphere orbits at Ω with the spin Ω. Its contact force is m Ω² (D − R + δ) = k_n δ. It does not
+/// roll relative to the wall, so rolling resistance does not act.
 fn drum() -> String {
     let (mass, stiffness) = (2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3, 1.0e7);
     let place = 1.0 / (1.0 - mass * 100.0 / stiffness);
@@ -49,9 +49,9 @@ fn drum() -> String {
     )
 }
 
-/// Friction acts at the distance R from the centre, which is δ beyond the wall. Positions thus have a relative error of
-/// δ/R in the angle. Spins have an error of 2δ/R of Ω, because the rolling spring oscillates due to the initial error.
-/// Without the wall's spin in the rolling stage, the sphere would be ahead by a tenth.
+/// Friction acts at the distance R from the centre of the sphere, which is δ beyond the wall. The angle of the orbit thus
+/// has a relative error of δ/R. The spin has an error of 2δ/R of Ω, because the rolling spring oscillates due to the
+/// initial error. If the rolling stage ignores the wall's spin, as in LAMMPS, the angle is too large by more than 3 %.
 #[test]
 fn a_sphere_rides_on_the_wall_of_a_turning_drum() {
     let mass = 2500.0 * 4.0 / 3.0 * 0.5 * TAU * 1e-3;
@@ -63,14 +63,15 @@ fn a_sphere_rides_on_the_wall_of_a_turning_drum() {
         let spin = last(&record, "b.omega_z");
         assert!((spin / 10.0 - 1.0).abs() < 2.0 * off, "{spin}");
     }
-    // LAMMPS and LIGGGHTS use only the spin of the grain, so rolling resistance acts against its own rotation.
+    // LAMMPS and LIGGGHTS use only the spin of the grain, so rolling resistance acts against this spin.
     let lammps = Dem::new(Convention::LAMMPS);
     let record = lammps.run(&scene(&drum()), &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
     assert!(way_round(&record) / TAU - 1.0 > 0.03, "{}", way_round(&record));
 }
 
 /// A tray under a disc is tilted by .1 rad, less than the .2 rad that rolling resistance supports. Relative to the
-/// tray, the disc moves only by its springs, F/k < m g (.1)/k_t + (rolling angle M/k_r = m g R (.1)/k_r) R.
+/// tray, the disc moves only by the displacement of its springs, F/k_t + R M/k_r, with the force F < .1 m g and the
+/// moment M < .1 m g R.
 #[test]
 fn a_disc_stays_on_a_tray_that_is_tilted() {
     let text = "dimension = 2\ngravity = [0.0, -9.81]\nduration = 1.0\nmaterials.m.density = 2500.0\n\
@@ -85,14 +86,16 @@ fn a_disc_stays_on_a_tray_that_is_tilted() {
     let (mass, force) = (2500.0 * 0.5 * TAU * 0.01, 2500.0 * 0.5 * TAU * 0.01 * 9.81 * 0.1);
     let rolling = 2.25 * 1.0e7 * 0.2 * 0.2 * 0.01;
     let springs = force / 2_857_142.857 + force * 0.1 / rolling * 0.1;
-    // Twice the static displacement for the initial motion, and the centrifugal and Coriolis terms of .1 rad/s.
+    // The allowed displacement is twice the static displacement, because of the initial motion, plus the effect of the
+    // centrifugal and Coriolis forces of .1 rad/s.
     let allowed = 2.0 * springs + mass * 0.01 * 0.1 / 2_857_142.857;
     assert!(along.abs() < allowed, "{along:e} m along the tray, allowed {allowed:e}; R θ is .01 m");
 }
 
-/// A sphere clamped between two plates that rotate about their normal at Ω = 10 rad/s rotates with them and stays at r.
-/// The springs that hold it, 2 k_t s = m Ω² r, are displaced outwards and rotate with the plates. With springs that do
-/// not rotate about the normal, the sphere would lead by π m Ω²/k_t = .00314 rad per turn.
+/// A sphere is clamped between two plates that rotate about their normal at Ω = 10 rad/s. It rotates with the plates
+/// and stays at the distance r from the axis. The springs that hold it, 2 k_t s = m Ω² r, are displaced outwards and
+/// rotate with the plates. With springs that do not rotate about the normal, the sphere would lead by π m Ω²/k_t =
+/// .00314 rad per turn.
 #[test]
 fn a_clamped_sphere_rides_with_its_plates() {
     let radius = 0.045_707_814_973_408_33;
@@ -112,15 +115,16 @@ fn a_clamped_sphere_rides_with_its_plates() {
     let record = run(&text, 0.1);
     let lead = (way_round(&record) - 2.0 * TAU) / 2.0;
     let place = last(&record, "b.x").hypot(last(&record, "b.y"));
-    // m = 1 kg: the displacement is m Ω²/(2 k_t − m Ω²) of r, and twice that during the initial motion.
+    // With m = 1 kg, the displacement is m Ω²/(2 k_t − m Ω²) of r. During the initial motion, it reaches twice this value.
     let stretch = 100.0 / (2.0e5 - 100.0);
     assert!((place - 1.0 - stretch).abs() < stretch, "{place}");
-    // Each turn begins and ends with the oscillation of that start, which the Coriolis force deflects by 2 Ω times its
-    // velocity.
+    // The initial oscillation continues in every turn. The Coriolis acceleration, 2 Ω times the velocity of the
+    // oscillation, deflects it.
     assert!(lead.abs() < 0.05 * 0.5 * TAU * 100.0 / 1.0e5, "{lead:e} rad a turn");
 }
 
-/// Returns a scene of a Hertz contact with prescribed motion: times (s) and positions (m) of a ball on a floor.
+/// Returns the scene of a ball with prescribed motion in Hertz contact with a floor. `table` holds times (s) and
+/// displacements (m).
 fn driven(table: &str, duration: f64) -> String {
     format!(
         "dimension = 3\nduration = {duration}\nmaterials.glass = {{ density = 2500.0, young_modulus = 1.0e7, \
@@ -139,14 +143,15 @@ fn mindlin(overlap: f64) -> f64 {
     8.0 * (1.0e7 / 2.5) / (2.0 * 1.75) * (0.005 * overlap).sqrt()
 }
 
-/// A contact is sheared by 5 µm at δ = 50 µm, pressed to 100 µm, and released. The force stays at F = k_t(50 µm) s
-/// while it is pressed, and the closed cycle yields no work. Without slip, only the receding edge of the contact can
-/// release energy.
+/// A contact is sheared by s = 5 µm at δ = 50 µm, pressed to 100 µm, sheared back and released. The force stays at F =
+/// k_t(50 µm) s while the contact is pressed, and the closed cycle yields no work. Without slip, only the receding edge
+/// of the contact can release energy.
 #[test]
 fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
     let press = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -5.0e-5], [0.02, 5.0e-6, 0.0, -5.0e-5], \
                  [0.03, 5.0e-6, 0.0, -1.0e-4], [0.04, 0.0, 0.0, -1.0e-4], [0.05, 0.0, 0.0, 0.0]";
-    // Press, shear, reduce the load, reverse the shear: a force without rescaling would gain energy.
+    // The second cycle presses, shears, reduces the load and reverses the shear. A law that does not rescale the force
+    // would gain energy in it.
     let shear = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -1.0e-4], [0.02, 5.0e-6, 0.0, -1.0e-4], \
                  [0.03, 5.0e-6, 0.0, -5.0e-5], [0.04, 0.0, 0.0, -5.0e-5], [0.05, 0.0, 0.0, 0.0]";
     for (table, held) in [(press, mindlin(5.0e-5)), (shear, mindlin(5.0e-5))] {
@@ -198,7 +203,8 @@ fn hertz_and_mindlin_create_no_energy() {
             (most, total[total.len() - 1], off)
         };
         let [coarse, fine] = [0.1, 0.05].map(loss);
-        // An impact that begins and ends within a step scatters the energy by the square of ω Δt = 2 · fraction.
+        // An impact begins and ends between two evaluations. The energy therefore scatters by (ω Δt)², with ω Δt = 2 ·
+        // fraction.
         assert!(coarse.0 < 1.0 + 0.04 && fine.0 < 1.0 + 0.01, "μ = {friction}: {coarse:?}, {fine:?}");
         assert!(coarse.1 < 1.0 && fine.1 < 1.0, "μ = {friction}: {coarse:?}, {fine:?}");
         // The energy left in the tangential spring at the end of a contact is in no entry of the budget; it is zero
@@ -207,8 +213,8 @@ fn hertz_and_mindlin_create_no_energy() {
     }
 }
 
-/// A sphere grazes a wall with a tangential dashpot that alone exceeds the Coulomb limit. It slides throughout and
-/// loses μ (1 + e) v_n = 1 m/s of 4 m/s, for any dashpot. The spring never accelerates it.
+/// A sphere hits a wall obliquely. The tangential dashpot alone exceeds the Coulomb limit. The sphere slides throughout
+/// and loses μ (1 + e) v_n = 1 m/s of its 4 m/s, for any dashpot. The spring never accelerates it.
 #[test]
 fn an_overdamped_contact_slides_as_any_other() {
     for damping in [20_000.0, 5000.0, 0.0] {
@@ -228,9 +234,10 @@ fn an_overdamped_contact_slides_as_any_other() {
     }
 }
 
-/// An oblique impact with e = .6 that sticks. The contact lasts t_c = 2 acos ζ/(ω_n √(1 − ζ²)). During it, the
-/// tangential spring is an oscillator with ω_t² = 3 k_t/m: v_x = v_0 [1 − (1 − cos ω_t t_c)/3], with the spin 2 (v_0 −
-/// v_x)/R. The same damping gives e, and a sliding contact loses μ (1 + e) v_n.
+/// In an oblique impact with e = .6 that sticks, the contact lasts t_c = 2 acos ζ/(ω_n √(1 − ζ²)). During this time,
+/// the tangential spring is an oscillator with ω_t² = 3 k_t/m: v_x = v_0 [1 − (1 − cos ω_t t_c)/3], with the spin 2
+/// (v_0 − v_x)/R. The normal rebound velocity is e times the impact velocity. If the contact slides instead, the disc
+/// loses the velocity μ (1 + e) v_n.
 #[test]
 fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     let text = |friction: f64| {
@@ -257,11 +264,13 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
         assert!((spin.abs() - 2.0 * (0.5 - along) / 0.1).abs() < 1e-9, "{spin}");
         [along - expected, last(&record, "b.vy") - 0.6]
     });
-    // First-order accuracy in the step: the dashpot lags by half a step, and the contact begins within a step.
+    // The error is of first order in the step, because the dashpot lags by half a step and the contact begins between
+    // two evaluations.
     assert!(errors[0].iter().all(|error| error.abs() < 0.02), "{errors:?}");
     assert!(errors[1].iter().all(|error| error.abs() < 0.0025), "{errors:?}");
-    // At the start, the dashpot acts while the spring is not yet displaced, so friction is smaller. It reaches the
-    // limit μ (k v t + c v) at k_t v_t t, which reduces the loss by 2ζ²/(ρ − 1) of μ m v with ρ = k_t v_t/(μ k v).
+    // At the start, the normal dashpot acts while the tangential spring is not yet displaced, so friction is below its
+    // limit. The spring force k_t v_t t must first reach the limit μ (k v t + c v). This reduces the loss by 2ζ²/(ρ −
+    // 1) of μ m v with ρ = k_t v_t/(μ k v).
     let friction = 0.05;
     let steepness = 2_857_142.857 * 0.5 / (friction * 1.0e7);
     let record = run(&text(friction), 0.0025);
@@ -270,9 +279,9 @@ fn damped_impacts_stick_and_slide_as_their_closed_forms() {
     assert!((found - lost).abs() < 0.0025 * lost, "{found} for {lost}");
 }
 
-/// A ball rests on a driven ball, which counts as infinitely heavy. The run must end with an error above the critical
-/// time step of the lighter ball. With R* = R/2 and δ = R/25, the contact is √2 times as stiff as in the critical time
-/// step of the scene.
+/// A ball rests on a ball with prescribed motion, which counts as infinitely heavy. The run must end with an error if
+/// the time step exceeds the critical time step of the free ball. With R* = R/2 and δ = R/25, the contact is √2 times
+/// as stiff as in the critical time step of the scene.
 #[test]
 fn a_contact_is_as_stiff_as_its_lighter_grain_bears() {
     let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));
@@ -293,10 +302,10 @@ fn a_contact_is_as_stiff_as_its_lighter_grain_bears() {
     }
 }
 
-/// If a Hertz contact stiffens until its critical time step is below the time step, the run ends with a typed error.
-/// The error names the time, the grain and a suitable step. The run continues if unstable steps are allowed. The
-/// critical time step of a scene is that of an overlap of R/100; here a ball rests with R/50, where the contact is √2
-/// times as stiff.
+/// If a Hertz contact stiffens until its critical time step is below the time step, the run ends with the error
+/// `StiffContact`. The error names the time, the grain and a suitable step. The run continues if unstable steps are
+/// allowed. The critical time step of a scene is computed for an overlap of R/100. Here a ball rests with an overlap of
+/// R/50, where the contact is √2 times as stiff.
 #[test]
 fn a_contact_that_stiffens_beyond_the_step_is_refused() {
     let modulus = 1.0e7 / (2.0 * (1.0 - 0.09));

@@ -1,4 +1,4 @@
-//! Four lanes in 256-bit registers. The token exists only if the processor supports them.
+//! Backend with four lanes in 256-bit registers (AVX2). A value of its type `V3` exists only if the processor has AVX2.
 
 use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 use pulp::x86::V3;
@@ -104,7 +104,7 @@ impl Lanes for V3 {
     }
 }
 
-/// Returns the difference of two quads; the fourth number is the sum instead.
+/// Returns the difference `to` − `from` of two quads. The fourth number is the sum instead.
 #[inline(always)]
 fn less(lanes: V3, from: Quad, to: Quad) -> __m256d {
     let (from, to): (__m256d, __m256d) = (pulp::cast(from.0), pulp::cast(to.0));
@@ -149,7 +149,7 @@ impl FourLanes for V3 {
     }
 }
 
-/// For each bit pattern, the lanes whose bit is set come first.
+/// Lanes whose bit is set, in order, for each pattern of eight bits. The remaining entries are zero.
 static PLACES: [[u32; WIDEST]; 256] = {
     let mut all = [[0; WIDEST]; 256];
     let mut bits = 0;

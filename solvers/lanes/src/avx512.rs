@@ -1,4 +1,5 @@
-//! Eight lanes in 512-bit registers. The token exists only if the processor supports them.
+//! Backend with eight lanes in 512-bit registers (AVX-512). A value of its type `V4` exists only if the processor has
+//! AVX-512.
 
 use crate::{Lanes, Quad, WIDEST};
 use pulp::x86::V4;
@@ -21,13 +22,13 @@ fn split(register: __m512d) -> [Quad; 2] {
 /// Mask of the fourth numbers of two quads.
 const FOURTH: __mmask8 = 0b1000_1000;
 
-/// Sign bits of the first quad's numbers.
+/// Mask of the sign bits of the first of two quads, to change the signs of its numbers.
 const FIRST_OPPOSED: [u64; WIDEST] = [SIGN, SIGN, SIGN, SIGN, 0, 0, 0, 0];
-/// Sign bit of a number.
+/// Mask of the sign bit of a number.
 const SIGN: u64 = 1 << 63;
 
 /// Returns the quads of a table at eight indices, two per register: 0 and 2, 1 and 3, 4 and 6, 5 and 7. With this
-/// order, the last step of the transposition leaves them in sequence.
+/// order, the last step of the transposition puts the lanes in sequence.
 #[inline(always)]
 fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [__m512d; 4] {
     [
@@ -38,13 +39,13 @@ fn twos<const N: usize>(lanes: V4, table: &[[Quad; N]], number: usize, at: &[usi
     ]
 }
 
-/// Returns the differences of two pairs of quads; the fourth numbers are sums instead.
+/// Returns the differences `to` − `from` of two pairs of quads. The fourth numbers of the quads are sums instead.
 #[inline(always)]
 fn less(lanes: V4, from: __m512d, to: __m512d) -> __m512d {
     lanes.avx512f._mm512_mask_add_pd(lanes.avx512f._mm512_sub_pd(to, from), FOURTH, to, from)
 }
 
-/// Transposes the quads.
+/// Transposes eight quads to four registers.
 #[inline(always)]
 fn turned(lanes: V4, [a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
     let avx = lanes.avx512f;

@@ -1,12 +1,12 @@
 //! SIMD computation with identical results on all processors. Code is written once for a [`Number`]. Loops process
 //! points or contacts one by one, four by four or eight by eight, with vector instructions if the processor has them.
 //!
-//! Every operation acts on each lane separately and is rounded once, and sums over lanes have a fixed order. Results
-//! are thus equal bit for bit on all processors. For this reason, operations are not fused and loops are not reordered.
-//! The crate also has its own [`logarithm`], because the one of the system library depends on the processor.
+//! Every operation acts on each lane separately and is rounded once. Sums over lanes have a fixed order. Results are
+//! thus equal bit for bit on all processors. For this reason, operations are not fused and loops are not reordered. The
+//! crate has its own [`logarithm`], because results of the system library's logarithm depend on the processor.
 //!
-//! The threads of a run ([`Team`]) are here too: the distribution of work among threads does not affect the results
-//! either.
+//! The crate also provides the threads of a run ([`Team`]). The distribution of work among threads does not affect the
+//! results.
 //!
 //! All code that computes with lanes is inlined into the loop that is compiled for a processor. Closures may not be
 //! inlined, and then every operation would be a call. Closures are thus used only for lookups.
@@ -29,12 +29,12 @@ pub use team::{Team, take_off};
 
 use serde::{Deserialize, Serialize};
 
-/// Number of lanes of a register with four lanes.
+/// Number of lanes of a 256-bit register.
 pub const LANES: usize = 4;
-/// Number of lanes of the widest register.
+/// Number of lanes of the widest register (512 bits).
 pub const WIDEST: usize = 8;
 
-/// Four numbers that are loaded together.
+/// Four numbers that are loaded together into a 256-bit register.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[repr(align(32))]
 pub struct Quad(pub [f64; 4]);
@@ -61,16 +61,16 @@ pub trait Lanes: Copy + 'static {
     type Register: Copy;
     /// Mask with one flag per lane.
     type Mask: Copy;
-    /// Two quads together.
+    /// Pair of quads, one from each of two sets of four registers.
     type Pair: Copy;
     /// Numbers per register.
     const WIDTH: usize;
 
     /// Returns the same number in every lane.
     fn splat(self, value: f64) -> Self::Register;
-    /// Loads the first numbers of a row, one per lane.
+    /// Loads the first numbers of `from`, one per lane.
     fn load(self, from: &[f64; WIDEST]) -> Self::Register;
-    /// Stores the number of each lane at the start of a row.
+    /// Returns the number of each lane at the start of an array. The remaining entries are zero.
     fn store(self, register: Self::Register) -> [f64; WIDEST];
     /// Returns `a + b`.
     fn add(self, a: Self::Register, b: Self::Register) -> Self::Register;
@@ -88,11 +88,11 @@ pub trait Lanes: Copy + 'static {
     fn choose(self, mask: Self::Mask, yes: Self::Register, no: Self::Register) -> Self::Register;
     /// Returns the mask as bits, with the first lane as the lowest bit.
     fn bits(self, mask: Self::Mask) -> u32;
-    /// Gathers quad `number` of the table entries at the first indices of `at`, and transposes them: the first register
-    /// holds the first numbers of all quads, and so on.
+    /// Gathers quad `number` of the table entries at the first indices of `at`, and transposes these quads. The first
+    /// register holds the first number of every quad, the second register the second number, and so on.
     fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
-    /// Returns the differences between the quads at the first indices of `to` and at those of `from`, transposed as in
-    /// [`gather`](Self::gather). The fourth register holds sums instead.
+    /// Returns the differences `to` − `from` between quad `number` of the table entries at the first indices of `to` and
+    /// of `from`, transposed as in [`gather`](Self::gather). The fourth register holds sums instead of differences.
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],
@@ -100,20 +100,20 @@ pub trait Lanes: Copy + 'static {
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [Self::Register; 4];
-    /// Moves the integers whose bit is set to the front, in their order; the remaining entries are unspecified. The
-    /// first bit is the lowest.
+    /// Moves the integers whose bit is set to the front, in their order. The remaining entries are unspecified. The
+    /// lowest bit belongs to the first integer.
     fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST];
-    /// Reverses [`gather`](Self::gather): returns one quad per lane at the start of a row.
+    /// Reverses [`gather`](Self::gather): returns one quad per lane at the start of an array.
     fn quads(self, registers: [Self::Register; 4]) -> [Quad; WIDEST];
-    /// Returns two quads per lane.
+    /// Transposes two sets of four registers: returns a pair of quads per lane, one quad from each set.
     fn pairs(self, registers: [[Self::Register; 4]; 2]) -> [Self::Pair; WIDEST];
     /// Adds a pair of quads to two quads.
     fn add_to(self, quads: &mut [Quad; 2], pair: Self::Pair);
-    /// Subtracts the first quad of a pair from the first of two quads, and adds the second to the second.
+    /// Subtracts the first quad of a pair from the first of two quads, and adds the second quad to the second.
     fn oppose(self, quads: &mut [Quad; 2], pair: Self::Pair);
 }
 
-/// Combines two rows of quads to one row of pairs.
+/// Combines two arrays of quads to one array of pairs.
 #[inline(always)]
 fn paired([a, b, c, d, e, f, g, h]: [Quad; WIDEST], [i, j, k, l, m, n, o, p]: [Quad; WIDEST]) -> [[Quad; 2]; WIDEST] {
     [[a, i], [b, j], [c, k], [d, l], [e, m], [f, n], [g, o], [h, p]]
@@ -126,7 +126,7 @@ fn add_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
     other.add(&pair[1]);
 }
 
-/// Subtracts the first quad of a pair from the first of two quads, and adds the second to the second.
+/// Subtracts the first quad of a pair from the first of two quads, and adds the second quad to the second.
 #[inline(always)]
 fn oppose_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
     one.subtract(&pair[0]);

@@ -1,17 +1,16 @@
-//! Natural logarithm without branches, with equal bits on every processor. The system library selects its version by
-//! processor, and needs a function call.
+//! Natural logarithm without branches, with equal bits on every processor. The logarithm of the system library has
+//! several versions, selected by the processor, and needs a function call.
 
 /// Bit pattern of √½ as `f64`.
 const ROOT_OF_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
-/// ln 2 to twenty bits, so that its product with an exponent is exact, and the remainder.
+/// ln 2 as a sum of two numbers: its first twenty bits, so that the product with an exponent is exact, and the remainder.
 const LN_2: [f64; 2] = [0.693_146_705_627_441_4, 4.749_325_039_031_672_6e-7];
 
-/// Returns ln x of a positive normal number, within one unit in the last place. For other numbers, the result is
-/// unspecified.
+/// Returns ln x of a positive normal number, within one unit in the last place. For other numbers, the result is unspecified.
 ///
-/// x = 2^k (1 + f) with 1 + f from √½ to √2. With s = f/(2 + f), ln(1 + f) = 2 artanh s = 2s + s R with R = 2 (s²/3 +
-/// s⁴/5 + …), of which ten terms are used, for s² < .0295. Since 2s = f − f²/2 + s f²/2, the large part f is not
-/// rounded:
+/// The number is split as x = 2^k (1 + f) with 1 + f from √½ to √2. With s = f/(2 + f), ln(1 + f) = 2 artanh s = 2s + s
+/// R with R = 2 (s²/3 + s⁴/5 + …). Ten terms of R are used, for s² < .0295. Since 2s = f − f²/2 + s f²/2, the large
+/// part f is not rounded:
 ///
 /// ```text
 /// ln x = k ln 2 + f − (f²/2 − s (f²/2 + R))
@@ -37,8 +36,8 @@ pub fn ln(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Comparison with the library's logarithm, whose error is at most .52 of a unit in the last place in good
-    /// implementations.
+    /// The result agrees with the logarithm of the system library, whose error is at most .52 of a unit in the last
+    /// place in good implementations.
     #[test]
     fn is_the_logarithm() {
         let near_one = (-2000..=2000).map(|number| 1.0 + f64::from(number) * 1.7e-4);

@@ -1,9 +1,9 @@
-//! One number, or several at a time.
+//! Interface for computing with one number or with several numbers at a time.
 
 use crate::{FourLanes, LANES, Lanes, WIDEST};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// One number, or several at a time.
+/// One number, or several numbers at a time.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -18,7 +18,7 @@ pub trait Number:
     /// One flag per number.
     type Mask: Copy;
 
-    /// Returns a constant of the same type.
+    /// Returns a constant of the same type, with the same value in every lane.
     #[must_use]
     fn like(self, value: f64) -> Self;
     /// Returns the number in the first lane.
@@ -34,7 +34,7 @@ pub trait Number:
     /// Returns true if any flag of a mask is set. `self` only selects the type.
     fn anywhere(self, mask: Self::Mask) -> bool;
 
-    /// Returns `yes` where this is less than `bound`, otherwise `no`.
+    /// Returns `yes` where `self` is less than `bound`, otherwise `no`.
     #[must_use]
     #[inline(always)]
     fn pick_below(self, bound: Self, yes: Self, no: Self) -> Self {
@@ -113,7 +113,7 @@ impl<L: Lanes> SimdPack<L> {
         Self { lanes, register: lanes.splat(value) }
     }
 
-    /// Loads the first numbers of a row.
+    /// Loads the first numbers of `from`, one per lane.
     #[inline(always)]
     pub fn load(lanes: L, from: &[f64; WIDEST]) -> Self {
         Self { lanes, register: lanes.load(from) }
@@ -125,13 +125,13 @@ impl<L: Lanes> SimdPack<L> {
         self.register
     }
 
-    /// Stores the number of each lane at the start of a row.
+    /// Returns the number of each lane at the start of an array. The remaining entries are zero.
     #[inline(always)]
     pub fn store(self) -> [f64; WIDEST] {
         self.lanes.store(self.register)
     }
 
-    /// Returns three numbers, each multiplied by another.
+    /// Returns three packs, each multiplied by `by`.
     #[inline(always)]
     #[must_use]
     pub fn scaled([a, b, c]: [Self; 3], by: Self) -> [Self; 3] {
@@ -140,7 +140,7 @@ impl<L: Lanes> SimdPack<L> {
 }
 
 impl<L: FourLanes> SimdPack<L> {
-    /// Returns one number per lane.
+    /// Creates a pack from one number per lane.
     #[inline(always)]
     pub fn four(lanes: L, values: [f64; LANES]) -> Self {
         Self { lanes, register: lanes.register(values) }
@@ -152,7 +152,7 @@ impl<L: FourLanes> SimdPack<L> {
         self.lanes.values(self.register)
     }
 
-    /// Returns the sum over the lanes of each register.
+    /// Returns the sum over the lanes of each of four packs.
     #[inline(always)]
     #[must_use]
     pub fn sums(numbers: [Self; LANES]) -> [f64; LANES] {
@@ -190,7 +190,7 @@ impl<L: Lanes> Number for SimdPack<L> {
     }
 }
 
-/// Implements an operator for several numbers, and for several numbers and a constant.
+/// Implements an operator for two packs, and for a pack and a constant.
 macro_rules! operator {
     ($Operator:ident, $operator:ident) => {
         impl<L: Lanes> $Operator for SimdPack<L> {
@@ -219,7 +219,7 @@ impl<L: Lanes> Neg for SimdPack<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // The difference 0 − x would give +0 for x = +0, so the sign is changed by multiplication.
+        // The difference 0 − x would give +0 for x = +0. Therefore the sign is changed by multiplication.
         self * -1.0
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::{FourLanes, LANES, Lanes, Quad, WIDEST};
 
-/// Array of one or four numbers.
+/// Portable backend. Its registers are arrays of `WIDTH` numbers, one or four.
 #[derive(Clone, Copy, Debug)]
 pub struct ScalarBackend<const WIDTH: usize>;
 
-/// Repeats an expression for each lane, of which there are at most four. It is written out, because the compiler would
-/// otherwise have to unroll a loop for every operation in every kernel.
+/// Repeats an expression for each lane, for at most four lanes. The repetitions are written out. Otherwise the compiler
+/// would have to unroll a loop for every operation in every kernel.
 macro_rules! each {
     ($lane:ident of $count:expr => $do:expr) => {{
         const { assert!($count <= LANES) };
@@ -24,13 +24,13 @@ macro_rules! each {
     };
 }
 
-/// Returns a flag as bits, all set or none, so that a number can be selected without a branch.
+/// Returns a flag as a mask with all bits set or no bit set, so that a number can be selected without a branch.
 #[inline(always)]
 const fn all_bits(yes: bool) -> u64 {
     if yes { u64::MAX } else { 0 }
 }
 
-/// Returns `yes` if all bits of `mask` are set, `no` if none is.
+/// Returns `yes` if all bits of `mask` are set, and `no` if no bit is set.
 #[inline(always)]
 const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(yes.to_bits() & mask | no.to_bits() & !mask)
@@ -148,7 +148,7 @@ impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
     }
 }
 
-/// Transposes the rows.
+/// Transposes one quad per lane to four registers.
 #[inline(always)]
 fn turned<const WIDTH: usize>(rows: [[f64; 4]; WIDTH]) -> [[f64; WIDTH]; 4] {
     let mut columns = [[0.0; WIDTH]; 4];
@@ -171,18 +171,18 @@ impl FourLanes for ScalarBackend<LANES> {
     }
 }
 
-/// Returns the difference of two quads; the fourth number is the sum instead.
+/// Returns the difference `to` − `from` of two quads. The fourth number is the sum instead.
 #[inline(always)]
 const fn less(Quad(from): &Quad, Quad(to): &Quad) -> [f64; 4] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
 }
 
-/// Moves the integers whose bit is set to the front.
+/// Moves the integers whose bit is set to the front, in their order.
 #[inline(always)]
 fn packed(integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
     let (mut all, mut count) = ([0; WIDEST], 0);
     for (lane, &value) in integers.iter().enumerate() {
-        // Every entry is written, and overwritten by the next one if its bit is not set; this avoids an unpredictable
+        // Every integer is written. If its bit is not set, the next integer overwrites it. This avoids an unpredictable
         // branch.
         all[count % WIDEST] = value;
         count += (bits >> lane & 1) as usize;

@@ -1,27 +1,28 @@
-//! Peak performance of this processor on one thread, as a reference for loops: memory bandwidth, and arithmetic in
-//! registers.
+//! Benchmark kernels for the peak performance of this processor on one thread: memory bandwidth, and arithmetic in
+//! registers. The peak is a reference for other loops.
 
 use crate::{Kernel, Lanes, Number, Processor, Quad, SimdPack};
 
 /// Bytes that [`stream`] reads and writes per quad.
 pub const BYTES_OF_A_QUAD: usize = 3 * size_of::<Quad>();
 
-/// Adds each quad of one slice to the quad of another. Two quads are read and one is written.
+/// Adds each quad of `from` to the quad of `to` with the same index. For each quad, two quads are read and one is
+/// written.
 pub fn stream(to: &mut [Quad], from: &[Quad]) {
     to.iter_mut().zip(from).for_each(|(to, from)| to.add(from));
 }
 
-/// Multiplies and adds in the widest registers of the processor, `times` times. Returns the number of multiplications
-/// and additions, and a number that depends on all results.
+/// Multiplies and adds `times` times in the registers of a processor. Returns the number of multiplications and
+/// additions, and a sum of the results. The sum keeps the compiler from removing the loop.
 #[must_use]
 pub fn compute(processor: Processor, times: u64) -> (u64, f64) {
     processor.run(Compute { times })
 }
 
-/// Number of independent sums, so that no operation waits for the previous one.
+/// Number of independent chains of operations, so that no operation waits for the previous one.
 const CHAINS: usize = 12;
 
-/// Loop of [`compute`].
+/// Kernel of [`compute`].
 struct Compute {
     times: u64,
 }

@@ -107,15 +107,15 @@ impl Processor {
             Self::Portable => portable_by_four(kernel),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: features, kernel }),
-            // Four lanes too, but with the larger number of registers of this processor.
+            // Four lanes are used here too, but the loop has the larger number of registers of AVX-512.
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: *features, kernel }),
         }
     }
 }
 
-/// Runs a loop in portable code. It is a separate function, like those for other processors, because many such loops in
-/// one function take the compiler minutes.
+/// Runs a loop in portable code. It is a separate function, like the functions for other instruction sets. With many
+/// such loops in one function, compilation takes minutes.
 #[inline(never)]
 fn portable<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(ScalarBackend::<LANES>)

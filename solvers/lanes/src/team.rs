@@ -11,7 +11,7 @@ pub struct Team {
 }
 
 impl Team {
-    /// Creates a team of `threads` threads; of one thread if the system cannot provide them.
+    /// Creates a team of `threads` threads. If the system cannot provide them, the team has one thread.
     #[must_use]
     pub fn new(threads: usize) -> Self {
         let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
@@ -24,7 +24,7 @@ impl Team {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Runs work on one of the threads, from which [`Team::fold`] starts the other threads without delay.
+    /// Runs `work` on one of the threads. Calls of [`Team::fold`] in `work` then start the other threads without delay.
     pub fn lead<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
@@ -61,8 +61,8 @@ impl Team {
     }
 }
 
-/// Runs `jobs` jobs in parallel. It is not generic over the jobs: when it was compiled for each kind of work, it made
-/// up a fifth of the code of a solver.
+/// Runs `jobs` jobs in parallel. It is not generic over the jobs: a generic version, compiled for each kind of work,
+/// made up a fifth of the code of a solver.
 fn at_once(pool: &rayon::ThreadPool, jobs: usize, job: &(dyn Fn(usize) + Sync)) {
     pool.install(|| (0..jobs).into_par_iter().with_max_len(1).for_each(job));
 }

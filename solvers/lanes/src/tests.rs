@@ -1,6 +1,6 @@
 use super::*;
 
-/// Numbers that are numerically difficult.
+/// Numbers with difficult roundings, including −0, infinity, a subnormal number and large numbers.
 const NUMBERS: [f64; 8] = [1.0 / 3.0, -0.0, 1e300, -7.1e-310, f64::INFINITY, 2.5, -1.0 / 7.0, 1e16];
 
 /// Returns the bits of a result; zero for NaN, whose bits are unspecified.
@@ -8,7 +8,7 @@ fn bits(value: f64) -> u64 {
     if value.is_nan() { 0 } else { value.to_bits() }
 }
 
-/// Every operation with four lanes, as bits.
+/// Kernel that appends the results of operations with four lanes, as bits.
 struct FourLaneBits<'a>(&'a mut Vec<u64>);
 
 impl FourKernel for FourLaneBits<'_> {
@@ -24,7 +24,7 @@ impl FourKernel for FourLaneBits<'_> {
     }
 }
 
-/// Every operation on every pair of numbers, as bits.
+/// Kernel that appends the results of every operation on every pair of numbers, as bits.
 struct AllPairBits<'a>(&'a mut Vec<u64>);
 
 impl Kernel for AllPairBits<'_> {
@@ -61,7 +61,7 @@ impl Kernel for AllPairBits<'_> {
     }
 }
 
-/// Quads loaded into registers and stored again.
+/// Kernel that loads quads into registers and stores them again.
 struct QuadCopies<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for QuadCopies<'_> {
@@ -105,7 +105,7 @@ fn quads_are_turned_and_turned_back() {
     }
 }
 
-/// Differences of quads.
+/// Kernel that computes differences of quads.
 struct QuadDifferences<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for QuadDifferences<'_> {
@@ -138,7 +138,7 @@ fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
     }
 }
 
-/// Integers, packed by all bit patterns.
+/// Kernel that packs integers by all patterns of eight bits.
 struct PackedIntegers;
 
 impl Kernel for PackedIntegers {
@@ -172,7 +172,7 @@ fn four_portable_lanes_are_four_numbers() {
     assert_eq!(QuadCopies(&table, &at).run(ScalarBackend::<4>), QuadCopies(&table, &at).run(ScalarBackend::<1>));
 }
 
-/// Two quads per lane, added to given quads.
+/// Kernel that adds two quads per lane to given quads, and then applies `oppose`.
 struct Pairs<'a>(&'a [Quad], &'a [usize]);
 
 impl Kernel for Pairs<'_> {

@@ -75,15 +75,16 @@ impl<S: Geometry> WallContact<'_, S> {
         stages::<S, N, T, R, f64>(&touch, arms, turning, evaluation, memory)
     }
 
-    /// Returns the middle between the normals of the previous and the present evaluation, and stores the present one. At
-    /// a new contact, it is the present normal. This also holds for a contact that continues on another face, more than
-    /// a quarter turn away.
+    /// Returns the normal in the middle between the previous and the present force evaluation, and stores the present
+    /// normal. It is the present normal for a new contact, if the normal has not changed, and if it has rotated by a
+    /// quarter turn or more to another face of the wall.
     #[inline(always)]
     fn middle(&self, memory: &mut Memory<f64>) -> MidStepNormal<S, f64> {
         let remembered = &mut memory[MEMORY - 3..];
-        let before = S::Vectors::<f64>::read(remembered);
+        let last = [remembered[0], remembered[1], remembered[2]];
         self.normal.write(remembered);
-        if before.dot(self.normal) > 0.0 {
+        let before = S::Vectors::<f64>::read(&last);
+        if remembered != last && before.dot(self.normal) > 0.0 {
             MidStepNormal::of_normals(before, self.normal)
         } else {
             MidStepNormal::end(self.normal, self.distance)

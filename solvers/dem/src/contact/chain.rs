@@ -12,7 +12,7 @@ use grainbench_lanes::Number;
 pub(crate) struct Layout {
     /// Number of history values.
     pub(crate) numbers: usize,
-    /// Factor of each value when the first and second grain are exchanged.
+    /// Factor by which each value is multiplied when the first and the second grain are exchanged.
     pub(crate) exchanged: [f64; MEMORY],
 }
 
@@ -28,16 +28,16 @@ impl Layout {
 
 /// Rotation of two bodies at their contact.
 pub(crate) struct BodyRotations<S: Geometry, X: Number> {
-    /// Sum ω₁a₁ + ω₂a₂ with angular velocities ω and lever arms a: the slip velocity due to rotation (m/s).
+    /// Slip velocity due to rotation, ω₁a₁ + ω₂a₂, with angular velocities ω and lever arms a (m/s).
     pub(crate) surface: S::Spins<X>,
-    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s), or the rolling velocity of the
-    /// convention at a wall.
+    /// Angular velocity of the first body relative to the second, ω₁ − ω₂ (rad/s). At a wall, the convention defines this
+    /// angular velocity (`WallRolling`).
     pub(crate) relative: S::Spins<X>,
     /// Moment of inertia of both bodies about the contact, [1/(I₁ + m₁R₁²) + 1/(I₂ + m₂R₂²)]⁻¹ (kg m²).
     pub(crate) inertia: X,
 }
 
-/// Result of the chain: forces, moments, and output data of the contact.
+/// Forces, torques and output data of a contact, computed by the chain of stages.
 pub(crate) struct Answer<S: Geometry, X: Number> {
     /// Unit normal e from the first body to the second.
     pub(crate) normal: S::Vectors<X>,
@@ -53,11 +53,12 @@ pub(crate) struct Answer<S: Geometry, X: Number> {
     pub(crate) shear: S::Tangents<X>,
     /// True if the Coulomb limit was reached.
     pub(crate) slipping: X::Mask,
-    /// Energy in the springs (J); only if recorded.
+    /// Energy in the springs (J); computed only if contacts are recorded.
     pub(crate) elastic_energy: X,
-    /// Frictional work in the step (J); only if recorded.
+    /// Frictional work in the step (J); computed only if contacts are recorded.
     pub(crate) rubbed: X,
-    /// Energy released by the tangential spring in the step because its stiffness changes (J); only if recorded.
+    /// Energy released by the tangential spring in the step because its stiffness changes (J); computed only if
+    /// contacts are recorded.
     pub(crate) released: X,
 }
 
@@ -72,8 +73,8 @@ pub(crate) struct Evaluation<'a> {
     pub(crate) record: bool,
 }
 
-/// Evaluates the stages of one contact. `arms` are the lever arms of both bodies (m), and `turning` is `None` if bodies
-/// do not rotate.
+/// Evaluates the stages for one contact, or for several contacts at a time. `arms` holds the lever arms of both bodies
+/// (m). `turning` is `None` if grains do not rotate.
 #[inline(always)]
 pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X: Number>(
     touch: &ContactInput<'_, S, X>,

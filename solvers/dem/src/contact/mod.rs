@@ -1,8 +1,8 @@
 //! Contact law as a chain of stages: normal, then tangential, then rolling.
 //!
-//! An unused stage is a separate type of zero size. Its branches, history and arithmetic are thus not compiled into the
-//! loop over contacts. The stages are in `normal`, `tangential` and `rolling`, each with its laws. `chain` evaluates
-//! the stages of one contact, and `pair` and `at_wall` prepare a contact for it.
+//! A stage that a scene does not need is replaced by an empty type. The loop over contacts is then compiled without the
+//! branches, history and arithmetic of this stage. The modules `normal`, `tangential` and `rolling` contain the stages
+//! with their laws. `chain` evaluates the stages of one contact; `pair` and `at_wall` prepare its input.
 
 pub(crate) mod at_wall;
 pub(crate) mod chain;
@@ -17,11 +17,11 @@ use crate::laws::Constants;
 use grainbench_lanes::Number;
 pub(crate) use tangential::Cap;
 
-/// Largest number of history values of a contact: those of the tangential stage, then those of the rolling stage. A
-/// contact with a wall stores its normal in the last three.
+/// Length of the history array of a contact. The values of the tangential stage come first, then those of the rolling
+/// stage. A contact with a wall also stores its normal, in the last three values.
 pub(crate) const MEMORY: usize = 9;
 
-/// Contact history.
+/// History values of a contact.
 pub(crate) type Memory<X> = [X; MEMORY];
 
 /// Contact between two bodies as input of the stages, or several such contacts at a time.
@@ -33,22 +33,23 @@ pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
     pub(crate) between: S::Vectors<X>,
     /// Inverse of the length of `between` (1/m).
     pub(crate) inverse_distance: X,
-    /// Unit vector `e = between · inverse_distance`. Only dashpots, the tangential stage and the rolling stage read
-    /// this vector. The normal force acts along `between`.
+    /// Unit vector `e = between · inverse_distance`. A frictionless contact computes its normal force along `between`
+    /// instead, which saves the arithmetic for `normal` if there are no dashpots.
     pub(crate) normal: S::Vectors<X>,
     /// Overlap δ (m), positive.
     pub(crate) overlap: X,
     /// Normal along which velocities are decomposed. It is the normal in the middle of the step, or `normal`.
     pub(crate) velocity_normal: S::Vectors<X>,
-    /// Rotation of the contact over the step; `None` if a convention projects the history.
+    /// Rotation of the contact over the step. It is `None` in two dimensions, if grains do not rotate, and if the
+    /// convention projects the history.
     pub(crate) turn: Option<ContactRotation<S, X>>,
-    /// Ratio of the tangential stiffness at the start of the step to that at its end.
+    /// Ratio of the tangential stiffness at the start of the step to that at its end; 1 if it is not needed.
     pub(crate) stiffness_ratio: X,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
     pub(crate) velocity: S::Vectors<X>,
-    /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg); only set for dashpots.
+    /// Effective mass m₁m₂/(m₁+m₂), or m₁ at a wall (kg). Between grains, it is set only for dashpots.
     pub(crate) effective_mass: X,
-    /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m); only set for stages that need it.
+    /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m). Between grains, it is zero if no stage needs it.
     pub(crate) effective_radius: X,
 }
 
@@ -57,13 +58,13 @@ pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
 pub(crate) struct ContactRotation<S: Geometry, X: Number> {
     /// Unit normal in the middle of the step.
     pub(crate) middle: S::Vectors<X>,
-    /// Tangent of half the rotation angle about the normal.
+    /// Tangent of half the rotation angle about the normal. It is approximated by half the angle (rad).
     pub(crate) half_twist: X,
 }
 
 impl<S: Geometry, X: Number> ContactRotation<S, X> {
-    /// Returns the rotation of a contact in a step of `elapsed` (s), from its middle normal and the sum of the spins of
-    /// both bodies (rad/s). About the normal, the contact rotates with the mean of both spins.
+    /// Returns the rotation of a contact in a step of `elapsed` (s), from the normal in the middle of the step and the
+    /// sum of the spins of both bodies (rad/s). About the normal, the contact rotates with the mean of both spins.
     #[inline(always)]
     pub(crate) fn new(middle: S::Vectors<X>, spins: S::Spins<X>, elapsed: f64) -> Self {
         Self { middle, half_twist: S::twist(spins, middle) * (0.25 * elapsed) }
@@ -75,23 +76,25 @@ impl<S: Geometry, X: Number> ContactRotation<S, X> {
 pub(crate) struct MidStepNormal<S: Geometry, X: Number> {
     /// Unit normal in the middle of the step.
     pub(crate) normal: S::Vectors<X>,
-    /// Ratio of chord to arc, sin(θ/2)/(θ/2). Centres move along chords and surfaces rotate along arcs, so velocities
-    /// due to rotation are multiplied by it. Bodies in rigid rotation then do not slip.
+    /// Ratio of chord to arc, sin(θ/2)/(θ/2). Centres move along chords and surfaces rotate along arcs. Surface
+    /// velocities are multiplied by this ratio, so that bodies in rigid rotation do not slip.
     pub(crate) chord: X,
 }
 
 impl<S: Geometry, X: Number> MidStepNormal<S, X> {
-    /// Returns the normal at the end of the step, for conventions that use it and for new contacts.
+    /// Returns the normal at the end of the step, for conventions that use it and for new contacts. `like` only selects
+    /// the number type.
     #[inline(always)]
     pub(crate) fn end(normal: S::Vectors<X>, like: X) -> Self {
         Self { normal, chord: like.like(1.0) }
     }
 
-    /// Returns the middle of a step of `elapsed` (s). The arguments are the unit vector between the centres at the end,
-    /// its inverse length (1/m), and the relative velocity v = v₁ − v₂ (m/s).
+    /// Returns the normal in the middle of a step of Δt = `elapsed` (s). The arguments are the unit normal e at the end
+    /// of the step, the inverse 1/d of the distance between the centres (1/m), and the relative velocity v = v₁ − v₂
+    /// (m/s).
     ///
-    /// With h = Δt/2d, the vector in the middle is d (e + h v). Its squared length is d² (1 + y) with y = 2h v·e +
-    /// h² v·v, and 1/√(1 + y) is 1 − y/2 + 3y²/8 − 5y³/16 with an error of 35y⁴/128.
+    /// With h = Δt/2d, the vector between the centres in the middle is d (e + h v). Its squared length is d² (1 + y)
+    /// with y = 2h v·e + h² v·v. The factor 1/√(1 + y) is 1 − y/2 + 3y²/8 − 5y³/16 with an error of 35y⁴/128.
     #[inline(always)]
     pub(crate) fn of_centres(
         normal: S::Vectors<X>,
@@ -107,7 +110,7 @@ impl<S: Geometry, X: Number> MidStepNormal<S, X> {
         Self { normal: (normal + velocity * half) * inverse, chord: chord(square - along * along) }
     }
 
-    /// Returns the middle of a step from the unit normals at its start and its end.
+    /// Returns the normal in the middle of a step, from the unit normals at its start and its end.
     #[inline(always)]
     pub(crate) fn of_normals(before: S::Vectors<X>, now: S::Vectors<X>) -> Self {
         let sum = before + now;
@@ -124,29 +127,31 @@ fn chord<X: Number>(squared: X) -> X {
     squared * (squared * (-77.0 / 360.0) - 1.0 / 6.0) + 1.0
 }
 
-/// Returns the ratio of the tangential stiffness at the start of a step of `elapsed` (s) to that at its end. The
-/// stiffness is proportional to the square root of the overlap δ (m), whose inverse is given (1/m). The bodies approach
-/// at `approach` (m/s).
+/// Returns the ratio of the tangential stiffness at the start of a step of `elapsed` (s) to the stiffness at its end.
+/// The stiffness is proportional to √δ with the overlap δ. The arguments are 1/δ at the end of the step (1/m) and the
+/// approach velocity of the bodies (m/s).
 #[inline(always)]
 pub(crate) fn stiffness_ratio<X: Number>(inverse_overlap: X, approach: X, elapsed: f64) -> X {
     let ratio = -(approach * elapsed * inverse_overlap) + 1.0;
     ratio.at_least(approach.like(0.0)).sqrt()
 }
 
-/// Options of a convention that are values rather than types.
+/// Options of a convention as numbers for the compiled loops. The option `Convention::history` also selects which loop
+/// runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
     /// Fraction of the overlap that is subtracted from the lever arm: 0 or 1/2.
     pub(crate) arm_reduction: f64,
-    /// Smallest normal force (N): zero without tension, otherwise −∞.
+    /// Smallest normal force (N): zero if the dashpot must not pull, otherwise −∞.
     pub(crate) least_normal_force: f64,
     /// Weight of the dashpot in the normal force of the Coulomb limit: 0 or 1.
     pub(crate) dashpot_in_cap: f64,
-    /// Weight of an attractive normal force in the Coulomb limit: 0 or 1.
+    /// Weight of the magnitude of an attractive normal force in the Coulomb limit: 0 or 1.
     pub(crate) pull_in_cap: f64,
     /// Force to which the Coulomb limit applies.
     pub(crate) cap: Cap,
-    /// True if rolling at walls uses the surface velocity divided by the distance of the wall, instead of the spin.
+    /// True if rolling resistance at walls uses the surface velocity divided by the distance from the wall, instead of
+    /// the spin.
     pub(crate) rolls_by_surface: bool,
     /// Weight of the wall's spin in the rolling velocity: 0 or 1.
     pub(crate) wall_spin: f64,

@@ -1,4 +1,4 @@
-//! First stage. It computes the normal force, and the stiffness that the other stages need.
+//! First stage of a contact law. It computes the normal force, and the stiffness that the other stages need.
 
 use super::{ContactInput, Options};
 use crate::geometry::{Geometry, Linear};
@@ -8,20 +8,19 @@ use grainbench_lanes::Number;
 /// Normal force at a contact (N); positive if repulsive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NormalForce<X> {
-    /// Force of spring and dashpot.
+    /// Force of spring and dashpot together.
     pub(crate) total: X,
-    /// Normal force to which the Coulomb limit is proportional.
+    /// Normal force to which the Coulomb limit is proportional (N).
     pub(crate) for_cap: X,
 }
 
 /// Normal force law of a contact, as a stage of the chain.
 pub(crate) trait Normal: Copy + Send + Sync + 'static {
-    /// True if dashpots act at contacts, including tangential ones.
+    /// True if contacts have dashpots, normal or tangential.
     const DAMPED: bool;
-    /// True if the stage needs the effective radius.
+    /// True if the stiffness depends on the overlap and on the effective radius.
     const CURVED: bool;
 
-    /// Returns the normal force.
     fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, options: &Options) -> NormalForce<X>;
     /// Returns the stiffness k_s of the tangential spring (N/m).
     fn tangential_stiffness<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
@@ -31,7 +30,7 @@ pub(crate) trait Normal: Copy + Send + Sync + 'static {
     fn energy<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
 }
 
-/// Returns the force of spring and dashpot together.
+/// Returns the normal force for a spring force (N) and a dashpot viscosity (N s/m).
 #[inline(always)]
 fn damped<S: Geometry, X: Number>(
     touch: &ContactInput<'_, S, X>,
@@ -45,19 +44,19 @@ fn damped<S: Geometry, X: Number>(
     NormalForce { total, for_cap: signed.at_least(-signed * options.pull_in_cap) }
 }
 
-/// Returns the viscosity 2ζ√(k m) (N s/m) from `stiff_mass` k m (N kg/m). No square root is computed if no contact has
-/// this dashpot.
+/// Returns the viscosity 2ζ√(k m) (N s/m) with the damping ratio ζ. `stiff_mass` is the product k m of stiffness and
+/// effective mass (N kg/m). If ζ is zero for all contacts, no square root is computed.
 #[inline(always)]
 fn restitution<X: Number>(law: &Constants<X>, stiff_mass: X) -> X {
     let zero = stiff_mass.like(0.0);
     if stiff_mass.anywhere(zero.below(law.damping_ratio)) { law.damping_ratio * 2.0 * stiff_mass.sqrt() } else { zero }
 }
 
-/// Linear spring, F_n = k_n δ.
+/// Linear spring, F_n = k_n δ, with stiffness k_n (N/m) and overlap δ (m).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring;
 
-/// Functions common to all linear stages.
+/// Stiffnesses and energy of both linear stages.
 macro_rules! linear_stiffness {
     () => {
         #[inline(always)]
@@ -86,11 +85,12 @@ impl Normal for Spring {
     linear_stiffness!();
 }
 
-/// Linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff).
+/// Linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff). Here δ is the
+/// overlap and m_eff the effective mass; [`Constants`] explains k_n, β, γ_n and ζ.
 ///
-/// The first two terms are from Cundall & Strack (1979, eqs. 26 and 28); LAMMPS and LIGGGHTS use the second. The third
-/// gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). It is exact if the contact ends when the overlap
-/// is zero. Then the damped half-oscillation ends with e = exp(−πζ/√(1 − ζ²)).
+/// The first two terms of c_n are from Cundall & Strack (1979, eqs. 26 and 28); LAMMPS and LIGGGHTS use the second. The
+/// third term gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). This formula is exact if the contact
+/// ends when the overlap is zero: the damped half-oscillation then ends with e = exp(−πζ/√(1 − ζ²)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringDashpot;
 
@@ -108,8 +108,8 @@ impl Normal for SpringDashpot {
     linear_stiffness!();
 }
 
-/// Functions common to both Hertz stages: F_n = (4/3) E* √R* δ^{3/2}, Mindlin's k_s = 8 G* √(R* δ), energy (2/5) F_n δ
-/// (Johnson, Contact Mechanics, 1985, eqs. 4.23 and 7.43).
+/// Stiffnesses and energy of both Hertz stages: F_n = (4/3) E* √R* δ^{3/2}, Mindlin's k_s = 8 G* √(R* δ), energy (2/5)
+/// F_n δ (Johnson, Contact Mechanics, 1985, eqs. 4.23 and 7.43).
 macro_rules! hertz_stiffness {
     () => {
         #[inline(always)]
@@ -143,8 +143,8 @@ impl Normal for Hertz {
 }
 
 /// Hertz contact with dashpots: c_n = γ_n m_eff + 2√(5/6) ζ √(S m_eff), S = dF/dδ = 2E*√(R*δ). The second term gives
-/// exactly the coefficient of restitution e if the contact ends with the overlap (Tsuji, Tanaka & Ishida 1992). Antypov
-/// & Elliott (2011) map the contact to a damped harmonic oscillator.
+/// exactly the coefficient of restitution e if the contact ends when the overlap is zero (Tsuji, Tanaka & Ishida 1992).
+/// Antypov & Elliott (2011) map the contact to a damped harmonic oscillator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HertzDashpot;
 

@@ -15,10 +15,11 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) law: &'a Constants<X>,
     /// Vector from the first centre to the second (m).
     pub(crate) between: S::Vectors<X>,
-    /// Its length (m), and the inverse of the length (1/m).
+    /// Distance d between the centres (m).
     pub(crate) distance: X,
+    /// Inverse distance 1/d (1/m).
     pub(crate) inverse_distance: X,
-    /// Radii R (m).
+    /// Radii R of both grains (m).
     pub(crate) radii: [X; 2],
     /// Sum of the radii (m).
     pub(crate) reach: X,
@@ -26,11 +27,11 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) velocity: S::Vectors<X>,
     /// Sum of the inverse masses, 1/m₁ + 1/m₂ (1/kg).
     pub(crate) inverse_mass: X,
-    /// Inverse masses 1/m (1/kg); only set for rolling resistance.
+    /// Inverse masses 1/m of both grains (1/kg); only set for rolling resistance.
     pub(crate) inverse_masses: [X; 2],
-    /// Angular velocities ω (rad/s), if the grains rotate.
+    /// Angular velocities ω of both grains (rad/s); `None` if grains do not rotate.
     pub(crate) spins: Option<[S::Spins<X>; 2]>,
-    /// Inverse moments of inertia 1/I (1/(kg m²)); only set for rolling resistance.
+    /// Inverse moments of inertia 1/I of both grains (1/(kg m²)); only set for rolling resistance.
     pub(crate) inverse_inertia: [X; 2],
 }
 
@@ -55,7 +56,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         } else {
             MidStepNormal::end(normal, distance)
         };
-        // One division for the effective radius and the ratio of stiffnesses.
+        // One division serves both the effective radius and the ratio of stiffnesses.
         let inverse = if changes { distance.like(1.0) / (self.reach * overlap) } else { zero };
         let touch = ContactInput {
             law: self.law,
@@ -72,7 +73,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             },
             velocity,
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
-            // The same operations whether or not the contact is recorded.
+            // The operations are the same for recorded and other contacts, so that recording does not change results.
             effective_radius: match (changes && T::TURNED, N::CURVED || R::ACTIVE) {
                 (true, _) => first * second * (inverse * overlap),
                 (false, true) => first * second / self.reach,
@@ -103,7 +104,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
 }
 
 /// Returns the effective mass (kg), or moment of inertia (kg m²), of two bodies from the sum of their inverses. It is
-/// zero if both have prescribed motion.
+/// zero if this sum is zero, because both bodies have prescribed motion.
 #[inline(always)]
 pub(crate) fn harmonic<X: Number>(inverse: X) -> X {
     let [zero, one] = [inverse.like(0.0), inverse.like(1.0)];
@@ -123,12 +124,12 @@ mod tests {
     use nalgebra::Vector3;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// Two spheres stick together with a displaced spring and rotate by a quarter turn about z as one body. F_s keeps
-    /// its length, except for a fraction 1 − cos^N(π/2N) < π²/(8N) that N steps remove as the normal part, and
-    /// F_s·e = 0.
+    /// Two spheres stick together and rotate by a quarter turn about z as one body, with a displaced tangential spring.
+    /// The tangential force F_s stays perpendicular to the normal e. Each of N steps removes the normal part of the
+    /// displacement. Together they shorten it by a fraction 1 − cos^N(π/2N) < π²/(8N).
     ///
-    /// Rigid rotation causes no slip if the lever arms end at R − δ/2: (v₁ − v₂) + ω (a₁ + a₂) × e = 0 with v₁ −
-    /// v₂ = −ω × e (2R − δ).
+    /// The rotation causes no slip if the lever arms a are R − δ/2: (v₁ − v₂) + ω (a₁ + a₂) × e = 0 with v₁ − v₂ = −ω × e
+    /// (2R − δ).
     #[test]
     fn stuck_spheres_carry_their_spring_when_they_swing() {
         type Stretched = Coulomb<Projected>;

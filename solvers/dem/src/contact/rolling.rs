@@ -1,4 +1,4 @@
-//! Third stage. It computes the moment against rolling and updates its contact history.
+//! Third stage of a contact law. It computes the moment of rolling resistance and updates its contact history.
 
 use super::ContactInput;
 use super::normal::{Normal, NormalForce};
@@ -7,14 +7,14 @@ use grainbench_lanes::Number;
 
 /// Rolling resistance of a contact, as a stage of the chain.
 pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
-    /// True if there is a moment.
+    /// True if the stage exerts a moment.
     const ACTIVE: bool;
-    /// Number of history values. They change sign if the first and second grain are exchanged.
+    /// Number of history values. They change sign when the first and the second grain are exchanged.
     const NUMBERS: usize;
 
-    /// Returns the moment on the first body (N m). The arguments are the angular velocity relative to the second body
-    /// (rad/s), the time since the last evaluation (s), and the moment of inertia of the pair about the contact (kg
-    /// m²).
+    /// Returns the moment on the first body (N m), and updates the contact history. `rate` is the angular velocity
+    /// relative to the second body (rad/s), `elapsed` the time since the last evaluation (s), and `inertia` the moment of
+    /// inertia of the pair about the contact (kg m²).
     fn moment<N: Normal, X: Number>(
         touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
@@ -57,10 +57,12 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
 /// M = −k_r θ − C ω      |k_r θ| ≤ μ_r R_eff F_n      k_r = 2.25 k_n μ_r² R_eff²      C = 2η_r √(I_r k_r)
 /// ```
 ///
-/// θ is the rolling angle, which is reduced when the spring yields. The dashpot acts only until the spring yields. The
-/// normal part of the relative spin is twisting, not rolling, and causes no moment.
+/// M is the moment, θ the rolling angle, ω the rolling velocity, and I_r the moment of inertia of the pair about the
+/// contact. F_n is the normal force of the Coulomb limit. The angle is reduced when the spring yields, and the dashpot
+/// does not act while the spring yields. The normal part of the relative spin is twisting, not rolling, and causes no
+/// moment.
 ///
-/// The history is the angle (rad).
+/// The history is the rolling angle θ (rad).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ElasticPlastic;
 
@@ -95,7 +97,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         }
         let spring = -(angle * stiffness);
         let dashpot = rate * (law.rolling_damping * 2.0 * (inertia * stiffness).sqrt());
-        // Contacts without rolling resistance store zero, even beside contacts with resistance.
+        // A contact without rolling resistance stores zero, even if other contacts in the register have resistance.
         let (resists, none) = (zero.below(arm), S::as_spin([zero; 3]));
         S::Spins::<X>::choose(resists, angle, none).write(memory);
         S::Spins::<X>::choose(resists, S::Spins::<X>::choose(yields, spring, spring - dashpot), none)

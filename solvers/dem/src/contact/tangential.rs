@@ -1,4 +1,4 @@
-//! Second stage. It computes the tangential force of a spring and a dashpot with the Coulomb limit.
+//! Second stage of a contact law. It computes the tangential force of a spring and a dashpot with the Coulomb limit.
 //!
 //! The contact history is the displacement s of the tangential spring (m). It grows by the slip velocity times the time
 //! step, and rotates with the contact ([`SpringTransport`]). The Coulomb limit reduces it ([`Cap`]).
@@ -23,18 +23,18 @@ pub(crate) struct Shear<S: Geometry, X: Number> {
 
 /// Tangential force law of a contact, as a stage of the chain.
 pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
-    /// True if there is a tangential force.
+    /// True if the stage exerts a tangential force.
     const ACTIVE: bool;
     /// True if springs rotate with the contact ([`crate::convention::History::Turned`]).
     const TURNED: bool;
-    /// True if a convention of this stage may decompose velocities along the mid-step normal.
+    /// True if a convention with this stage may decompose velocities along the mid-step normal.
     const MAY_BE_MID_STEP: bool;
-    /// Number of history values, which come first: the displacement of the tangential spring (m).
+    /// Number of history values: the components of the tangential spring displacement (m). They come first in the history.
     const NUMBERS: usize;
-    /// Factor of the history values when the first and second grain are exchanged.
+    /// Factor by which the history values are multiplied when the first and the second grain are exchanged.
     const EXCHANGED: f64;
 
-    /// Returns the tangential force, from the slip velocity (m/s).
+    /// Returns the tangential force for a slip velocity (m/s), and updates the contact history.
     fn respond<N: Normal, X: Number>(
         touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
@@ -43,14 +43,13 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
         memory: &mut Memory<X>,
     ) -> Shear<S, X>;
 
-    /// Returns the energy lost in a step (J): the frictional work, and the energy released by a change of stiffness.
+    /// Returns two energies lost in a step (J): the frictional work, and the energy released by a change of stiffness.
     ///
-    /// The frictional work is ½ k (s + s')·(s + ṡ Δt − s'): the mean spring force times the sliding distance of its
-    /// end. Here s is the spring displacement before the step, transported to the present contact, and s' the
-    /// displacement after it. ṡ is the slip velocity, and k the stiffness after the step. Before the step, the
-    /// displacement is s₀ and the stiffness k₀. The total loss is the energy before the step, plus the work on the
-    /// spring, ½ (k₀ s₀ + k s')·ṡ Δt, minus the energy after it. The loss beyond the frictional work is released
-    /// energy.
+    /// Before the step, the spring has the displacement s₀, already rotated with the contact, and the stiffness k₀. The
+    /// change of stiffness to k reduces s₀ to s. After the step, the displacement is s'. The slip velocity is ṡ. The
+    /// frictional work is ½ k (s + s')·(s + ṡ Δt − s'): the mean spring force times the sliding distance of the end of
+    /// the spring. The total loss is the energy before the step, plus the work on the spring, ½ (k₀ s₀ + k s')·ṡ Δt,
+    /// minus the energy after the step. The released energy is the total loss minus the frictional work.
     fn lost<N: Normal, X: Number>(
         touch: &ContactInput<'_, S, X>,
         slip: S::Tangents<X>,
@@ -104,16 +103,16 @@ impl<S: Geometry> Tangential<S> for Frictionless {
 pub(crate) enum Cap {
     /// Force of the spring. The dashpot is added only while the contact sticks.
     Spring,
-    /// Force of spring and dashpot together. The spring is reset so that their sum equals the limit (Luding 2008,
-    /// Granular Matter 10, 235, eq. 22). If the dashpot alone exceeds the limit, the spring is relaxed, so that it
-    /// never acts in the sliding direction.
+    /// Force of spring and dashpot together. The spring displacement is reset so that this force equals the limit
+    /// (Luding 2008, Granular Matter 10, 235, eq. 22). If the dashpot alone exceeds the limit, the displacement is set
+    /// to zero, so that the spring never acts in the sliding direction.
     Total,
-    /// Force of spring and dashpot together, as in LAMMPS. The spring may act in the sliding direction. A force beyond
-    /// the limit is dropped if the spring has no displacement yet, as in the evaluation at the start.
+    /// Force of spring and dashpot together, as in LAMMPS. The spring may act in the sliding direction. If the spring
+    /// has no displacement yet, as at the start, a force beyond the limit is set to zero.
     TotalAsLammps,
 }
 
-/// Tangential spring and dashpot before the Coulomb limit.
+/// Tangential spring and dashpot of a contact, with the Coulomb limit.
 #[derive(Clone, Copy, Debug)]
 struct Bound<X> {
     /// Stiffness k_s (N/m).
@@ -125,8 +124,8 @@ struct Bound<X> {
 }
 
 impl<X: Number> Bound<X> {
-    /// Returns the tangential force, and true if the contact slips, from the spring displacement s (m) and the slip
-    /// velocity (m/s). The displacement is reduced if the contact slips.
+    /// Applies the Coulomb limit, given the spring displacement `stretch` (m) and the slip velocity (m/s). Returns the
+    /// tangential force, and true if the contact slips. If it slips, the displacement is reset to fit the limit.
     #[inline(always)]
     fn limit<S: Geometry>(&self, cap: Cap, stretch: &mut S::Tangents<X>, slip: S::Tangents<X>) -> Shear<S, X> {
         let Some(viscosity) = self.viscosity.filter(|_| cap != Cap::Spring) else {
@@ -211,11 +210,11 @@ pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'sta
     const TURNED: bool;
     /// Number of history values of the displacement.
     const NUMBERS: usize;
-    /// Factor of these values when the first and second grain are exchanged.
+    /// Factor by which the history values are multiplied when the first and the second grain are exchanged.
     const EXCHANGED: f64;
     /// Returns the stored displacement (m) after the rotation of the contact.
     fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, S, X>) -> S::Tangents<X>;
-    /// Returns the stored displacement (m) of a contact with `normal`.
+    /// Returns the stored displacement (m) as a tangential vector of a contact with `normal`.
     fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
     /// Stores the displacement (m) of a contact with `normal`.
     fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>);
@@ -223,8 +222,8 @@ pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'sta
     fn squared<X: Number>(memory: &Memory<X>) -> X;
 }
 
-/// The displacement rotates with the contact. In two dimensions it is a scalar along the tangent (Cundall & Strack
-/// 1979), and in three dimensions a vector.
+/// Transport that rotates the displacement with the contact. In two dimensions, the displacement is a scalar along the
+/// tangent (Cundall & Strack 1979); in three dimensions, it is a vector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
@@ -275,8 +274,8 @@ impl SpringTransport<Solid> for Turned {
     }
 }
 
-/// The displacement is a vector that keeps its direction and loses its normal part, also in the plane (LAMMPS,
-/// LIGGGHTS). It shrinks slightly as the contact rotates.
+/// Transport that keeps the direction of the displacement and removes its normal part (LAMMPS, LIGGGHTS). The
+/// displacement is a vector, in two dimensions too. It shrinks slightly as the contact rotates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected;
 
@@ -303,8 +302,9 @@ impl<S: Geometry> SpringTransport<S> for Projected {
     }
 }
 
-/// Incremental spring F_s = −k_s s with the Coulomb limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19),
-/// and a dashpot c_s = β k_s + γ_t m_eff if contacts are damped.
+/// Incremental spring F_s = −k_s s with the Coulomb limit |F_s| ≤ F_n tan φ + c (Cundall & Strack 1979, eqs. 17 to 19).
+/// If contacts are damped, it has a dashpot with viscosity c_s = β k_s + γ_t m_eff. `H` is the transport of the spring
+/// displacement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coulomb<H>(PhantomData<H>);
 
@@ -362,8 +362,8 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
     }
 }
 
-/// Returns the displacement (m) at a contact that has rotated and whose stiffness has changed since it was stored. If
-/// the displacement rotates with the contact, its force is kept while the stiffness grows.
+/// Returns the displacement (m) at a contact that has rotated and whose stiffness has changed since the displacement
+/// was stored. For [`Turned`], the spring keeps its force while the stiffness grows.
 #[inline(always)]
 fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
     memory: &Memory<X>,
@@ -381,8 +381,8 @@ fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
 mod tests {
     use super::*;
 
-    /// Above the limit, both conventions leave a displacement for which the force equals the limit. The force is that
-    /// of the spring alone, or the sum with the dashpot.
+    /// Above the limit, the remaining displacement gives a force equal to the limit. This force is that of the spring
+    /// alone, or of spring and dashpot together.
     #[test]
     fn caps_leave_a_consistent_stretch() {
         let slip = Components([2.0]);
@@ -395,17 +395,19 @@ mod tests {
         };
         let (force, spring, slipping) = limited(Cap::Spring, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14 && (spring * stiffness - limit).abs() < 1e-14);
-        // The dashpot alone, 3·2, exceeds the limit. The spring of LAMMPS acts in the sliding direction, and ours relaxes.
+        // The dashpot force alone, 3·2 = 6, exceeds the limit 5. As in LAMMPS, the spring acts in the sliding
+        // direction; by default, its displacement becomes zero.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.2);
         assert!(slipping && (force + limit).abs() < 1e-14);
         assert!((stretch * stiffness + 2.0 * viscosity - limit).abs() < 1e-14);
         assert_eq!(limited(Cap::Total, 0.2), (force, 0.0, true));
 
-        // Without displacement, −3·2 exceeds the limit.
+        // Without displacement, the dashpot force 6 exceeds the limit. As in LAMMPS, the force becomes zero; by
+        // default, it equals the limit.
         let (force, stretch, slipping) = limited(Cap::TotalAsLammps, 0.0);
         assert!(slipping && force == 0.0 && stretch == 0.0);
         assert!((limited(Cap::Total, 0.0).0 + limit).abs() < 1e-14);
-        // If the dashpot is within the limit, 3·2 of 10, spring and dashpot together equal the limit.
+        // With a limit of 10, the dashpot force 6 is below the limit. Spring and dashpot together then equal the limit.
         let looser = Bound { limit: 10.0, ..bound };
         for cap in [Cap::Total, Cap::TotalAsLammps] {
             let mut stretch = Components([0.2]);
@@ -413,7 +415,7 @@ mod tests {
             assert!(shear.slipping && (shear.force.0[0] + 10.0).abs() < 1e-14);
             assert!((stretch.0[0] * stiffness + 2.0 * viscosity - 10.0).abs() < 1e-14, "{cap:?}");
         }
-        // Within the limit, no variant reduces the displacement: −(100·.01 + 3·2/4).
+        // Below the limit, no variant reduces the displacement, and the force is −(100·.01 + 3·.5) = −2.5.
         let bound = Bound { limit: 50.0, ..bound };
         for cap in [Cap::Spring, Cap::Total, Cap::TotalAsLammps] {
             let mut stretch = Components([0.01]);
@@ -422,7 +424,8 @@ mod tests {
         }
     }
 
-    /// Contacts with and without a dashpot are evaluated in one register. Each contact gives the same result as alone.
+    /// Contacts with and without a dashpot are evaluated in one register. Each contact gives the same result as in a
+    /// separate evaluation.
     #[test]
     fn contacts_side_by_side_are_limited_as_alone() {
         use grainbench_lanes::{ScalarBackend, SimdPack};

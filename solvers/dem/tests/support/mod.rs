@@ -1,4 +1,4 @@
-//! Scenes for the tests.
+//! Runs of short scenes for the tests, and access to the recorded columns.
 #![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use grainbench_dem::convention::Convention;
