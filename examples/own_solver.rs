@@ -1,7 +1,8 @@
 //! A complete solver for one rigid grain on a fixed plane, and its test.
 //!
-//! Each step computes the friction impulse that stops the slip and limits it to the Coulomb limit. While the grain slides or
-//! rolls, its acceleration is constant, so a step of any length is exact.
+//! Each step computes the friction impulse that stops the slip and limits it to the Coulomb limit. While the grain
+//! slides, and while it rolls, its acceleration is constant, and steps of any length are exact. Only the step in which
+//! sliding turns into rolling has an error.
 
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::record::{Cost, GrainState, Provenance, Record, Snapshot, StepState};
@@ -81,6 +82,6 @@ impl Solver for Rigid {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let judgement = grainbench::judge(Rigid, &["incline-disc", "incline-sphere", "backspin"])?;
     println!("{judgement}");
-    judgement.require()?; // An error here is exit code 1.
+    judgement.require()?; // If a claim fails or none passes, the program ends with exit code 1.
     Ok(())
 }

@@ -4,8 +4,9 @@
 //! cargo run --release --example round_state exact.state rounded.state [without-springs|at-rest]
 //! ```
 //!
-//! `without-springs` keeps only what a scene with `springs = false` reads, which is half the size. `at-rest` keeps only
-//! positions, in a quarter of that size.
+//! `without-springs` removes the contact history, which a scene with `springs = false` does not read. The file is then
+//! about half as large. `at-rest` also removes velocities and spins, and rounds positions more coarsely. The file is
+//! then about a third as large as with `without-springs`.
 
 use grainbench::scene::end_state::{EndState, Springs};
 use grainbench::store::write_file;

@@ -1,5 +1,6 @@
-//! Computes the spread between random packings: the results of a case for other seeds, as its table `packings.csv`. The
-//! tolerances of the case come from this table. For a claim with several runs it uses the first run.
+//! Computes the results of a case for other random seeds and prints them as the case's table `packings.csv`. The spread
+//! in this table sets tolerances of the case. The table has a column for each claim whose first run uses `dem` and has
+//! a `reading`. If a claim has several runs, the first run is used for all of them.
 //!
 //! ```text
 //! cargo run --release --example seeds plane-shear-pressure grains.disc.packed.seed 11 12 13 14 15 16 \
@@ -46,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Runs the case with another random seed.
+/// Repeats a run of the case with another random seed.
 fn of_seed(case: &grainbench::cases::Case, run: &Run, key: &str, seed: &str) -> Result<FinishedRun, Box<dyn Error>> {
     let source = case.source().variant(run.variant).set(key, seed);
     let mut scene = source.scene(&read_grains)?;

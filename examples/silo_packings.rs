@@ -1,5 +1,5 @@
-//! Computes the spread between silo fillings: the results of a silo case for deposits from other seeds, as its table
-//! `packings.csv`. The tolerances of the case come from this table.
+//! Computes the results of a silo case for deposits from other random seeds and prints them as the case's table
+//! `packings.csv`. The spread in this table sets tolerances of the case.
 //!
 //! ```text
 //! for seed in 1 2 3 4 5 6 7 8 9 10; do
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Runs the case with another deposit.
+/// Repeats a run of the case with the deposit in the file `state`.
 fn done(case: &grainbench::cases::Case, run: &Run, state: &Path) -> Result<FinishedRun, Box<dyn Error>> {
     let path = format!("{:?}", state.canonicalize()?);
     let source = case.source().variant(run.variant).set("grains.deposit.state.path", &path);

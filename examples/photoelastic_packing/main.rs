@@ -1,10 +1,13 @@
 //! Prepares the packings of the case `photoelastic-packing` and finds the motion of their walls.
 //!
-//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each named variant, writes it
-//! to FOLDER as a LAMMPS data file, and prints the variant for the scene file: initial position and speed of the walls. A
-//! packing that exists in FOLDER, such as `start-1.data.gz` in the folder of the case, is used as it is; then only the motion of
-//! its walls is found. No parameter is fitted to the result: stage A and the growth of F_V to stage B are prescribed, and
-//! F_H/F_V at stage B is the result.
+//! `cargo run --release --example photoelastic_packing FOLDER VARIANT …` prepares the packing of each named variant and
+//! writes it to FOLDER as a LAMMPS data file. It prints the table of the variant for the scene file, with initial
+//! positions and velocities of the walls. If FOLDER contains the compressed packing, such as `start-1.data.gz` in the
+//! folder of the case, the program uses the packing of the case and only finds the motion of the walls.
+//!
+//! At stage A, the mean overlap and the ratio F_H/F_V of horizontal to vertical wall force are prescribed. The growth
+//! of F_V from stage A to stage B is prescribed, too. The result is F_H/F_V at stage B. No parameter is fitted to this
+//! result.
 
 mod prepare;
 mod search;
@@ -20,12 +23,12 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::path::Path;
 
-/// Returns the seed at the end of a variant's name, or 1.
+/// Returns the seed in a variant's name, which is the number after `seed-`; `1` for other names.
 fn seed(variant: &str) -> &str {
     variant.rsplit_once("seed-").map_or("1", |(_, seed)| seed)
 }
 
-/// Returns the loose scene of a variant.
+/// Returns the scene of a variant with loose discs, before compaction.
 fn loose(variant: &str) -> Result<Scene, Box<dyn Error>> {
     let text = include_str!("loose.toml");
     let mut source = SceneSource::from_text("loose.toml", Path::new(""), text);
@@ -35,7 +38,7 @@ fn loose(variant: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(source.set("grains.disc.packed.seed", seed(variant)).scene(&read_grains)?)
 }
 
-/// Rounds discs and walls to the nanometre and moves the lower corner of the box to zero.
+/// Moves the lower corner of the box to the origin, and rounds the positions of discs and walls to 1 nm.
 fn rounded(mut packing: Scene) -> Scene {
     let round = |length: f64| (length * 1e9).round() / 1e9;
     let mut corner = [0.0; 2];
@@ -55,7 +58,8 @@ fn rounded(mut packing: Scene) -> Scene {
     packing
 }
 
-/// Returns the discs as a LAMMPS data file, with the density of a sphere of the same mass.
+/// Returns the discs in the format of a LAMMPS data file. The density of each disc is that of a sphere with the radius
+/// and the mass of the disc.
 fn data(packing: &Scene) -> String {
     let [width, height] = walls::size(packing);
     let mut text = format!(
@@ -71,8 +75,9 @@ fn data(packing: &Scene) -> String {
     text
 }
 
-/// Returns the scene of a variant with a packing from its file. Contact laws and times are those of the first packing
-/// with the same table.
+/// Returns the scene of a variant with the discs of the file `data` and the walls of `packing`. If the variant's name
+/// begins with `table` or `fifty-elastic`, contact laws and times are those of the variant of the case with this name
+/// without `-seed…`. Otherwise, they are those of the case's own scene.
 fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
     let named = ["table", "fifty-elastic"].iter().any(|name| variant.starts_with(name));
     let table = if named { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
@@ -86,14 +91,14 @@ fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn E
     Ok(scene)
 }
 
-/// Returns a variant of the case with its packing.
+/// Returns the scene of a variant with the packing that the case contains.
 fn as_kept(variant: &str) -> Result<Scene, Box<dyn Error>> {
     let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
     let source = if variant == PLAIN { case.source() } else { case.source().variant(variant) };
     Ok(source.scene(&read_grains)?)
 }
 
-/// Prints a variant with its walls as the scene file has them.
+/// Prints the packing file and the wall motions of a variant in the format of the scene file.
 fn print(variant: &str, data: &str, scene: &Scene) {
     println!("[variants.{variant}]\ngrains.disc.file.path = \"{data}\"");
     for wall in &scene.walls {
@@ -121,7 +126,8 @@ fn print(variant: &str, data: &str, scene: &Scene) {
     println!();
 }
 
-/// Returns a speed with all digits, because one unit in the last place can change the path of a packing near its limit.
+/// Returns a speed (m/s) as text with all digits, because a change of the last digit can change the later motion of the
+/// discs.
 fn exact(speed: f64) -> String {
     format!("{:?}", speed + 0.0)
 }

@@ -1,6 +1,6 @@
-//! Preparation of a dense packing of discs in contact. The discs fly without friction while the walls move in slowly,
-//! like a shaken assembly. When they are jammed, they come to rest, and the walls open until no disc presses on
-//! another.
+//! Preparation of a dense packing of discs in contact. Frictionless discs move at random while the walls close slowly,
+//! as in a shaken assembly. When the discs are jammed, they are stopped. The walls then compress them with damping, and
+//! open until the contacts are free of force.
 
 use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
 use grainbench::cases::stage::Stage;
@@ -9,26 +9,29 @@ use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::Scene;
 use std::error::Error;
 
-/// Speed of a flying disc (m/s). It is restored after each interval, because the walls do work on the discs.
+/// Initial speed of the discs (m/s). Before each interval, the velocities are scaled so that the discs have their
+/// initial kinetic energy, because the walls do work on the discs.
 const SPEED: f64 = 0.3;
-/// Duration of an interval (s), and the largest number of intervals.
+/// Duration of an interval (s).
 const STRETCH: f64 = 50.0;
+/// Maximum number of intervals.
 const STRETCHES: u32 = 500;
-/// Wall speed during the flight, over the width of the box (1/s).
+/// Wall speed divided by the width of the box while the discs move freely (1/s).
 const RATE: f64 = 5e-6;
-/// Mean number of contacts per disc during an interval above which the discs count as jammed.
+/// Number of contacts per disc, averaged over an interval, above which the discs count as jammed.
 const JAMMED: f64 = 0.5;
-/// Wall speed over the width of the box when the walls compress the jammed discs at rest (1/s).
+/// Wall speed divided by the width of the box while the walls compress the jammed discs (1/s).
 const PRESS: f64 = 1.6e-4;
-/// Damping α during this compression (1/s).
+/// Global damping α while the walls compress the jammed discs (1/s).
 const DAMPING: f64 = 5.0;
-/// Mean overlap over the mean radius: after the compression, and the value that counts as contact without force.
+/// Mean overlap divided by the mean radius, at which the compression ends.
 const PRESSED: f64 = 2e-3;
+/// Mean overlap divided by the mean radius, below which the contacts count as free of force.
 const TOUCHING: f64 = 5e-6;
 
-/// Prepares the packing of a loose scene.
+/// Compacts the discs of a loose scene to a dense packing.
 pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
-    // Directions by the golden angle; the first collisions randomise them.
+    // The initial directions of consecutive discs differ by the golden angle. The first collisions randomise them.
     for (number, grain) in scene.grains.iter_mut().enumerate() {
         let angle = number as f64 * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
         grain.velocity = SPEED * Vector3::new(angle.cos(), angle.sin(), 0.0);
@@ -61,7 +64,8 @@ pub(crate) fn prepare(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     open(scene)
 }
 
-/// Opens the walls until the discs touch without overlap. The contact forces decrease linearly to zero.
+/// Opens the walls until the overlaps of the discs are negligible. The strain of each opening is 0.98 of the strain at
+/// which the wall forces would vanish if they decreased linearly.
 fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
     let (mut strain, mut before) = (0.0, None);
     for _ in 0..20 {

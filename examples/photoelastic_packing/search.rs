@@ -7,16 +7,17 @@ use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::{Duration, Scene};
 use std::error::Error;
 
-/// F_H/F_V at stage A.
+/// Ratio F_H/F_V of horizontal to vertical wall force at stage A.
 const RATIO: f64 = 0.39;
-/// Mean overlap over mean radius at stage A.
+/// Mean overlap divided by the mean radius at stage A.
 const OVERLAP: f64 = 1e-3;
-/// F_V at stage B over F_V at stage A.
+/// F_V at stage B divided by F_V at stage A.
 const GROWTH: f64 = 1.04348;
-/// Largest vertical strain tried at one strain ratio. Beyond it, the ratio has no stage A.
+/// Vertical strain after which the search at one strain ratio ends. A strain ratio that needs a larger strain has no
+/// stage A.
 const FAR: f64 = 0.1;
 
-/// Times (s) of a scene: the walls stop, stage A, the walls stop again, stage B.
+/// Times (s) of a scene: first stop of the walls, stage A, second stop of the walls, stage B.
 #[derive(Clone, Copy)]
 struct Times {
     stop: f64,
@@ -25,12 +26,12 @@ struct Times {
     b: f64,
 }
 
-/// Wall motion as strains of the initial box.
+/// Wall motion as strains relative to the initial box.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WallStrains {
     /// Inward vertical strain up to stage A.
     pub(crate) strain: f64,
-    /// Outward horizontal strain over the vertical strain.
+    /// Outward horizontal strain divided by inward vertical strain, up to stage A.
     pub(crate) ratio: f64,
     /// Inward vertical and outward horizontal strain from stage A to stage B.
     pub(crate) further: f64,
@@ -39,18 +40,19 @@ pub(crate) struct WallStrains {
 /// Function that runs a scene for a time (s) and returns the final snapshot.
 type Run = fn(&Scene, f64) -> Result<Snapshot, Box<dyn Error>>;
 
-/// Method of the runs and start of the search. Runs of elastic discs take a thousand times as long, and their walls
-/// move too fast for meaningful forces during the motion.
+/// Solver and initial values of the search, for discs with spring contacts or for elastic discs. A run with elastic
+/// discs takes a thousand times the computing time of a run with spring contacts. The walls then move so fast that the
+/// forces during the motion have no meaning.
 struct Manner {
     run: Run,
-    /// First strain ratio of stage A, in fifths.
+    /// First strain ratio tried for stage A, in units of 1/5.
     first: i32,
-    /// First strain after stage A; `None` if it is read while the walls move.
+    /// First strain tried after stage A. If it is `None`, a run with moving walls determines it.
     further: Option<f64>,
-    /// Factor on a strain after stage A that was too small.
+    /// Factor by which a strain after stage A increases if it was too small.
     widen: f64,
-    /// True if forces relax at rest. The growth of F_V is then relative to a packing whose walls stop for the same
-    /// time.
+    /// True if contact forces relax at rest. The growth of F_V is then relative to F_V at the time of stage B in a run
+    /// without wall motion after stage A.
     relaxes: bool,
 }
 
@@ -65,7 +67,7 @@ pub(crate) struct Search<'s> {
 }
 
 impl<'s> Search<'s> {
-    /// Reads the times of the stages from the motion of the scene's first wall.
+    /// Reads the times of the stages from the motion of the first wall and the duration of the scene.
     pub(crate) fn new(scene: &'s Scene) -> Result<Self, Box<dyn Error>> {
         let (Some([first, second]), Duration::Seconds(b)) =
             (scene.walls.first().map(|wall| &wall.motion.phases[..]), scene.duration)
@@ -95,13 +97,14 @@ impl<'s> Search<'s> {
         scene
     }
 
-    /// Finds the wall motion.
+    /// Finds the strains up to stage A and from stage A to stage B.
     pub(crate) fn impose(&self) -> Result<WallStrains, Box<dyn Error>> {
         let a = self.to_a()?;
         self.to_b(a)
     }
 
-    /// Finds stage A at a strain ratio: the strain with the required mean overlap.
+    /// Finds the vertical strain at which the mean overlap is that of stage A, for one strain ratio. The first trial is
+    /// the strain `guess`. Returns `None` if the strain exceeds [`FAR`].
     fn at_overlap(&self, ratio: f64, guess: f64) -> Result<Option<(WallStrains, Stage)>, Box<dyn Error>> {
         let at = |strain: f64| -> Result<(WallStrains, Stage), Box<dyn Error>> {
             let imposed = WallStrains { strain, ratio, further: 0.0 };
@@ -131,8 +134,8 @@ impl<'s> Search<'s> {
         Ok(Some(best))
     }
 
-    /// Finds stage A. The strain ratio increases from the first one until F_H/F_V falls below the required value; an
-    /// interpolation between the last two ratios follows.
+    /// Finds stage A. The strain ratio increases in steps of 1/5 until F_H/F_V falls below the required value.
+    /// Interpolation between the last two strain ratios then gives the result.
     fn to_a(&self) -> Result<(WallStrains, Stage), Box<dyn Error>> {
         let mut before: Option<(WallStrains, Stage)> = None;
         for fifth in self.manner.first..10 {
@@ -173,7 +176,8 @@ impl<'s> Search<'s> {
         Ok(best)
     }
 
-    /// Finds the strain from stage A at which F_V has the required growth: first while the walls move, then at rest.
+    /// Finds the strain from stage A to stage B at which F_V at rest has the required growth. The first trial is
+    /// [`Manner::further`]. If it is `None`, a run with moving walls gives the first trial.
     fn to_b(&self, (a, of_a): (WallStrains, Stage)) -> Result<WallStrains, Box<dyn Error>> {
         let alone = if self.manner.relaxes {
             Stage::from_snapshot(&(self.manner.run)(&self.driven(&a), self.times.b)?)
@@ -212,7 +216,7 @@ impl<'s> Search<'s> {
         Ok(WallStrains { further: best.0, ..a })
     }
 
-    /// Returns the strain from stage A at which F_V has the required growth while the walls move.
+    /// Returns the strain after stage A at which F_V has the required growth while the walls still move.
     fn on_the_way(&self, a: &WallStrains, grown: &dyn Fn(&Stage) -> f64) -> Result<f64, Box<dyn Error>> {
         let times = self.times;
         let mut found = None;

@@ -11,12 +11,12 @@ use grainbench::scene::scene::{Duration, Scene, WallShape};
 use grainbench::scene::solver::{Resolution, Solver};
 use std::error::Error;
 
-/// Time step of discs on springs: the default level of the case.
+/// Resolution of runs with spring contacts, the default level of the case.
 const RUNG: Resolution = Resolution::CriticalFraction(0.2);
-/// Grid of elastic discs: the level of the case.
+/// Resolution of runs with elastic discs, the level `R/2` of the case.
 const GRID: Resolution = Resolution::grid(2.0, 3);
 
-/// Wall speeds between two times (s): of the sides outwards, and of top and bottom inwards (m/s).
+/// Wall speeds (m/s) between the times `from` and `to` (s): outward for the sides, inward for top and bottom.
 pub(crate) struct Course {
     pub(crate) sides: f64,
     pub(crate) ends: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Course {
     pub(crate) to: f64,
 }
 
-/// Sets the motion of the walls.
+/// Replaces the motions of the four walls by `courses`.
 pub(crate) fn drive(scene: &mut Scene, courses: &[Course]) {
     for (number, wall) in scene.walls.iter_mut().enumerate() {
         let velocity = |course: &Course| match number {
@@ -58,7 +58,8 @@ pub(crate) fn fraction(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum::<f64>() / (width * height)
 }
 
-/// Runs for a time (s) and reports the state at regular intervals (s) until the callback stops it. Returns the final state.
+/// Runs a scene with spring contacts for `time` (s) and calls `go_on` with the state at intervals of `every` (s). The
+/// run ends early if `go_on` returns false. Returns the last state.
 pub(crate) fn watch(
     scene: &Scene,
     time: f64,
@@ -80,12 +81,13 @@ pub(crate) fn watch(
     Ok(snapshot)
 }
 
-/// Runs for a time (s) and returns the final state.
+/// Runs a scene with spring contacts for a time (s) and returns the final state.
 pub(crate) fn run(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
     watch(scene, time, time, |_| true)
 }
 
-/// Runs elastic discs for a time (s). The time step is the same for all times that are whole multiples of it.
+/// Runs a scene with elastic discs for a time (s) and returns the final state. The time step is shortened so that a
+/// whole number of steps fits into this time.
 pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn Error>> {
     let mut scene = scene.clone();
     scene.duration = Duration::Seconds(time);
@@ -96,7 +98,8 @@ pub(crate) fn run_elastic(scene: &Scene, time: f64) -> Result<Snapshot, Box<dyn 
     Ok(last)
 }
 
-/// Continues a scene from the discs and walls at the end of a run, without contact history.
+/// Moves the discs and walls of a scene to their states at the end of a run, and removes the motions of the walls. The
+/// contact history is lost.
 pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
     for (grain, state) in scene.grains.iter_mut().zip(&snapshot.grains) {
         (grain.position, grain.velocity, grain.spin) = (state.position, state.velocity, state.spin);
@@ -107,7 +110,7 @@ pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
     }
 }
 
-/// Sets all discs to rest.
+/// Sets the velocities and spins of all discs to zero.
 pub(crate) fn stop(scene: &mut Scene) {
     for grain in &mut scene.grains {
         (grain.velocity, grain.spin) = (Vector3::zeros(), Vector3::zeros());

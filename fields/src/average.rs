@@ -5,10 +5,10 @@ use grainbench_harness::statistics::interval;
 /// A mean with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Mean {
-    /// The mean.
+    /// Mean of all values.
     pub value: f64,
-    /// Half width of the interval at the confidence [`grainbench_harness::statistics::CONFIDENCE`]; `None` below two
-    /// blocks.
+    /// Half width of the confidence interval with the confidence level [`grainbench_harness::statistics::CONFIDENCE`];
+    /// `None` for fewer than two blocks.
     pub half_width: Option<f64>,
     /// Number of blocks.
     pub blocks: usize,
@@ -16,8 +16,8 @@ pub struct Mean {
 
 /// Returns the mean of a time series, with its confidence interval from the means of `blocks` equal blocks.
 ///
-/// Blocks are used because neighbouring frames are correlated; blocks longer than the correlation time are independent.
-/// Values that do not fill a block, at the start, count only for the mean. Returns `None` for an empty series.
+/// Neighbouring frames are correlated, but blocks longer than the correlation time are independent. If the blocks do
+/// not cover the whole series, the first values count only for the mean. Returns `None` for an empty series.
 #[must_use]
 pub fn mean(values: &[f64], blocks: usize) -> Option<Mean> {
     let average = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -36,7 +36,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_that_of_the_blocks() {
-        // The blocks have means 1, 2, 3, 4: s = √(5/3); Student's t for 3 degrees of freedom at 99 % is 5.840909.
+        // The blocks have the means 1, 2, 3 and 4, so their standard deviation is s = √(5/3). Student's t for 3 degrees
+        // of freedom at 99 % is 5.840909.
         let values = [0.5, 1.5, 2.0, 2.0, 3.0, 3.0, 4.5, 3.5];
         let found = mean(&values, 4).unwrap();
         assert!((found.value - 2.5).abs() < 1e-15 && found.blocks == 4);

@@ -1,13 +1,13 @@
-//! Quantities of an element as columns. Tables, image data, means and figures use the same list.
+//! Quantities of a granular element as columns. Tables, image data, means and figures use the same list of columns.
 
 use crate::element::Element;
 
-/// Parameters that some quantities need besides the element.
+/// Parameters that some quantities need in addition to the element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grains {
-    /// Mean diameter d (m) and density ρ (kg/m³; kg/m² for discs), if known.
+    /// Mean diameter d (m) and mean density ρ (kg/m³) of the grains, if known.
     pub mean: Option<(f64, f64)>,
-    /// Plane of the rotation from the axes of the stress to those of D: two axes, with 0 for x.
+    /// Two axes (0 is x) of the plane for the angle between the principal axes of stress and strain rate.
     pub plane: [usize; 2],
 }
 
@@ -15,29 +15,29 @@ pub struct Grains {
 pub struct Column {
     /// Name in tables.
     pub name: &'static str,
-    /// Quantity in words, for summaries and figures.
+    /// Description of the quantity, for summaries and figures.
     pub words: &'static str,
-    /// SI unit in three dimensions; `1` for a pure number.
+    /// SI unit in three dimensions; `1` for a dimensionless quantity.
     pub unit: &'static str,
-    /// Computes the value, or `None` if it is unknown.
+    /// Function that returns the value; `None` if the value is unknown.
     pub of: fn(&Element, &Grains) -> Option<f64>,
 }
 
-/// Component of the velocity.
+/// Closure that returns a component of the velocity.
 macro_rules! velocity {
     ($axis:literal) => {
         |element, _| Some(element.motion.velocity?[$axis])
     };
 }
 
-/// Component of the velocity gradient.
+/// Closure that returns a component of the velocity gradient.
 macro_rules! gradient {
     ($row:literal, $column:literal) => {
         |element, _| Some(element.motion.gradient?[($row, $column)])
     };
 }
 
-/// Component of the stress.
+/// Closure that returns a component of the symmetric part of the stress.
 macro_rules! stress {
     ($row:literal, $column:literal) => {
         |element, _| element.stress.map(|stress| 0.5 * (stress[($row, $column)] + stress[($column, $row)]))

@@ -4,11 +4,13 @@
 //! T = (1/V) Σ Δx⊗F over the contacts of grains whose centre is in the cell       | (1/V) Σ V_p σ_p
 //! ```
 //!
-//! Δx is the vector from the centre of a grain to its contact, and F the force on the grain, so compression is
+//! V is the volume of the cell. For grains, Δx is the vector from the centre of a grain to a contact, and F the force
+//! on the grain at this contact. For material points, V_p is the volume of a point and σ_p its stress. Compression is
 //! negative. Contacts with walls are included. Both sums are consistent: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by
-//! Gauss' theorem. A grain belongs as a whole to the cell of its centre. T of a single cell therefore scatters with the
-//! grains that intersect its boundary, but sums over cells are exact. Momentum flux is not included. If V σ of each
-//! grain is given, it belongs to the cell of the centre at the time of the snapshot.
+//! Gauss' theorem. A grain belongs as a whole to the cell of its centre. T of a single cell therefore depends on the
+//! grains that intersect the boundary of the cell, but sums over all cells are exact. Momentum flux is not included. A
+//! snapshot may contain the virial of each grain (volume times mean stress of the grain) instead of contacts. The
+//! virial then belongs to the cell that contains the grain's centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
 use grainbench_scene::record::{GrainState, Partner, Snapshot};
@@ -17,7 +19,8 @@ use nalgebra::Matrix3;
 /// Kind of stress of grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stress {
-    /// Stress at an instant: from the contacts of a snapshot, or else from V σ of its grains.
+    /// Instantaneous stress from the contacts of a snapshot. If the snapshot has no list of contacts, the virials of
+    /// the grains are used.
     #[default]
     Instant,
     /// Time average since the previous snapshot, which a run writes for each grain on request.
@@ -25,23 +28,23 @@ pub enum Stress {
 }
 
 impl Stress {
-    /// Returns the kind of stress in words.
+    /// Returns a description of the kind of stress.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Instant => "stress of the instant",
-            Self::Interval => "stress as its mean over the time since the frame before",
+            Self::Instant => "instantaneous stress",
+            Self::Interval => "stress averaged over the time since the previous frame",
         }
     }
 }
 
-/// Returns true if a snapshot has time averages of the stress.
+/// Returns true if a snapshot of grains contains time averages of the stress.
 #[must_use]
 pub fn tells_interval(snapshot: &Snapshot) -> bool {
     snapshot.points.is_empty() && snapshot.grains.iter().any(|grain| grain.mean_virial.is_some())
 }
 
-/// Sums V σ of grains by cell (J), or returns `None` if a grain has no value.
+/// Returns the sum of the virials of the grains in each cell (J), or `None` if a grain has no virial.
 fn of_grains(
     snapshot: &Snapshot,
     grid: &Grid,
@@ -61,9 +64,9 @@ const fn symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
-/// Returns T of every cell (Pa; N/m in the plane), or `None` if it is unknown, because unknown stress is not zero.
+/// Returns the stress T of every cell (Pa; N/m for spheres in two dimensions), or `None` if it is unknown.
 ///
-/// Material points have only the stress at an instant.
+/// The stress of material points is always instantaneous, for both values of `which`.
 #[must_use]
 pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which: Stress) -> Option<Vec<Matrix3<f64>>> {
     let mut stress = vec![Matrix3::zeros(); grid.cells()];
@@ -101,7 +104,7 @@ pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which:
     for stress in &mut stress {
         *stress /= grid.volume();
         if dimension == 2 {
-            // Contacts of discs do not determine the stress along z, and pressure is defined in the plane.
+            // Contacts of discs do not determine the stress along z, and the pressure is defined in the plane.
             stress.set_row(2, &nalgebra::RowVector3::zeros());
             stress.set_column(2, &nalgebra::Vector3::zeros());
         }

@@ -12,7 +12,7 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
-/// The elements of one snapshot.
+/// Elements of one snapshot.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Step number of the frame.
@@ -40,19 +40,21 @@ impl Frame {
 pub struct Course {
     /// Grid of cells.
     pub grid: Grid,
-    /// Dimension of space; in the plane grains are treated as discs.
+    /// Dimension of space; in two dimensions grains are discs.
     pub space: Dimension,
-    /// Parameters of quantities.
+    /// Mean diameter and density of the grains, and plane in which angles between axes are measured.
     pub grains: Grains,
     /// Masks that exclude elements from means.
     pub masks: Masks,
     /// Frames in order of time.
     pub frames: Vec<Frame>,
-    /// True if velocities are computed from displacements between snapshots, instead of instantaneous velocities.
+    /// True if velocities are displacements between snapshots divided by the time between them. False if they are
+    /// instantaneous.
     pub between: bool,
     /// Tracers, if requested.
     pub trails: Option<Trails>,
-    /// Kind of stress of elements; by default the time average between frames, if available.
+    /// Kind of stress of the elements. If it is `None`, the stress is instantaneous until a snapshot contains the time
+    /// average between frames.
     pub stress: Option<Stress>,
     before: Option<Snapshot>,
 }
@@ -74,14 +76,14 @@ impl Course {
         }
     }
 
-    /// Adds a snapshot. With velocities between snapshots, the first snapshot adds no frame.
+    /// Adds a snapshot. If velocities come from displacements between snapshots, the first snapshot adds no frame.
     pub fn add(&mut self, snapshot: Snapshot) {
         self.grains.mean =
             self.grains.mean.or_else(|| mean_grain(&snapshot, self.space)).filter(|grain| grain.1.is_finite());
         if self.stress.is_none() && tells_interval(&snapshot) {
             self.stress = Some(Stress::Interval);
-            // All frames must have the same kind of stress. The time average of earlier frames is unknown, so their
-            // stress is removed.
+            // All frames must have the same kind of stress. The time average of the stress in earlier frames is
+            // unknown, so the stress in these frames becomes `None`.
             self.frames.iter_mut().flat_map(|frame| &mut frame.elements).for_each(|element| element.stress = None);
         }
         let movers = match &self.before {
@@ -107,7 +109,7 @@ impl Course {
         }
     }
 
-    /// Returns the value of a quantity in a cell of a frame.
+    /// Returns the value of a quantity in a cell of a frame; `None` if it is unknown or not finite.
     #[must_use]
     pub fn value(&self, column: &Column, frame: &Frame, cell: usize) -> Option<f64> {
         (column.of)(&frame.elements[cell], &self.grains).filter(|value| value.is_finite())
@@ -126,7 +128,7 @@ impl Course {
         mean(&values, blocks)
     }
 
-    /// Returns the mean of a quantity over unmasked elements, and the number of these elements.
+    /// Returns the mean of a quantity over all unmasked elements with a value, and the number of these elements.
     ///
     /// The confidence interval is computed from blocks of frames.
     #[must_use]
@@ -141,12 +143,12 @@ impl Course {
                 (sum, count) = (sum + total, count + values.len());
             }
         }
-        // Every element has the same weight, also in frames with few elements.
+        // The mean weights all elements equally, whatever the number of elements in their frame.
         mean(&means, blocks).map(|found| (Mean { value: sum / count as f64, ..found }, count))
     }
 
-    /// Returns the element with the mean tensors of a cell: stress, velocity and velocity gradient are averaged before
-    /// other quantities are computed. Returns `None` if the cell was always empty.
+    /// Returns the element with the time averages of stress, velocity, velocity gradient and packing fraction of a
+    /// cell. Other quantities can then be computed from these averages. Returns `None` if the cell was always empty.
     #[must_use]
     pub fn element_of_means(&self, cell: usize) -> Option<Element> {
         let all = || self.frames.iter().map(|frame| frame.elements[cell]);
@@ -169,7 +171,8 @@ impl Course {
     }
 }
 
-/// Returns the quantities that are nonlinear in the averaged tensors; these are also reported for mean tensors.
+/// Returns the quantities that are nonlinear functions of stress and velocity gradient. Reports also give the values of
+/// these quantities for the time averages of both tensors.
 pub fn of_means() -> impl Iterator<Item = &'static Column> {
     const NAMES: [&str; 7] = [
         "sine_of_friction",

@@ -1,21 +1,21 @@
 //! Elastic stress inside a disc under point forces at its rim.
 //!
-//! A force F on the edge of a half-plane makes a purely radial stress about its point (Flamant 1892; Timoshenko and
-//! Goodier, Theory of Elasticity, art. 36):
+//! A force F on the edge of a half-plane makes a purely radial stress around its point of application (Flamant 1892;
+//! Timoshenko and Goodier, Theory of Elasticity, art. 36):
 //!
 //! ```text
 //! σ_F(x) = −(2/(π r)) (F·e) e⊗e ,      r e = x − a,   a the point of the force, per metre of depth
 //! ```
 //!
-//! On a circle through a, e·n = r/(2R) at the rim point with outward normal n, so the traction there is −(F·e) e/(πR).
-//! Doubling the angle of the chord and summing over all forces F_i at normals n_i (as art. 41 does for two opposite
-//! forces) gives
+//! Consider a circle of radius R through a. At a rim point with outward normal n, e·n = r/(2R), so the traction there
+//! is −(F·e) e/(πR). The tractions of all forces F_i at normals n_i add up to
 //!
 //! ```text
 //! t = −ΣF/(2πR) + n ΣF·n_i/(2πR) − τ M/(2πR²) ,     M = R Σ n_i×F_i,  τ the tangent, counter-clockwise
 //! ```
 //!
-//! and three fields cancel this traction, so that the rim between the forces is free:
+//! This sum follows by doubling the angle of each chord, as in art. 41 for two opposite forces. Three fields cancel
+//! this traction, so that the rim between the forces is free:
 //!
 //! ```text
 //! uniform       −1 ΣF_i·n_i/(2πR)
@@ -23,10 +23,11 @@
 //! torque M      σ_rθ = M r²/(2πR⁴)               in balance with the body force of angular acceleration M/I, I = mR²/2
 //! ```
 //!
-//! Each field has harmonic σ_xx + σ_yy or is torsion, and is therefore compatible. The sum is exact in plane elasticity
-//! for any moduli, both for a disc in equilibrium and for a disc with rigid-body acceleration. Gravity is included,
-//! because it changes body force and acceleration alike. The centrifugal field, at most ρω²R², is not included. Stress
-//! diverges as 1/r at a point force; a real contact has a finite width.
+//! Each field is compatible, because its σ_xx + σ_yy is harmonic or the field is torsion. The sum is exact in plane
+//! elasticity for any moduli, both for a disc in equilibrium and for a disc with rigid-body acceleration. It is also
+//! exact under gravity, because gravity changes body force and acceleration alike. The centrifugal stress, at most
+//! ρω²R² for density ρ and angular velocity ω, is not included. Stress diverges as 1/r at a point force; a real contact
+//! has a finite width.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, Vector2};
@@ -35,7 +36,7 @@ use std::f64::consts::PI;
 /// A force at the rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// Outward unit normal of the rim where the force acts.
+    /// Outward unit normal of the rim at the point of the force.
     pub normal: Vector2<f64>,
     /// Force on the disc (N per metre of depth).
     pub force: Vector2<f64>,
@@ -65,7 +66,7 @@ impl LoadedDisc {
         Self { radius, loads, uniform, resultant, twist: torque / (2.0 * PI * radius.powi(4)) }
     }
 
-    /// Returns all grains of a plane snapshot under their contact forces, in the order of the grains.
+    /// Returns each grain of a two-dimensional snapshot as a disc under its contact forces, in the order of the grains.
     #[must_use]
     pub fn of_snapshot(snapshot: &Snapshot) -> Vec<Self> {
         let mut loads: Vec<Vec<Load>> = vec![Vec::new(); snapshot.grains.len()];
@@ -92,7 +93,7 @@ impl LoadedDisc {
         let mut stress = Matrix2::from_diagonal_element(self.uniform);
         for load in &self.loads {
             let chord = place - load.normal * radius;
-            // The singularity is cut off at a billionth of the radius.
+            // The distance to a point force is at least a billionth of the radius, so the stress stays finite.
             let square = chord.norm_squared().max((1e-9 * radius).powi(2));
             stress -= chord * chord.transpose() * (2.0 / PI * load.force.dot(&chord) / (square * square));
         }
@@ -113,7 +114,8 @@ mod tests {
         Load { normal: Vector2::new(angle.cos(), angle.sin()), force: Vector2::new(force.0, force.1) }
     }
 
-    /// Returns the largest traction on the rim away from the loads, relative to the mean stress of the loads.
+    /// Returns the largest traction on the rim away from the loads, divided by Σ|F|/(2πR), the sum of the forces per
+    /// length of the rim.
     fn rim_traction(disc: &LoadedDisc) -> f64 {
         let scale: f64 = disc.loads.iter().map(|load| load.force.norm()).sum::<f64>() / (2.0 * PI * disc.radius);
         (0..720)
@@ -142,8 +144,8 @@ mod tests {
         let centre = disc.stress(Vector2::zeros());
         assert!((centre.m11 / unit - 1.0).abs() < 1e-12, "σ_x = 2P/(πD)");
         assert!(((centre.m11 - centre.m22) / (4.0 * unit) - 1.0).abs() < 1e-12, "σ_x − σ_y = 8P/(πD)");
-        // Along the loaded diameter σ_x = 2P/(πD). Across it, at x = R/2, the stress is given by Timoshenko and Goodier's
-        // eq. (g) of art. 41.
+        // Along the loaded diameter σ_x = 2P/(πD). On the perpendicular diameter, at x = R/2, eq. (g) of art. 41 of
+        // Timoshenko and Goodier gives σ_y.
         assert!((disc.stress(Vector2::new(0.0, 0.6 * radius)).m11 / unit - 1.0).abs() < 1e-12);
         let side = disc.stress(Vector2::new(0.5 * radius, 0.0));
         let (d, x) = (2.0 * radius, 0.5 * radius);
@@ -156,7 +158,7 @@ mod tests {
     fn any_forces_leave_the_rim_free_and_the_inside_in_balance() {
         let radius = 0.7;
         let balanced = {
-            // Oblique forces along chords are in equilibrium of force and moment.
+            // Pairs of opposite forces along chords are in equilibrium of force and moment.
             let (a, b, c) = (0.3_f64, 2.0_f64, 4.1_f64);
             let chord = |from: f64, to: f64| (to.cos() - from.cos(), to.sin() - from.sin());
             let pair = |from: f64, to: f64, size: f64| {
@@ -171,7 +173,7 @@ mod tests {
             assert!(rim_traction(&disc) < 1e-12, "{}", rim_traction(&disc));
             assert_eq!(disc.resultant.norm() > 1e-12, accelerates);
             for place in [Vector2::new(0.1, -0.2), Vector2::new(-0.3, 0.25), Vector2::zeros()] {
-                // ρ(a + ω̇×x) = F/(πR²) + 2M/(πR⁴) τ r
+                // Mass times acceleration per volume: ρ(a + ω̇×x) = F/(πR²) + 2M/(πR⁴) τ r.
                 let spinning = Vector2::new(-place.y, place.x) * (4.0 * disc.twist);
                 let inertia = disc.resultant / (PI * radius * radius) + spinning;
                 let off = (divergence(&disc, place) - inertia).norm();

@@ -1,4 +1,4 @@
-//! Granular elements: contents of the cells of a grid, with the same definition for grains and for material points
+//! Granular elements: quantities of the cells of a grid, with the same definition for grains and for material points
 //! (Rycroft, Kamrin and Bazant 2009, §3).
 
 use crate::contact_stress::{Stress, contact_stress};
@@ -11,16 +11,16 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
 use nalgebra::{Matrix3, Vector3};
 
-/// Contents of a cell.
+/// Quantities of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
     /// Fraction of the cell volume that grains or material fill.
     pub packing_fraction: f64,
-    /// Stress T (Pa), negative in compression; `None` if contacts are unknown.
+    /// Stress T (Pa), negative in compression; `None` if it is unknown.
     pub stress: Option<Matrix3<f64>>,
     /// Mean velocity and its gradient.
     pub motion: Motion,
-    /// Number of axes.
+    /// Dimension of space, 2 or 3.
     pub dimension: usize,
 }
 
@@ -31,13 +31,14 @@ impl Element {
         self.stress.map(|stress| tensor::pressure(&stress, self.dimension))
     }
 
-    /// Returns the Mohr–Coulomb sin φ, or `None` without pressure.
+    /// Returns the Mohr–Coulomb sin φ; `None` if the pressure is unknown or not positive.
     #[must_use]
     pub fn sine_of_friction(&self) -> Option<f64> {
         self.under_pressure().map(|stress| tensor::sine_of_friction(&stress, self.dimension))
     }
 
-    /// Returns the Drucker–Prager ratio, or `None` without pressure.
+    /// Returns the Drucker–Prager ratio |T₀|/(√2 p) with the deviator T₀ of the stress; `None` if the pressure p is
+    /// unknown or not positive.
     #[must_use]
     pub fn drucker_prager(&self) -> Option<f64> {
         self.under_pressure().map(|stress| tensor::drucker_prager(&stress, self.dimension))
@@ -47,37 +48,41 @@ impl Element {
         self.stress.filter(|stress| tensor::pressure(stress, self.dimension) > 0.0)
     }
 
-    /// Returns |D₀| (1/s): the Frobenius norm of the deviator of D = (L + Lᵀ)/2.
+    /// Returns |D₀| (1/s), the Frobenius norm of the deviator of the strain rate D = (L + Lᵀ)/2; `None` if the velocity
+    /// gradient L is unknown.
     #[must_use]
     pub fn shear_rate(&self) -> Option<f64> {
         let rate = self.motion.gradient?.symmetric_part();
         Some(tensor::deviator(&rate, self.dimension).norm())
     }
 
-    /// Returns |I₀| = |D₀| d √(ρ/p) for grains of diameter d (m) and density ρ (kg/m³), or `None` without pressure.
+    /// Returns the inertial number |I₀| = |D₀| d √(ρ/p) for grains of diameter d (m) and density ρ (kg/m³). Returns
+    /// `None` if the pressure p is unknown or not positive, or if |D₀| is unknown.
     ///
-    /// For a simple shear of rate γ̇, |D₀| = γ̇/√2, so that the usual I is √2 |I₀|.
+    /// For a simple shear of rate γ̇, |D₀| = γ̇/√2, so the usual I is √2 |I₀|.
     #[must_use]
     pub fn inertial_number(&self, diameter: f64, density: f64) -> Option<f64> {
         let pressure = self.pressure().filter(|&pressure| pressure > 0.0)?;
         Some(self.shear_rate()? * diameter * (density / pressure).sqrt())
     }
 
-    /// Returns the angles between the axes of the stress and of D, with the rotation in the plane of two axes.
+    /// Returns the angles between the principal axes of the stress and of the strain rate D. `plane` contains the two
+    /// axes (0 is x) of the plane for [`tensor::Coaxiality::in_plane`].
     #[must_use]
     pub fn coaxiality(&self, plane: [usize; 2]) -> Option<tensor::Coaxiality> {
         tensor::coaxiality(&self.stress?, &self.motion.gradient?.symmetric_part(), self.dimension, plane)
     }
 }
 
-/// Computes the cells of a snapshot in the order of [`Grid::place`], from material points if there are any, else from
-/// grains.
+/// Computes the elements of a snapshot in the order of [`Grid::place`]. If the snapshot has material points, the
+/// elements are computed from these points, otherwise from the grains.
 #[must_use]
 pub fn elements(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<Element> {
     elements_moving(snapshot, motion(&movers(snapshot), space.count(), grid), Stress::Instant, space, grid)
 }
 
-/// Computes the cells from a given motion, such as one between two snapshots, and a given kind of stress.
+/// Computes the elements of a snapshot for a given kind of stress and a given motion of the cells, such as the motion
+/// between two snapshots.
 #[must_use]
 pub fn elements_moving(
     snapshot: &Snapshot,
@@ -98,7 +103,7 @@ pub fn elements_moving(
     motion.into_iter().zip(filled).enumerate().map(element).collect()
 }
 
-/// Returns the mean diameter (m) and mean density (kg/m³; kg/m² for discs) of the grains of a snapshot.
+/// Returns the mean diameter (m) and mean density (kg/m³) of the grains of a snapshot. Discs are one metre deep.
 ///
 /// All grains have equal weights. Returns `None` if there are no grains.
 #[must_use]
@@ -115,7 +120,8 @@ pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     (count > 0.0).then_some((diameter / count, density / count))
 }
 
-/// Returns the sum of x⊗F over all cells, ΣV T (J). It is equal for all grids that contain all centres.
+/// Returns the stress T times the cell volume V, summed over all cells (J; J/m for discs); `None` if the stress is
+/// unknown. The sum is the same for all grids that contain all centres.
 #[must_use]
 pub fn whole_stress(elements: &[Element], grid: &Grid) -> Option<Matrix3<f64>> {
     let weighted_stress = |element: &Element| element.stress.map(|stress| stress * grid.volume());
@@ -133,7 +139,8 @@ pub fn velocity_at(
     interpolated(grid, periodic, place, |cell| elements[cell].motion.velocity)
 }
 
-/// Interpolates a quantity linearly between the centres of the surrounding cells with a value.
+/// Interpolates a quantity linearly between the centres of the surrounding cells. Cells without a value do not count.
+/// Returns `None` if no surrounding cell has a value.
 #[must_use]
 pub fn interpolated<T>(
     grid: &Grid,
@@ -158,7 +165,7 @@ where
             weight *= if upper { part[axis] } else { 1.0 - part[axis] };
             let count = grid.count[axis] as i64;
             let number = lower[axis] + i64::from(upper);
-            // Beyond the outermost centres the outermost cell is used.
+            // Beyond the outermost cell centres, the value of the outermost cell applies.
             at[axis] = if periodic[axis] { number.rem_euclid(count) } else { number.clamp(0, count - 1) } as usize;
         }
         let Some(value) = value_at(grid.place(at)).filter(|_| weight > 0.0) else { continue };

@@ -1,5 +1,4 @@
-//! Figures of granular elements, side by side or as a film, with one definition for grains and for material
-//! points.
+//! Figures and films of granular elements, with the same definition for grains and for material points.
 
 use crate::column::{COLUMNS, Column, Grains};
 use crate::course::{Course, Frame};
@@ -12,7 +11,7 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;
 use nalgebra::Vector3;
 
-/// Pixels per cell of a figure.
+/// Width of a cell in a figure, and largest width of a cell in a film (pixels).
 const PIXELS: u32 = 24;
 /// Pixels along the longer side of a film panel.
 const LONGEST: u32 = 320;
@@ -22,9 +21,10 @@ const FRAMES: usize = 60;
 /// A panel: title, snapshot, and the scene of the snapshot.
 pub type Shot<'a> = (String, &'a Snapshot, &'a Scene);
 
-/// Returns panels of the quantity with the column name `name`, in plane scenes with cells of about `size` (m).
+/// Returns panels of the quantity with the column name `name`, for two-dimensional scenes, with cells of about `size`
+/// (m).
 ///
-/// All panels have the same scale, with the `range` of values.
+/// All panels have the same scale, from the lower to the upper end of `range`.
 #[must_use]
 pub fn pictures(name: &str, shots: &[Shot<'_>], size: f64, range: (f64, f64)) -> Field {
     let column = named(name);
@@ -55,7 +55,7 @@ impl Units {
     /// Metres and seconds.
     pub const SI: Self = Self { length: "m", time: "s" };
 
-    /// Converts the SI unit of a kinematic column to these units.
+    /// Converts the SI unit of a column to these units. Only units of speed and rate change.
     fn unit(self, si: &str) -> String {
         match si {
             "m/s" => format!("{}/{}", self.length, self.time),
@@ -65,7 +65,7 @@ impl Units {
     }
 }
 
-/// Quantities over a sheet of cells, one cell deep, at several times.
+/// Quantities in a sheet of cells, one cell deep, at several times.
 pub struct Sheet {
     /// Grid of cells.
     pub grid: Grid,
@@ -73,16 +73,16 @@ pub struct Sheet {
     pub units: Units,
     /// Label of the times, such as `time t (s)`.
     pub clock: String,
-    /// Times of the frames.
+    /// Times of the frames, in the unit that `clock` states.
     pub times: Vec<f64>,
-    /// Plotted quantities: the column name, and values by time and cell; NaN for blank cells.
+    /// Plotted quantities. Each has a column name and values by time and cell, with NaN for blank cells.
     pub shown: Vec<(&'static str, Vec<Vec<f64>>)>,
 }
 
-/// Returns a film of quantities over a series of snapshots, or a single figure for one frame.
+/// Returns a film of quantities with at most 60 frames of a series, or a figure if the series has one frame.
 ///
-/// Returns `None` if the grid is not one cell deep, or no element has any of the quantities. Cells with too few members
-/// are blank.
+/// Returns `None` if there are no frames, if the grid is not one cell deep, or if no cell has a value. Cells with too
+/// few members are blank.
 #[must_use]
 pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
     let count = course.frames.len().min(FRAMES);
@@ -108,9 +108,9 @@ pub fn film(course: &Course, names: &[&str]) -> Option<Field> {
 }
 
 impl Sheet {
-    /// Returns the quantities side by side, each with its own scale, from zero to the 98th percentile.
+    /// Returns the quantities side by side. Each has its own scale, from zero to the 98th percentile of its values.
     ///
-    /// The scale of packing fractions starts at the 2nd percentile.
+    /// The scale of packing fractions starts near the 2nd percentile.
     #[must_use]
     pub fn film(&self) -> Option<Field> {
         let [across, up] = sheet(&self.grid)?;
@@ -136,13 +136,13 @@ impl Sheet {
     }
 }
 
-/// Returns the lower end of the range from the 2nd percentile. Packing fractions of a bulk vary little, so they do not
-/// start at zero.
+/// Returns the lower end of the scale, given the 2nd percentile of the values. For packing fractions, which vary
+/// little, this percentile is rounded down to a multiple of 0.05. For other quantities, the lower end is zero.
 fn lowest(name: &str, value: f64) -> f64 {
     if name == "packing_fraction" { ((value * 20.0).floor() / 20.0).max(0.0) } else { 0.0 }
 }
 
-/// Returns the two axes of a sheet of cells that is one cell deep along the third axis.
+/// Returns the two axes of the plane of a grid that is one cell deep along the third axis; `None` for other grids.
 fn sheet(grid: &Grid) -> Option<[usize; 2]> {
     [[0, 1], [0, 2], [1, 2]].into_iter().find(|axes| grid.count[3 - axes[0] - axes[1]] == 1)
 }
@@ -164,7 +164,7 @@ fn field(
     Field { label, unit, range, shades: Shades::Amount, pixel, length, panels, clock, times }
 }
 
-/// Draws the cells of a sheet as rectangles with a width of `pixels`, rows from the top.
+/// Draws the cells of a sheet as rectangles that are `pixels` wide. The first row of pixels is the top row.
 fn raster(grid: &Grid, [across, up]: [usize; 2], pixels: u32, level: impl Fn(usize) -> u8) -> Raster {
     let tall = (f64::from(pixels) * grid.cell[up] / grid.cell[across]).round().clamp(1.0, 4096.0) as u32;
     let (columns, rows) = (grid.count[across] as u32, grid.count[up] as u32);
@@ -189,7 +189,7 @@ mod tests {
         let at = |column: u32, row: u32| all.levels[(row * all.width + column) as usize];
         assert_eq!((all.width, all.height, sheet(&grid)), (2 * PIXELS, 3 * PIXELS, Some([0, 1])));
         assert_eq!([at(0, 0), at(2 * PIXELS - 1, 0), at(0, 3 * PIXELS - 1), at(PIXELS, 3 * PIXELS - 1)], [5, 6, 1, 2]);
-        // A sheet in x and z, with cells twice as high as wide.
+        // A sheet in the plane of x and z, with cells twice as high as wide.
         let grid = Grid { count: [2, 1, 3], ..grid };
         let all = raster(&grid, [0, 2], PIXELS, |place| 1 + place as u8);
         assert_eq!((all.width, all.height, sheet(&grid)), (2 * PIXELS, 6 * PIXELS, Some([0, 2])));

@@ -3,7 +3,7 @@
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
-/// Equal cells that fill a box; in the plane they are one cell deep, from −½ to ½.
+/// Equal cells that fill a box. In two dimensions the grid is one cell deep, from z = −½ to z = ½.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Lower corner (m).
@@ -29,13 +29,13 @@ impl Grid {
         self.count.iter().product()
     }
 
-    /// Returns the volume of a cell (m³; m² in the plane).
+    /// Returns the volume of a cell (m³; m² in two dimensions).
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.cell.product()
     }
 
-    /// Returns the lower corner of the cell with the given index along each axis (m).
+    /// Returns the lower corner (m) of the cell with the given index along each axis.
     #[must_use]
     pub fn corner(&self, at: [usize; 3]) -> Vector3<f64> {
         self.low + Vector3::from_fn(|axis, _| at[axis] as f64 * self.cell[axis])
@@ -53,14 +53,14 @@ impl Grid {
         at[0] + self.count[0] * (at[1] + self.count[1] * at[2])
     }
 
-    /// Returns the index along each axis of a cell in the list of all cells.
+    /// Returns the index of a cell along each axis, from its index in the list of all cells.
     #[must_use]
     pub const fn at(&self, place: usize) -> [usize; 3] {
         let [across, deep, _] = self.count;
         [place % across, place / across % deep, place / (across * deep)]
     }
 
-    /// Returns the cell that contains a point (m).
+    /// Returns the index of the cell that contains a point (m), or `None` if the point is outside the grid.
     #[must_use]
     pub fn find(&self, point: Vector3<f64>) -> Option<usize> {
         let mut at = [0; 3];

@@ -1,7 +1,7 @@
-//! Fields from the results of runs: stress inside discs, figures of it, and means over the cells of a grid.
+//! Fields from the results of runs: stress inside discs, figures of this stress, and means over the cells of a grid.
 //!
-//! Material points carry fields, and grains carry contact forces. This crate converts both to the same quantities at
-//! the same positions.
+//! Solvers with material points report the stress at each point, and solvers with grains report contact forces. This
+//! crate converts both to the same quantities at the same positions.
 
 pub mod average;
 pub mod column;

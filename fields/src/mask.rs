@@ -7,15 +7,16 @@ use nalgebra::Vector3;
 /// Reasons for the exclusion of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MaskReasons {
-    /// The cell has too few members.
+    /// The cell contains too few grains or points.
     pub few: bool,
-    /// The cell is at the free surface: the packing fraction of it or of the cell above is below that of the bulk.
+    /// The cell is at the free surface: the packing fraction of the cell, or of the cell above, is below the limit for
+    /// the bulk.
     pub surface: bool,
-    /// The cell is at a non-periodic side of the grid.
+    /// The cell is at a non-periodic side of the grid other than its top.
     pub wall: bool,
     /// The cell is near an orifice.
     pub orifice: bool,
-    /// The shear rate of the cell is below the limit for flow.
+    /// The shear rate of the cell is unknown, or below the limit for flow.
     pub still: bool,
 }
 
@@ -48,15 +49,15 @@ pub struct Masks {
     pub fewest: usize,
     /// Packing fraction below which a cell is not part of the bulk.
     pub surface: f64,
-    /// Vertical axis, and true if its high end is up.
+    /// Index of the vertical axis, and true if its positive direction is up.
     pub up: (usize, bool),
-    /// Periodic axes.
+    /// True for each periodic axis.
     pub periodic: [bool; 3],
-    /// Number of axes.
+    /// Dimension of space, 2 or 3.
     pub dimension: usize,
-    /// Orifice, if any.
+    /// Orifice near which cells are excluded; none if there is no orifice.
     pub orifice: Option<Orifice>,
-    /// Minimum |D₀| (1/s) of a flowing cell; `None` to include cells at rest.
+    /// Minimum shear rate |D₀| (1/s) of a flowing cell; `None` to include cells at rest.
     pub flowing: Option<f64>,
 }
 
@@ -65,12 +66,12 @@ pub struct Masks {
 pub struct Orifice {
     /// Centre along each axis (m); `None` along the length of a slit.
     pub middle: [Option<f64>; 3],
-    /// Distance from the orifice to a cell centre within which the cell is excluded (m).
+    /// Radius around the orifice (m). Cells with a centre inside this radius are excluded.
     pub reach: f64,
 }
 
 impl Orifice {
-    /// Returns the distance from a position (m).
+    /// Returns the distance of a position from the orifice (m).
     fn distance(&self, place: Vector3<f64>) -> f64 {
         let along = |axis: usize| self.middle[axis].map_or(0.0, |middle| place[axis] - middle);
         Vector3::from_fn(|axis, _| along(axis)).norm()
@@ -78,7 +79,7 @@ impl Orifice {
 }
 
 impl Masks {
-    /// Returns the masks of all cells of a snapshot.
+    /// Returns the reasons for the exclusion of each cell, in the order of `elements`.
     #[must_use]
     pub fn apply(&self, elements: &[Element], grid: &Grid) -> Vec<MaskReasons> {
         let (up, high) = self.up;
@@ -108,14 +109,15 @@ impl Masks {
     #[must_use]
     pub fn words(&self) -> String {
         let mut words = format!(
-            "without cells of fewer than {} members, at the surface (packing fraction below {} there or above), at sides",
+            "without cells that have fewer than {} members, are at the surface (packing fraction below {} in the cell \
+             or above it) or at the sides",
             self.fewest, self.surface
         );
         if let Some(orifice) = self.orifice {
-            words += &format!(", within {} m of the orifice", orifice.reach);
+            words += &format!(", or within {} m of the orifice", orifice.reach);
         }
         if let Some(least) = self.flowing {
-            words += &format!(", where |D₀| is below {least}/s");
+            words += &format!(", or where |D₀| is below {least}/s");
         }
         words
     }
@@ -151,10 +153,10 @@ mod tests {
         assert_eq!(words(1, 2), "");
         assert_eq!([words(2, 2), words(1, 3), words(0, 2)], ["few", "surface", "wall"]);
         assert_eq!([words(2, 0), words(2, 1), words(2, 4)], ["wall+orifice", "orifice", "surface"]);
-        // A cell without shear is at rest, and so is a cell without a known shear rate.
+        // A cell counts as at rest if it does not shear or if its shear rate is unknown.
         let still = Masks { flowing: Some(0.1), ..masks.clone() }.apply(&elements, &grid);
         assert_eq!(still[grid.place([1, 0, 2])].words(), "still");
-        // With the opposite vertical direction the surface is at the other end.
+        // If the vertical axis points down, the surface is at the opposite end of the grid.
         let masks = Masks { up: (2, false), orifice: None, ..masks };
         let masked = masks.apply(&elements, &grid);
         assert_eq!(masked[grid.place([2, 0, 0])].words(), "");

@@ -1,4 +1,5 @@
-//! Motion of a cell: mean velocity, velocity gradient, and residual velocities of single grains.
+//! Motion of a cell: mean velocity v⁰, velocity gradient L and residual velocity |v′| of the n grains in it, with their
+//! mean position x̄.
 //!
 //! ```text
 //! v = v⁰ + L (x − x̄)      least squares over the centres of grains in the cell; material points are weighted by volume
@@ -27,9 +28,10 @@ pub struct Motion {
     pub members: usize,
     /// Mean velocity v⁰ (m/s); `None` for an empty cell.
     pub velocity: Option<Vector3<f64>>,
-    /// L (1/s), L_ij = ∂v_i/∂x_j; `None` with too few centres in the cell, or if they are collinear or coplanar.
+    /// Velocity gradient L (1/s), L_ij = ∂v_i/∂x_j. `None` if the cell has too few centres, if they are collinear or
+    /// coplanar, or if velocities are unknown.
     pub gradient: Option<Matrix3<f64>>,
-    /// |v′| (m/s), the root mean square residual of the fit; `None` without L.
+    /// Residual |v′| (m/s), the root mean square deviation from the linear fit; `None` without L.
     pub residual: Option<f64>,
 }
 
@@ -49,10 +51,10 @@ pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
     }
 }
 
-/// Returns the grains at the later of two snapshots, with their mean velocities in between, (x − x′)/Δt.
+/// Returns the grains of the later of two snapshots, with the mean velocity (x − x′)/Δt since the earlier snapshot.
 ///
-/// The displacement is the shortest across periodic sides, so no grain may move by more than half the domain between
-/// snapshots. Grains that are in only one of the snapshots are skipped.
+/// The displacement x − x′ is the shortest across periodic sides, so no grain may move by more than half the domain
+/// between snapshots. Grains that are in only one of the snapshots are skipped.
 #[must_use]
 pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     let elapsed = after.time - before.time;
@@ -67,15 +69,16 @@ pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     after.grains.iter().filter_map(mover).collect()
 }
 
-/// Sums over a cell, relative to its centre.
+/// Sums over the members of a cell, with positions relative to the cell centre.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     members: usize,
     weight: f64,
     place: Vector3<f64>,
     velocity: Vector3<f64>,
-    /// Second moments Σ w x⊗x of the positions. The next field contains Σ w v⊗x.
+    /// Second moments Σ w x⊗x of the positions x with weights w.
     spread: Matrix3<f64>,
+    /// Sum Σ w v⊗x with velocities v, positions x and weights w.
     carried: Matrix3<f64>,
 }
 
@@ -98,7 +101,8 @@ impl Sums {
         if dimension == 2 {
             spread.m33 = self.weight;
         }
-        // Collinear (or coplanar) centres leave one direction undetermined, which rounding errors must not determine.
+        // If the centres are collinear or coplanar, the gradient is undetermined along one direction. Without this
+        // check, rounding errors would determine it.
         let size: f64 = (0..dimension).map(|axis| self.weight * cell[axis] * cell[axis]).product();
         let size = if dimension == 2 { size * self.weight } else { size };
         if spread.determinant() < 1e-12 * size {

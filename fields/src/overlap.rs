@@ -1,8 +1,8 @@
 //! Exact overlap of a disc or a sphere with a box.
 //!
-//! The overlap with a box is computed from its corners by inclusion and exclusion. For a, b, c ≥ 0, the volume of the
-//! unit ball in x > a, y > b, z > c follows from Gauss' theorem. It is a third of the spherical area less the terms of
-//! the cut faces:
+//! The volume in a box is a sum over the corners of the box by inclusion and exclusion. Each term is the volume of the
+//! unit ball beyond one, two or three sides: Q₁ in x > a, Q₂ in x > a, y > b, and Q₃ in x > a, y > b, z > c. For a, b,
+//! c ≥ 0, Gauss' theorem gives the volume as a third of the spherical area minus the terms of the cut faces:
 //!
 //! ```text
 //! Q₁ = π(1−a)²(2+a)/3
@@ -14,8 +14,8 @@
 //!      A₃ = ½[r² φ_a − c(√(r²−c²) − b) − b(√(r²−b²) − c)]
 //! ```
 //!
-//! with S by Gauss and Bonnet. For a negative side, it is the volume without this side less the volume beyond the
-//! opposite side.
+//! The areas S follow from the theorem of Gauss and Bonnet. For a < 0, the volume beyond the side a is the volume
+//! without this side less the volume beyond the side −a.
 
 use std::f64::consts::PI;
 
@@ -30,7 +30,8 @@ pub fn disc_in_box(radius: f64, low: [f64; 2], high: [f64; 2]) -> f64 {
     (unit * radius * radius).max(0.0)
 }
 
-/// Returns the area of the unit disc where the coordinates are below x and y: the integral of its height over u < x.
+/// Returns the area of the part of the unit disc with coordinates below x and y: the integral of the height of this
+/// part.
 fn below_left(x: f64, y: f64) -> f64 {
     // ∫√(1 − u²) du
     let half_disc = |u: f64| 0.5 * (u * (1.0 - u * u).max(0.0).sqrt() + u.asin());
@@ -43,7 +44,7 @@ fn below_left(x: f64, y: f64) -> f64 {
     if y < 0.0 {
         return middle;
     }
-    // Beside the chord at y > 0 the disc is entirely below y.
+    // For y ≥ 0, the parts of the disc to the left and right of the chord at height y lie entirely below y.
     whole(-1.0, x.min(-reach)) + middle + whole(reach, x.max(reach))
 }
 
@@ -62,7 +63,8 @@ pub fn sphere_in_box(radius: f64, low: [f64; 3], high: [f64; 3]) -> f64 {
     (unit * radius.powi(3)).clamp(0.0, 4.0 / 3.0 * PI * radius.powi(3))
 }
 
-/// Returns the volume of the unit ball beyond the given sides; `None` means no side along an axis.
+/// Returns the volume of the part of the unit ball with x, y and z above the given values; `None` means no condition
+/// along an axis.
 fn ball_beyond(sides: [Option<f64>; 3]) -> f64 {
     if sides.iter().flatten().any(|&side| side >= 1.0) {
         return 0.0;
@@ -91,12 +93,13 @@ fn acos(cosine: f64) -> f64 {
     cosine.clamp(-1.0, 1.0).acos()
 }
 
-/// Returns the angle on the sphere between two faces at their intersection.
+/// Returns the exterior angle (rad) at a corner of the spherical area beyond the sides a and b, as in the theorem of
+/// Gauss and Bonnet.
 fn between(a: f64, b: f64) -> f64 {
     acos(-a * b / ((1.0 - a * a) * (1.0 - b * b)).sqrt())
 }
 
-/// Returns Q₂(a, b), the volume of the unit ball beyond two faces.
+/// Returns Q₂(a, b), the volume of the unit ball beyond two sides, for a, b ≥ 0.
 fn edge(a: f64, b: f64) -> f64 {
     if a * a + b * b >= 1.0 {
         return 0.0;
@@ -110,7 +113,7 @@ fn edge(a: f64, b: f64) -> f64 {
     (sphere - a * face(a, b) - b * face(b, a)) / 3.0
 }
 
-/// Returns Q₃(a, b, c), the volume of the unit ball beyond three faces.
+/// Returns Q₃(a, b, c), the volume of the unit ball beyond three sides, for a, b, c ≥ 0.
 fn corner([a, b, c]: [f64; 3]) -> f64 {
     if a * a + b * b + c * c >= 1.0 {
         return 0.0;
@@ -147,12 +150,12 @@ mod tests {
         assert_eq!(disc_in_box(0.0, [-1.0; 2], [1.0; 2]), 0.0);
     }
 
-    /// Returns the volume of the unit ball beyond the given sides.
+    /// Returns the volume of the part of the unit ball with x, y and z above the given values.
     fn beyond(sides: [f64; 3]) -> f64 {
         sphere_in_box(1.0, sides, [9.0; 3])
     }
 
-    /// Reference integrals from quadrature with thirty digits.
+    /// The reference volumes come from quadrature with thirty digits.
     #[test]
     fn caps_edges_and_corners_have_their_volumes() {
         let none = -9.0;
@@ -187,12 +190,12 @@ mod tests {
             sum += sphere_in_box(radius, at.map(|at| sides[at]), at.map(|at| sides[at + 1]));
         }
         assert!((sum / volume - 1.0).abs() < 1e-13, "{}", sum / volume - 1.0);
-        // One cube is inside the sphere, and one is far away.
+        // The first cube lies inside the sphere, and the second one far outside. The last sphere has no volume.
         assert!((sphere_in_box(1.0, [-0.2; 3], [0.3; 3]) / 0.125 - 1.0).abs() < 1e-13);
         assert_eq!((sphere_in_box(1.0, [2.0; 3], [3.0; 3]), sphere_in_box(0.0, [-1.0; 3], [1.0; 3])), (0.0, 0.0));
     }
 
-    /// The reference is a sum over slices, whose areas have a closed form of their own.
+    /// The reference is a sum over slices of the sphere. The area of each slice has a closed form.
     #[test]
     fn boxes_anywhere_agree_with_their_slices() {
         let mut odd = 0.5_f64;

@@ -1,4 +1,4 @@
-//! Packing fraction: the fraction of each cell that is filled by grains, from their exact volumes.
+//! Packing fraction: the fraction of each cell that grains fill, from their exact volumes in the cell.
 
 use crate::grid::{Grid, inside};
 use crate::overlap::{disc_in_box, sphere_in_box};
@@ -6,9 +6,10 @@ use grainbench_scene::record::{GrainState, Snapshot};
 use grainbench_scene::scene::Dimension;
 use nalgebra::Vector3;
 
-/// Computes φ = (1/V) Σ volume of grains within the cell, including periodic images. Overlaps count twice.
+/// Returns the packing fraction φ of every cell: the volume of grains and their periodic images within the cell,
+/// divided by the volume V of the cell. The overlap of two grains counts twice.
 ///
-/// For material points φ = (1/V) Σ V_p.
+/// For material points, φ = (1/V) Σ V_p with the volumes V_p of the points in the cell.
 #[must_use]
 pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<f64> {
     let mut filled = vec![0.0; grid.cells()];

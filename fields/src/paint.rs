@@ -1,4 +1,4 @@
-//! Rasters of plane snapshots: the body at each pixel, and a quantity of its material.
+//! Rasters of two-dimensional snapshots: for each pixel, the body and a quantity of its material.
 
 use crate::disc::LoadedDisc;
 use crate::points::{self, Material};
@@ -15,9 +15,9 @@ pub struct View {
     pub low: [f64; 2],
     /// Side of a pixel (m).
     pub pixel: f64,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
 }
 
@@ -40,8 +40,8 @@ impl View {
         Self { low, pixel, width, height }
     }
 
-    /// Returns a view of a snapshot: its domain along periodic axes, otherwise the bounding box of grains and material
-    /// points without a few distant outliers.
+    /// Returns a view of a snapshot. Along periodic axes the view is the domain. Along other axes it is the bounding
+    /// box of grains and material points, without a few distant outliers.
     #[must_use]
     pub fn from_snapshot(snapshot: &Snapshot, longest: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -72,7 +72,7 @@ impl View {
         [self.low[0] + f64::from(self.width) * self.pixel, self.low[1] + f64::from(self.height) * self.pixel]
     }
 
-    /// Returns the visible columns and rows of the square around a position (m) with a half width `reach` (m).
+    /// Returns the visible columns and rows of the square around a position (m) with half width `reach` (m).
     pub(crate) fn pixels_around(&self, place: [f64; 2], reach: f64) -> (Range<u32>, Range<u32>) {
         let range = |axis: usize, count: u32| {
             let at = |place: f64| ((place - self.low[axis]) / self.pixel).floor().clamp(0.0, f64::from(count)) as u32;
@@ -95,13 +95,13 @@ impl View {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Painting {
     view: View,
-    /// Body at each pixel; zero for empty pixels.
+    /// Body at each pixel: the id of a grain, `u32::MAX` minus the index of a body, or zero for an empty pixel.
     owners: Vec<u32>,
     values: Vec<f64>,
 }
 
 impl Painting {
-    /// Draws the material points of a snapshot, or its discs if it has none.
+    /// Draws the material points of a snapshot, or the discs if there are no material points.
     #[must_use]
     pub fn new(snapshot: &Snapshot, quantity: Quantity, view: View) -> Self {
         let pixels = view.width as usize * view.height as usize;
@@ -131,7 +131,7 @@ impl Painting {
             Quantity::StressDifference | Quantity::Fringes(_) => LoadedDisc::of_snapshot(snapshot),
             Quantity::PlasticStrain | Quantity::Rotation | Quantity::Speed => Vec::new(),
         };
-        // If two discs overlap, the one in which the pixel is deeper is visible.
+        // A pixel in the overlap of two discs shows the disc in which it lies deeper.
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
         let length = snapshot.bounds.1 - snapshot.bounds.0;
         let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };
@@ -173,7 +173,7 @@ impl Painting {
         if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
     }
 
-    /// Returns grey levels within a range of values, with a rim around every body.
+    /// Returns the picture: values as grey levels between the ends of `range`, and a rim around every body.
     #[must_use]
     pub fn raster(&self, range: (f64, f64)) -> Raster {
         let View { width, height, .. } = self.view;
@@ -196,8 +196,8 @@ impl Painting {
 
 /// Returns the visible range (m) along an axis for a set of intervals.
 ///
-/// The range covers all intervals, but exceeds the range without the outer hundredth on each side by at most half of
-/// its length.
+/// The core range omits the outermost hundredth of the intervals on each side. The result covers all intervals, but
+/// extends the core range by at most half its length on each side.
 fn window(spans: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
     let (mut lows, mut highs): (Vec<f64>, Vec<f64>) = spans.unzip();
     lows.sort_by(f64::total_cmp);
@@ -290,7 +290,7 @@ mod tests {
         let middle = |column: usize| raster.levels[50 * 200 + column];
         assert_eq!([middle(5), middle(100), middle(195)], [HIGH, VOID, HIGH]);
         assert!((39..=40).any(|column| middle(column) == RIM));
-        // |ω| r is largest at the rim.
+        // The speed |ω| r is largest at the rim: 2 rad/s times 0.4 m.
         let speed = Painting::new(&snapshot(Vec::new()), Quantity::Speed, view);
         assert!((speed.quantile(1.0) - 0.8).abs() < 0.02);
     }
@@ -301,7 +301,7 @@ mod tests {
         let painting = Painting::new(&snapshot(points(0.05)), Quantity::StressDifference, view);
         let area =
             |owner: u32| painting.owners.iter().filter(|&&found| found == owner).count() as f64 * view.pixel.powi(2);
-        // Each body covers half a square, with a margin of (.85 − .5) widths around it.
+        // Each body covers half of the unit square, with a margin of (.85 − .5) point widths around it.
         for owner in [1, 2] {
             assert!((0.5..0.56).contains(&area(owner)), "{}", area(owner));
         }
@@ -310,7 +310,7 @@ mod tests {
         let x = 25.5 * view.pixel;
         assert!((at(25, 70) - 2.0 * x).abs() < 0.01, "{}", at(25, 70));
         assert!((at(174, 70) - 2.0 * x).abs() < 0.01, "{}", at(174, 70));
-        // Near the contact the other body has no influence.
+        // Near the contact, the value in one body does not depend on the second body.
         assert!((at(0, 70) - 2.0 * 0.025).abs() < 0.03 && at(0, 70) > 0.0);
         let strain = Painting::new(&snapshot(points(0.05)), Quantity::PlasticStrain, view);
         assert!((strain.quantile(0.0) - 0.5).abs() < 1e-12 && (strain.quantile(1.0) - 0.5).abs() < 1e-12);

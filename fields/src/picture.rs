@@ -10,7 +10,7 @@ use grainbench_scene::record::Snapshot;
 pub struct Shot<'a> {
     /// Title above the panel.
     pub title: String,
-    /// Snapshots, one for each frame; a single one for a still figure.
+    /// Snapshots, one for each frame; a single snapshot for a still figure.
     pub frames: Vec<&'a Snapshot>,
 }
 
@@ -24,13 +24,15 @@ impl<'a> Shot<'a> {
 
 /// Returns panels of a quantity, with `longest` pixels along the longer side of the common view.
 ///
-/// Unless given, the range covers the values up to the 98th percentile.
+/// If `range` is `None`, the scale extends from zero to the 98th percentile of the values. For rotations it is
+/// symmetric about zero, and for fringes it extends from −1 to 1.
 #[must_use]
 pub fn pictures(quantity: Quantity, shots: &[Shot<'_>], longest: u32, range: Option<(f64, f64)>) -> Field {
     film(quantity, shots, ("", &[0.0]), longest, range)
 }
 
-/// Returns a film: `clock` is the label of the frames, with the time of each frame.
+/// Returns a film of a quantity, with panels and scale as in [`pictures`]. `clock` is the label of the times, and
+/// `times` contains the time of each frame.
 #[must_use]
 pub fn film(
     quantity: Quantity,
@@ -69,9 +71,10 @@ pub fn film(
     }
 }
 
-/// Returns the fringe constant c (Pa) for a number of fringes.
+/// Returns the stress c (Pa) of [`Quantity::Fringes`] at which the largest stress difference has the fringe order
+/// `fringes`.
 ///
-/// The 98th percentile of the stress, the largest of all snapshots, is then `fringes` fringes away from zero stress.
+/// The largest stress difference is the largest of the 98th percentiles of σ₁ − σ₂ over the pixels of each snapshot.
 #[must_use]
 pub fn fringe_constant<'a>(snapshots: impl IntoIterator<Item = &'a Snapshot>, fringes: f64) -> f64 {
     let quantity = Quantity::StressDifference;
@@ -88,8 +91,8 @@ fn title(shot: &Shot<'_>, view: View) -> String {
     }
 }
 
-/// Reduces the number of grey levels of film frames to a quarter. The difference is not visible and saves space in a
-/// page.
+/// Reduces the number of grey levels of film frames to a quarter, which saves space in a page. The difference is not
+/// visible.
 fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     if frames > 1 {
         let values = raster.levels.iter_mut().filter(|level| (LOW..=HIGH).contains(level));
@@ -98,7 +101,7 @@ fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
     raster
 }
 
-/// Returns the common view of all snapshots.
+/// Returns the smallest view that contains the views of all snapshots, with `longest` pixels along the longer side.
 fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
     let mut corners: Option<([f64; 2], [f64; 2])> = None;
     for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
@@ -125,7 +128,7 @@ fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Paintin
     }
 }
 
-/// Rounds a value up to two digits; returns one if the value is not positive.
+/// Rounds a value up to two significant digits. Returns 1 if the value is not positive and finite.
 pub(crate) fn two_digits(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;

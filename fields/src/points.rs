@@ -1,20 +1,21 @@
-//! Material of a plane snapshot at each pixel of a view.
+//! Material of a two-dimensional snapshot at each pixel of a view.
 
 use crate::grid::inside;
 use crate::paint::View;
 use grainbench_scene::record::{Owner, PointState, Snapshot};
 
-/// Largest distance of a pixel from its nearest point, in widths √V of the point's square.
+/// Largest distance from a pixel to its nearest material point, in units of the point's width √V.
 ///
-/// It is half a diagonal with a margin for sheared squares.
+/// Pixels farther away are empty. The value is half the diagonal of a unit square, 0.71, plus a margin for sheared
+/// squares.
 const REACH: f64 = 0.85;
-/// Radius, in widths of a point, within which points contribute to the mean at a pixel.
+/// Radius within which material points contribute to the mean at a pixel, in units of the point's width.
 const BLUR: f64 = 1.3;
 
-/// Point that is nearest to a pixel.
+/// Material point that is nearest to a pixel.
 #[derive(Clone, Copy)]
 struct NearestPoint {
-    /// Squared distance, in widths of the point.
+    /// Squared distance in units of the point's width.
     distance: f64,
     point: u32,
 }
@@ -24,14 +25,16 @@ struct NearestPoint {
 pub(crate) struct Material {
     /// Body of the material.
     pub(crate) owner: Owner,
-    /// Weighted mean over the surrounding points of the body; the nearest has the largest weight.
+    /// Weighted means of three numbers over the surrounding points of the same body. The nearest point has the largest
+    /// weight.
     pub(crate) mean: [f64; 3],
 }
 
-/// Returns the material at every pixel of a view, with the mean of three numbers of a point.
+/// Returns the material at every pixel of a view; `None` for empty pixels. `value` returns the three numbers of a point
+/// that are averaged.
 ///
-/// The pixels around each point are visited twice: once to find the body of each pixel, and once to average over the
-/// points of this body.
+/// The pixels around each point are visited twice. The first pass finds the body of each pixel, and the second averages
+/// over the points of this body.
 pub(crate) fn at_pixels(
     snapshot: &Snapshot,
     view: View,
@@ -62,7 +65,8 @@ pub(crate) fn at_pixels(
     owners.into_iter().zip(sums).map(material).collect()
 }
 
-/// Visits the pixels near each point, including periodic images, with the squared distance in widths of the point.
+/// Visits the pixels near each point and its periodic images. The arguments of `show` are the pixel, the squared
+/// distance in units of the point's width, and the index of the point.
 fn lay(snapshot: &Snapshot, view: View, mut show: impl FnMut(usize, f64, u32)) {
     let length = snapshot.bounds.1 - snapshot.bounds.0;
     let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };

@@ -1,4 +1,4 @@
-//! Profiles: means over slices of a plane scene, as used for experiments on shear bands.
+//! Profiles: means over slices of a two-dimensional scene, as used for experiments on shear bands.
 
 use crate::grid::inside;
 use crate::overlap::disc_in_box;
@@ -15,11 +15,12 @@ pub enum Motion {
     Velocity,
 }
 
-/// Returns the mean of one component of displacement or velocity in slices across `axis`, weighted by material.
+/// Returns the mean of one component of displacement or velocity in slices perpendicular to `axis`, weighted by the
+/// area of material.
 ///
-/// The result is a list of slice centre and mean, for the last of `snapshots`. Displacements of discs are those of
-/// their centres, summed from snapshot to snapshot across periodic sides. No grain may therefore move by more than half
-/// the domain between snapshots.
+/// The result refers to the last of `snapshots`. It contains the centre (m) and the mean (m or m/s) of each slice with
+/// material. The displacement of a disc is that of its centre, summed from snapshot to snapshot across periodic sides.
+/// No grain may therefore move by more than half the domain between snapshots.
 #[must_use]
 pub fn profile(
     snapshots: &[Snapshot],
@@ -126,17 +127,17 @@ mod tests {
             assert!((moved - 4.0 * x).abs() < 1e-12, "{x} {moved}");
         }
         for (x, velocity) in profile(&snapshots, Motion::Velocity, 0, 1, 8) {
-            // A slice covers half of one disc and has its velocity.
+            // Each slice covers half of one disc and has the velocity of this disc.
             assert!((velocity - (x.floor() + 0.5)).abs() < 1e-12, "{x} {velocity}");
         }
-        // A grain that leaves on the way does not change the others.
+        // A grain that leaves during the series does not change the means of the remaining slices.
         let mut fewer = snapshots.clone();
         for snapshot in &mut fewer[5..] {
             snapshot.grains.remove(0);
         }
         let all = profile(&snapshots, Motion::Displacement, 0, 1, 4);
         assert_eq!(profile(&fewer, Motion::Displacement, 0, 1, 4), all[1..]);
-        // A displacement of more than half the domain between two snapshots cannot be followed.
+        // A displacement of more than half the domain between two snapshots gives a wrong result.
         let rare = [snapshots[0].clone(), snapshots[8].clone()];
         assert!(profile(&rare, Motion::Displacement, 0, 1, 4).iter().any(|(x, moved)| (moved - 4.0 * x).abs() > 1.0));
     }

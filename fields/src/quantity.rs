@@ -1,16 +1,16 @@
-//! Quantities inside grains that figures show.
+//! Quantities of the material inside grains, for figures.
 
 use grainbench_scene::record::PointState;
 use nalgebra::{Matrix2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A quantity at every position in the material.
+/// Quantity that is defined at every position in the material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Quantity {
     /// Difference of the principal stresses in the plane, σ₁ − σ₂ (Pa).
     StressDifference,
-    /// cos((σ₁ − σ₂)/c) for a stress c (Pa): the photoelastic fringes of Bardenhagen and others (2001), bright at zero
-    /// stress.
+    /// Photoelastic fringes cos((σ₁ − σ₂)/c) for a stress c (Pa), as in Bardenhagen and others (2001). They are bright
+    /// at zero stress.
     Fringes(f64),
     /// Equivalent plastic strain.
     PlasticStrain,
@@ -21,7 +21,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Returns label and unit.
+    /// Returns the label of the quantity and its SI unit.
     #[must_use]
     pub const fn label(self) -> (&'static str, &'static str) {
         match self {
@@ -33,7 +33,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the values of a material point from which the quantity is computed; means are taken over these.
+    /// Returns the values of a material point from which the quantity is computed. Means are taken over these values.
     pub(crate) fn parts(self, point: &PointState) -> [f64; 3] {
         let [xx, yy, _, xy, ..] = point.stress;
         match self {
@@ -44,7 +44,7 @@ impl Quantity {
         }
     }
 
-    /// Computes the quantity from these values.
+    /// Computes the quantity from the values of [`Self::parts`] or from their means.
     pub(crate) fn of_parts(self, parts: [f64; 3]) -> f64 {
         let [first, second, third] = parts;
         match self {

@@ -1,6 +1,6 @@
-//! Invariants of stress and rate of deformation: friction, pressure, shear, and the angles between their axes.
+//! Invariants of stress and strain rate: friction, pressure, shear, and the angles between their principal axes.
 //!
-//! In the plane tensors have two axes, and components along z are ignored.
+//! In two dimensions the components along z are ignored.
 
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen, Vector3};
 
@@ -30,15 +30,16 @@ pub fn principal(tensor: &Matrix3<f64>, dimension: usize) -> Principal {
     }
 }
 
-/// Returns the pressure p = −tr T/d (Pa) of a stress T, compression negative.
+/// Returns the pressure p = −tr T/d (Pa) of a stress T in d dimensions. T is negative in compression.
 #[must_use]
 pub fn pressure(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     -(0..dimension).map(|axis| stress[(axis, axis)]).sum::<f64>() / dimension as f64
 }
 
-/// Returns the deviator A − (tr A/d) 1.
+/// Returns the deviator A − (tr A/d) 1 of a tensor A in d dimensions.
 ///
-/// For a stress it is T + p·1; Rycroft, Kamrin and Bazant 2009 print p/3 there, which does not remove the trace.
+/// For a stress T with pressure p the deviator is T + p 1. Rycroft, Kamrin and Bazant 2009 print p/3 instead of p,
+/// which does not remove the trace.
 #[must_use]
 pub fn deviator(tensor: &Matrix3<f64>, dimension: usize) -> Matrix3<f64> {
     let mut deviator = *tensor;
@@ -47,9 +48,9 @@ pub fn deviator(tensor: &Matrix3<f64>, dimension: usize) -> Matrix3<f64> {
     deviator
 }
 
-/// Returns the Mohr–Coulomb sin φ: |(λ_max − λ_min)/(λ_max + λ_min)| of the principal stresses.
+/// Returns the Mohr–Coulomb sin φ = |(λ_max − λ_min)/(λ_max + λ_min)| with the principal stresses λ.
 ///
-/// The largest ratio of shear to normal stress on any plane is tan φ.
+/// tan φ is the largest ratio of shear to normal stress on any plane.
 #[must_use]
 pub fn sine_of_friction(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     let values = principal(stress, dimension).values;
@@ -63,21 +64,22 @@ pub fn drucker_prager(stress: &Matrix3<f64>, dimension: usize) -> f64 {
     deviator(stress, dimension).norm() / (2.0_f64.sqrt() * pressure(stress, dimension))
 }
 
-/// Angles between the principal axes of a stress and of a rate of deformation (degrees).
+/// Angles between the principal axes of a stress and of a strain rate (degrees).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coaxiality {
-    /// Angle between the axes of the largest values, 0° to 90°.
+    /// Angle between the axes of the largest principal values, 0° to 90°.
     pub largest: f64,
-    /// Angle between the axes of the smallest values, 0° to 90°.
+    /// Angle between the axes of the smallest principal values, 0° to 90°.
     pub smallest: f64,
-    /// Rotation in a plane of two axes, from stress to rate, −90° to 90°; `None` if one of them has no axis in the
-    /// plane.
+    /// Angle in a plane of two axes, from the major principal axis of the stress to that of the strain rate, −90° to
+    /// 90°. `None` if one of the two tensors is isotropic in this plane.
     pub in_plane: Option<f64>,
 }
 
-/// Returns the angles for a stress and a rate of deformation, with the rotation in the plane of two axes (0 is x).
+/// Returns the angles between the axes of a stress and of a strain rate. `plane` contains the two axes (0 is x) of the
+/// plane for the angle `in_plane`.
 ///
-/// Returns `None` if either has two equal principal values, because their axes are then undefined.
+/// Returns `None` if one of the tensors has two equal principal values, because their axes are then undefined.
 #[must_use]
 pub fn coaxiality(
     stress: &Matrix3<f64>,
@@ -94,7 +96,8 @@ pub fn coaxiality(
     }
     let angle = |number: usize| {
         let (a, b) = (of_stress.axes[number], of_rate.axes[number]);
-        // The angle is between directions without sign. The tangent is used because a cosine near one is inaccurate.
+        // An axis has no sign, so the angle is at most 90°. It is computed from the tangent, because a cosine near one
+        // is inaccurate.
         a.cross(&b).norm().atan2(a.dot(&b).abs()).to_degrees()
     };
     let in_plane = direction(stress, plane).zip(direction(rate, plane)).map(|(from, to)| {
@@ -107,7 +110,8 @@ pub fn coaxiality(
 /// Relative difference below which principal values count as equal.
 const DISTINCT: f64 = 1e-9;
 
-/// Returns the direction of the larger principal value in the plane of two axes (rad), from the first to the second.
+/// Returns the direction of the major principal axis in the plane of two axes, as the angle from the first axis towards
+/// the second (rad). Returns `None` if the tensor is isotropic in this plane.
 fn direction(tensor: &Matrix3<f64>, [i, j]: [usize; 2]) -> Option<f64> {
     let (difference, twice) = (tensor[(i, i)] - tensor[(j, j)], tensor[(i, j)] + tensor[(j, i)]);
     let size = tensor[(i, i)].abs().max(tensor[(j, j)].abs()).max(twice.abs());
@@ -129,7 +133,8 @@ mod tests {
 
     #[test]
     fn friction_by_two_definitions() {
-        // (1.6 − .4)/(1.6 + .4), and √((.6² + .6²)/2)/1 with λ₂ in the middle.
+        // sin φ = (1.6 − .4)/(1.6 + .4). The Drucker–Prager ratio is √((.6² + .6²)/2)/1, because the middle stress is
+        // the mean.
         assert!((sine_of_friction(&stress(), 3) - 0.6).abs() < 1e-15);
         assert!((drucker_prager(&stress(), 3) - 0.6).abs() < 1e-15);
         for (middle, ratio) in [(-0.7, 0.693_889), (-1.3, 0.567_727)] {
@@ -137,11 +142,11 @@ mod tests {
             assert!((sine_of_friction(&stress, 3) - 0.6).abs() < 1e-15);
             assert!((drucker_prager(&stress, 3) - ratio).abs() < 5e-7);
         }
-        // With the printed p/3 the deviator would have a trace.
+        // With p/3 instead of p, as printed by Rycroft and others, the deviator would have a trace.
         let stress = Matrix3::from_diagonal(&Vector3::new(-1.6, -0.9, -0.4));
         assert!((drucker_prager(&stress, 3) - 0.624).abs() < 5e-4);
         assert!(deviator(&stress, 3).trace().abs() < 1e-15);
-        // In the plane (3 − 1)/(3 + 1), for any value along z.
+        // In two dimensions sin φ = (3 − 1)/(3 + 1), whatever the stress along z.
         let stress = Matrix3::from_diagonal(&Vector3::new(-3.0, -1.0, 7.0));
         assert_eq!((sine_of_friction(&stress, 2), pressure(&stress, 2)), (0.5, 2.0));
     }
@@ -155,11 +160,11 @@ mod tests {
             assert!((found.largest - degrees.abs()).abs() < 1e-10, "{angle}: {found:?}");
             assert!((found.smallest - degrees.abs()).abs() < 1e-10, "{angle}: {found:?}");
             assert!((found.in_plane.unwrap() - degrees).abs() < 1e-10, "{angle}: {found:?}");
-            // A direction rotated by π is the same direction.
+            // An axis rotated by π is the same axis.
             let other = coaxiality(&stress(), &turned(angle + std::f64::consts::PI, &stress()), 3, [0, 2]).unwrap();
             assert!((other.in_plane.unwrap() - degrees).abs() < 1e-9);
         }
-        // The axes of the opposite tensor are at right angles.
+        // The axes of the largest values of T and −T are perpendicular to each other.
         let against = coaxiality(&stress(), &-stress(), 3, [0, 2]).unwrap();
         assert!((against.largest - 90.0).abs() < 1e-9 && (against.smallest - 90.0).abs() < 1e-9);
     }

@@ -1,7 +1,7 @@
 //! Tracers: elements that deform and move with the flow (Rycroft, Kamrin and Bazant 2009, §5).
 //!
-//! A tracer starts at the centre of a box of labelled grains. It is moved by the mean velocity of the grains. Its
-//! deformation is the best affine map from the initial to the current positions of the labelled grains:
+//! A tracer starts at the centre of a box of labelled grains. It moves with the mean velocity of the grains around it.
+//! Its deformation is the best affine map from the initial to the current positions of the labelled grains:
 //!
 //! ```text
 //! x = F x₀ + a                        least squares over the labelled grains that still exist
@@ -13,17 +13,17 @@ use crate::grid::Grid;
 use grainbench_scene::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Element that moves with the flow: its grains and their mean position.
+/// Element that moves with the flow: its position and its labelled grains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracer {
     /// Current position (m).
     pub position: Vector3<f64>,
-    /// Ids of its grains with their initial positions (m).
+    /// Ids of the labelled grains with their initial positions (m).
     labelled: Vec<(u32, Vector3<f64>)>,
     lost: bool,
 }
 
-/// Creates tracers at the centres of the cells of a grid, with the grains in these cells.
+/// Creates a tracer at the centre of each non-empty cell of a grid. The grains in the cell are its labelled grains.
 #[must_use]
 pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
     let mut labelled = vec![Vec::new(); grid.cells()];
@@ -37,21 +37,21 @@ pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
 }
 
 impl Tracer {
-    /// Returns the number of labelled grains.
+    /// Returns the number of grains that were labelled at the start.
     #[must_use]
     pub fn members(&self) -> usize {
         self.labelled.len()
     }
 
-    /// Returns true if there were no grains around the tracer to move it.
+    /// Returns true if the tracer has stopped because there were no grains around it.
     #[must_use]
     pub const fn is_lost(&self) -> bool {
         self.lost
     }
 
-    /// Moves the tracer for a time (s) with the mean velocity of elements, by the midpoint rule.
+    /// Moves the tracer for a time (s) with the mean velocities of `elements`, by the midpoint rule.
     ///
-    /// The tracer is lost if there is no velocity at its position.
+    /// The tracer is lost if there is no velocity at its position or at the midpoint of its path.
     pub fn carry(&mut self, elements: &[Element], grid: &Grid, periodic: [bool; 3], time: f64) {
         let at = |place: Vector3<f64>| velocity_at(elements, grid, periodic, place);
         let velocity = at(self.position).and_then(|first| at(self.position + first * (0.5 * time)));
@@ -61,9 +61,10 @@ impl Tracer {
         }
     }
 
-    /// Returns F from the labelled grains that still exist, or `None` if they are too few or coplanar.
+    /// Returns the deformation gradient F of the labelled grains that still exist, or `None` if they are too few or
+    /// coplanar (collinear in two dimensions).
     ///
-    /// Across periodic sides, the image of each grain nearest to its own initial position is used.
+    /// Across periodic sides, the displacement of each grain is that to the image nearest to its initial position.
     #[must_use]
     pub fn deformation(&self, snapshot: &Snapshot, dimension: usize) -> Option<Matrix3<f64>> {
         let length = snapshot.bounds.1 - snapshot.bounds.0;

@@ -1,4 +1,5 @@
-//! Tracer trajectories through a series of snapshots: quantities along the path of an element, not in a fixed cell.
+//! Tracer trajectories through a series of snapshots. They give quantities along the path of an element instead of in a
+//! fixed cell.
 
 use crate::course::Frame;
 use crate::grid::Grid;
@@ -9,14 +10,15 @@ use nalgebra::Vector3;
 /// Tracers with their past positions.
 #[derive(Clone, Debug)]
 pub struct Trails {
-    /// Cells in whose centres tracers start, and whose grains are labelled.
+    /// Grid of the initial cells. The grains in each non-empty cell are the labelled grains of a tracer that starts at
+    /// the centre of this cell.
     pub boxes: Grid,
     tracers: Vec<Tracer>,
     /// Past positions, frame by frame.
     pub stops: Vec<Stop>,
 }
 
-/// A tracer at a time.
+/// State of a tracer at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
     /// Index of the tracer, from 0.
@@ -25,20 +27,22 @@ pub struct Stop {
     pub frame: usize,
     /// Position (m).
     pub position: Vector3<f64>,
-    /// |E| of Hencky's strain since the start; `None` if too few labelled grains are left.
+    /// Norm |E| of Hencky's strain since the start. `None` if the deformation is unknown, for example because too few
+    /// labelled grains exist.
     pub strain: Option<f64>,
 }
 
 impl Trails {
-    /// Creates trajectories of tracers that start at the centres of these cells.
+    /// Creates trajectories of tracers that start at the centres of the cells of `boxes`.
     #[must_use]
     pub const fn new(boxes: Grid) -> Self {
         Self { boxes, tracers: Vec::new(), stops: Vec::new() }
     }
 
-    /// Continues the trajectories to a snapshot, with the mean velocities of the last frame.
+    /// Continues the trajectories to a snapshot, with the mean velocities of the last frame. If there is no frame yet,
+    /// the tracers are created.
     ///
-    /// The trajectory of a tracer ends if there are no grains around it.
+    /// The trajectory of a tracer ends if there are no grains around the tracer.
     pub(crate) fn go_on(&mut self, frames: &[Frame], snapshot: &Snapshot, grid: &Grid, dimension: usize) {
         match frames.last() {
             None => self.tracers = tracers(snapshot, &self.boxes),

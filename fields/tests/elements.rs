@@ -44,8 +44,8 @@ fn snapshot(grains: Vec<GrainState>, high: Vector3<f64>, periodic: [bool; 3]) ->
     }
 }
 
-/// Returns a face-centred cubic lattice of spheres of diameter one under a deformation F, with the forces k δ of its
-/// contacts, and the undeformed positions.
+/// Returns a face-centred cubic lattice of spheres of diameter one under a deformation F, and the undeformed positions.
+/// Contact forces are k δ, with stiffness k and overlap δ.
 ///
 /// F has at most one off-diagonal entry, and the block has 5 cells along each axis. The block is not periodic. The
 /// stress is evaluated in the cell in the middle, whose grains have all their contacts.
@@ -90,7 +90,7 @@ fn middle_cell(snapshot: &Snapshot, first: &[Vector3<f64>], deformation: &Matrix
         let at = first[id as usize - 1] / root;
         at.iter().all(|along| (2.0..3.0).contains(along))
     };
-    // Grains of other cells are moved far away, so that their part of the contacts is not counted.
+    // Grains of other cells are moved far away, so that their share of the contacts is not counted.
     let mut alone = snapshot.clone();
     alone.grains.iter_mut().filter(|grain| !inside(grain.id)).for_each(|grain| grain.position.x = 1e6);
     let volume = (root.powi(3)) * deformation.determinant();
@@ -104,7 +104,8 @@ fn close(found: f64, exact: f64, part: f64) {
     assert!((found - exact).abs() <= part * exact.abs().max(1e-300), "{found:.12} for {exact:.12}");
 }
 
-/// T = −(1/2V) Σ₁₂ k(1 − |b|) b⊗b/|b| over the twelve neighbours b = F b₀ of a grain, V = det F/√2.
+/// The stress is T = −(1/2V) Σ₁₂ k(1 − |b|) b⊗b/|b| over the vectors b = F b₀ from the centre of a grain to its twelve
+/// neighbours. V = det F/√2 is the volume per grain.
 #[test]
 fn a_lattice_under_strain_has_its_stress() {
     const STIFFNESS: f64 = 2e5;
@@ -192,8 +193,8 @@ fn a_field_that_is_linear_has_its_gradient_and_leaves_nothing() {
     }
 }
 
-/// rms |D₀| = σ √((10/3 a + 5/3 b) N/(N−5)) with a = 12/(Nℓ²), b = 12/(Nm²), for velocity components with standard
-/// deviation σ of N grains in a cell of ℓ × m × ℓ; and |v′| = σ √(3 (N−4)/N).
+/// For random velocity components with standard deviation σ, the rms of |D₀| is σ √((10/3 a + 5/3 b) N/(N−5)) with a =
+/// 12/(Nℓ²) and b = 12/(Nm²). N is the number of grains in a cell of ℓ × m × ℓ. The residual is |v′| = σ √(3 (N−4)/N).
 #[test]
 fn noise_gives_the_rate_of_shear_that_it_must() {
     for (count, size, known) in [(60.0, [2.5, 8.0, 2.5], 0.3494), (240.0, [5.0, 8.0, 5.0], 0.0902)] {
@@ -213,13 +214,14 @@ fn noise_gives_the_rate_of_shear_that_it_must() {
             square += element.shear_rate().unwrap().powi(2);
             residual += motion.residual.unwrap().powi(2);
         }
-        // 4000 samples with five degrees of freedom have an error of 1.1 % of the root.
+        // The rms of 4000 samples with five degrees of freedom has an error of 1.1 %.
         close((square / f64::from(TIMES)).sqrt(), exact, 0.03);
         close((residual / f64::from(TIMES)).sqrt(), (3.0 * (count - 4.0) / count).sqrt(), 0.005);
     }
 }
 
-/// Σ φ V = N π/6, Σ n = N, Σ V T = Σ over grains, for any grid and origin.
+/// The sums over all cells do not depend on the size of the cells. Σ φ V is the volume of all grains, the sum of the
+/// members is the number of grains, and Σ V T is the sum over all contacts.
 #[test]
 fn no_choice_of_cells_gains_or_loses_anything() {
     let mut odd = RandomNumbers(3);
@@ -271,8 +273,8 @@ fn without_contacts_there_is_no_stress() {
     close(element.packing_fraction, std::f64::consts::PI / 6.0 / 8.0, 1e-13);
 }
 
-/// For grains that move with v = L x, the motion between two snapshots gives L, and a tracer's labelled grains give
-/// F = exp(L t).
+/// Grains move with v = L x. The labelled grains of a tracer give F = exp(L t). The motion between two snapshots gives
+/// the gradient of the mean velocity.
 #[test]
 fn tracers_move_and_deform_with_the_flow() {
     let mut odd = RandomNumbers(5);
@@ -294,7 +296,7 @@ fn tracers_move_and_deform_with_the_flow() {
     let grid = Grid::filling(first.bounds, Vector3::new(2.5, 8.0, 2.5));
     let mut all = tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0)));
     assert_eq!(all.len(), 4);
-    // The position of the fitted velocity is only as near to the centre of a cell as its grains are.
+    // The mean velocity of a cell belongs to the mean position of its grains, which is only close to the cell centre.
     let before = elements(&first, Dimension::Three, &grid);
     let found = velocity_at(&before, &grid, first.periodic, Vector3::new(5.0, 4.0, 5.0)).unwrap();
     assert!((found - Vector3::new(0.4, 0.0, -0.4)).norm() < 0.02, "{found}");
@@ -316,7 +318,7 @@ fn tracers_move_and_deform_with_the_flow() {
     let between =
         motion(&movers_between(&shot(0), &shot(1)), 3, &Grid::filling(first.bounds, Vector3::new(10.0, 8.0, 10.0)))[0];
     let mut exact = Matrix3::zeros();
-    // (x − x e^{−rΔ})/Δ at the later position.
+    // The mean velocity over a time Δ, as a function of the later position x, is (x − x e^{−rΔ})/Δ.
     (exact.m11, exact.m33) = ((1.0 - (-rate * step).exp()) / step, (1.0 - (rate * step).exp()) / step);
     assert!((between.gradient.unwrap() - exact).norm() < 1e-12);
 }

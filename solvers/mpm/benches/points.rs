@@ -1,9 +1,9 @@
 //! Benchmark of point updates per second: `cargo bench -p grainbench-mpm`.
 //!
-//! `points` counts material points times steps in three cases. A vibrating elastic block of 60,000 points is run with
-//! hat functions and FLIP and in the best setting; 36 squeezed discs with friction are run in the best setting.
-//! `grains` does so for 12, 120 and 1200 discs of the same resolution, each in contact with four others. The set-up is
-//! not counted.
+//! `points` measures the number of point updates (points times steps) per second in three cases. An elastic block of
+//! 60,000 points vibrates, once with hat functions and FLIP, and once with the setting [`Mpm::BEST`]. 36 discs with
+//! friction are compressed with `Mpm::BEST`. `grains` measures this number for 12, 120 and 1200 discs of equal
+//! resolution, each in contact with four others. The time before the first step is not counted.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
@@ -20,7 +20,7 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).expect("the scene is right")
 }
 
-/// A free vibrating square of 122.5 × 122.5 cells.
+/// Returns a free vibrating square of 122.5 × 122.5 cells.
 fn block() -> Scene {
     scene(
         "duration = 0.15\nreference_length = 1.0\noutput.every = 1.0\n\
@@ -30,7 +30,8 @@ fn block() -> Scene {
     )
 }
 
-/// Slightly overlapping discs in a square lattice, periodic along both axes: each disc is in contact with four others.
+/// Returns slightly overlapping discs in a square lattice. The domain is periodic along both axes, so each disc is in
+/// contact with four others.
 fn grains([columns, rows]: [u32; 2]) -> Scene {
     let end = |count: u32| f64::from(2 * count) - 1.0;
     scene(&format!(
@@ -45,7 +46,7 @@ fn grains([columns, rows]: [u32; 2]) -> Scene {
     ))
 }
 
-/// Six by six discs in contact between four walls that move inwards.
+/// Returns six by six discs in contact between four walls that move inwards.
 fn discs() -> Scene {
     let wall = |name: &str, point: &str, normal: &str, velocity: &str| {
         format!(
@@ -80,7 +81,7 @@ fn points(criterion: &mut Criterion) {
     time(criterion, "points", &cases);
 }
 
-/// Time of a point and step for a growing number of grains: it is constant except for cache effects.
+/// Measures the time per point and step for a growing number of grains. It is constant except for cache effects.
 fn number_of_grains(criterion: &mut Criterion) {
     let at = Resolution::grid(4.0, 2);
     let cases = [("12", [3, 4]), ("120", [10, 12]), ("1200", [30, 40])]

@@ -1,28 +1,29 @@
 //! Energy budget: sources and sinks of energy, summed over all steps of runs that request it.
 //!
-//! - work: impulses of driven grains and walls, times their velocities;
-//! - plastic: ∫ q dε_p V over points;
-//! - friction: mean force of the tangential spring times the sliding displacement of its end, or the tangential impulse
-//!   at nodes times the slip velocity before the step;
-//! - contact: energy that contacts take from the motion and neither store in springs nor dissipate by friction. Springs
-//!   take their force times the relative displacement of the two surfaces. With velocities before the step it is summed
-//!   over contacts, with velocities after the step over spring forces on nodes. Both sums are equal, because surfaces
-//!   follow nodes with the same weights that distribute surface forces to nodes. Conditions at nodes take their
-//!   impulses times the velocity of the nodes. Surfaces follow the mean of the velocities that points transfer to the
-//!   nodes before and after the step. (A force may give a node of tiny mass beside a surface a large velocity, which no
-//!   point or surface follows.)
-//! - transfer: the kinetic energy that nodes gain in a step and points do not take over, less two terms. The first term
-//!   is the work of impulses on a part of the node velocities: points do not transfer this part back, and neither
-//!   stresses nor surfaces follow it. (Points that keep their own velocity lose nothing in sum, because the energy not
-//!   taken over equals this work.) The second term is half of a difference of two energies. Stresses take the first
-//!   energy from the velocities that they follow. The same stresses take the second from the nodes after points have
-//!   moved across cells.
+//! - work: impulse times velocity of driven grains and walls;
+//! - plastic: ∫ q dε_p V over points (q: equivalent stress, ε_p: equivalent plastic strain, V: volume);
+//! - friction: for springs, the mean force of the tangential spring times the sliding displacement of the spring's end.
+//!   For contact at nodes, the tangential impulse times the slip velocity before the step;
+//! - contact: energy that contacts take from the motion and neither store in springs nor dissipate by friction. The
+//!   energy that springs take is their force times the relative displacement of the two surfaces. This displacement is
+//!   the mean of the velocities before and after the step, times Δt. The half with velocities before the step is summed
+//!   over contacts, and the half with velocities after the step over spring forces on nodes. Sums over contacts and over
+//!   nodes are equal, because surfaces follow nodes with the same weights that distribute surface forces to nodes. The
+//!   energy that contact conditions at nodes take is their impulse times the velocity of the node. This velocity is the
+//!   mean of the velocities that points transfer to the node before and after the step, because surfaces follow this
+//!   mean. (A force may give a node of tiny mass beside a surface a large velocity, which no point or surface follows.)
+//! - transfer: kinetic energy that nodes gain in a step and points do not receive, minus two terms. The first term is
+//!   the work of impulses on the part of the node velocities that points do not transfer back to nodes. Neither
+//!   stresses nor surfaces follow this part. (If points keep their own velocity, their total loss is zero, because the
+//!   energy that they do not receive equals this work.) The second term is half the difference of two energies. The
+//!   first energy is the work of the stresses with the velocities that they follow. The second is the energy that the
+//!   same stresses take from the nodes after points have moved across cells.
 //!
-//! No entry is computed as a remainder. The entries therefore check the method when they add up to the work of driven
-//! grains and walls. Impulses must be equal and opposite, internal forces must take from nodes what stresses take from
-//! points, and stress, plastic work and elastic energy must be consistent. (With the stress update first, the loss at
-//! cell crossings is not included.) Energy is counted in whole steps: kinetic energy belongs to the velocities of
-//! points, half a step before their positions, and spring energies to the last forces.
+//! No entry is computed as a remainder. The entries therefore check the method if they add up to the work of driven
+//! grains and walls. Impulses must be equal and opposite, internal forces must take from nodes the energy that stresses
+//! take from points, and stress, plastic work and elastic energy must be consistent. (If the stress update comes first,
+//! the loss at cell crossings is not included.) Energy is counted in whole steps. Kinetic energy belongs to the
+//! velocities of points, half a step before their positions, and spring energy to the last forces.
 
 use crate::boundary::Boundary;
 use crate::damping::Damping;
@@ -53,18 +54,19 @@ pub(crate) struct Sums {
     taken: f64,
     /// Work of nodal contact conditions and of driven grains, on the velocities that surfaces follow.
     contacts: f64,
-    /// Kinetic energy that nodes gain in their steps.
+    /// Kinetic energy that nodes gain in all steps.
     stepped: f64,
-    /// Work of driven grains on points that share their nodes with other bodies.
+    /// Work of driven grains on points at nodes that they share with other bodies.
     carried: f64,
     /// Work on the part of node velocities that points do not transfer back.
     stray: f64,
-    /// Energy that stresses took in the last step (J); the nodes lose it in the next step.
+    /// Energy that stresses took in the last step (J). The nodes lose it in the next step.
     stressed: f64,
-    /// Half the difference between that energy and the energy taken from nodes after points have moved.
+    /// Half the sum over steps of the difference between `stressed` and the energy that nodes lose after points have
+    /// moved (J).
     crossed: f64,
     damping: f64,
-    /// Part of the damping work that acts on motion which nodes do not represent.
+    /// Work of damping on motion that nodes do not represent.
     unseen: f64,
     plastic: f64,
     viscous: f64,
@@ -73,7 +75,7 @@ pub(crate) struct Sums {
     impulse: Vector3<f64>,
 }
 
-/// Sums, and intermediate values of a step.
+/// Sums since the start, and intermediate values of the current step.
 #[derive(Clone, Debug)]
 pub(crate) struct Accounts<S: Space> {
     pub(crate) sums: Sums,
@@ -91,34 +93,35 @@ pub(crate) struct Accounts<S: Space> {
     brought: f64,
 }
 
-/// Returns the velocity of a node before the step.
+/// Returns the velocity of a node before the step, from its velocity after the step, its change in the step and the
+/// factor `keep` of global damping.
 fn before<S: Space>(node: &Node<S>, keep: f64) -> S::Vector {
     (node.velocity - node.change) * (1.0 / keep)
 }
 
-/// Returns the reason why the energy budget of a scene is not supported, or `None`.
+/// Returns the reason why the energy budget of a scene is not supported, or `None` if it is supported.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let held = scene.bodies.iter().any(|body| body.sides.iter().flatten().any(|&side| side != Hold::Free));
     let what = if held {
-        "held sides of bodies"
+        "fixed sides of bodies"
     } else if scene.start.manufactured.is_some() {
         "a manufactured body force"
     } else {
         return None;
     };
-    Some(format!("a probe asks for its energy budget, and what {what} gives is not added up"))
+    Some(format!("a probe requests the energy budget, which does not include the energy from {what}"))
 }
 
-/// Returns the work (J) of driven grains in a step (s) so far.
+/// Returns the work (J) of driven grains in the current step of length `time_step` (s).
 fn work_of<S: Space>(driven: &DrivenGroups<S>, time_step: f64) -> f64 {
     let work = driven.groups.iter().map(|group| -S::dot(group.force, group.velocity));
     work.sum::<f64>() * time_step
 }
 
-/// Number of nodes that are summed as one block, independent of the number of threads.
+/// Number of nodes that are summed as one block. It is fixed, so that sums do not depend on the number of threads.
 const BLOCK: usize = 4096;
 
-/// Sums over nodes in a step.
+/// Sums over nodes in one step.
 #[derive(Clone, Copy, Debug, Default)]
 struct NodeSums {
     /// Mass (kg).
@@ -136,10 +139,11 @@ struct NodeSums {
 }
 
 impl NodeSums {
-    /// Sums over a block of nodes.
+    /// Computes the sums over a block of nodes.
     ///
-    /// On return, `forces` holds the impulses (N s) of all forces except gravity (m/s²) and drag. `impulses` holds the
-    /// same without internal forces. On entry they hold all forces and internal forces (N).
+    /// On entry, `forces` contains all forces on the nodes and `impulses` the internal forces (N). On return, `forces`
+    /// contains the impulses (N s) of all forces except gravity and damping, and `impulses` the same without internal
+    /// forces.
     fn add<S: Space>(
         nodes: &[Node<S>],
         forces: &mut [S::Vector],
@@ -171,7 +175,7 @@ impl NodeSums {
         sums
     }
 
-    /// Adds two sums.
+    /// Returns the sum of two sums over nodes.
     fn and(self, other: Self) -> Self {
         Self {
             mass: self.mass + other.mass,
@@ -185,7 +189,7 @@ impl NodeSums {
 }
 
 impl<S: Space> Accounts<S> {
-    /// Opens the budget with the current state of the points.
+    /// Starts a budget with the current state of the points.
     pub(crate) fn open(basis: Basis, state: &State<S>, lattice: &Lattice) -> Self {
         Self {
             sums: Sums { kinetic_at_start: state.kinetic_energy(basis, lattice), ..Sums::default() },
@@ -227,17 +231,17 @@ impl<S: Space> Accounts<S> {
         });
     }
 
-    /// Records the kinetic energy (J) of points before velocities change; only needed with damping.
+    /// Records the kinetic energy (J) of points. It is needed only with damping, and before velocities change.
     pub(crate) const fn note_brought(&mut self, kinetic: f64) {
         self.brought = kinetic;
     }
 
-    /// Records the work of driven grains before their points are moved along.
+    /// Records the work of driven grains. It must be called before their points get the prescribed velocity.
     pub(crate) fn note_driven(&mut self, driven: &DrivenGroups<S>, time_step: f64) {
         self.held = work_of(driven, time_step);
     }
 
-    /// Adds the sums over nodes after velocities have changed.
+    /// Adds the sums over nodes. It must be called after velocities have changed.
     pub(crate) fn add_nodes(
         &mut self,
         team: &Team,
@@ -278,7 +282,7 @@ impl<S: Space> Accounts<S> {
         sums.taken += tally.taken;
     }
 
-    /// Adds the sums over contacts after points have transferred their new velocities to the nodes.
+    /// Adds the sums over contacts. It must be called after points have transferred their new velocities to the nodes.
     pub(crate) fn add_contacts(&mut self, team: &Team, scheme: &Scheme, damping: f64, grid: &Grid<S>) {
         let Grid { nodes, projected, .. } = grid;
         let time_step = scheme.time_step;
@@ -304,14 +308,15 @@ impl<S: Space> Accounts<S> {
         sums.taken += taken;
     }
 
-    /// Adds the energies of stresses after they have changed.
+    /// Adds the energies of stresses. It must be called after stresses have changed.
     pub(crate) fn add_flow(&mut self, flow: Flow) {
         self.sums.stressed = flow.taken;
         self.sums.plastic += flow.plastic;
         self.sums.viscous += flow.viscous;
     }
 
-    /// Returns the budget from the elastic energy of the material (J) and gravity (m/s²).
+    /// Returns the budget of energy and momentum. The caller gives the elastic energy of the material (J) and gravity
+    /// (m/s²).
     pub(crate) fn budget(
         &self,
         setting: &Setting,

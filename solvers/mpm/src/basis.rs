@@ -1,10 +1,10 @@
-//! Basis functions of the grid along one axis; functions in two and three dimensions are products of them.
+//! Basis functions of the grid along one axis. Functions in two and three dimensions are products of these functions.
 //!
-//! Lengths are in cells, so that the position of node i is i.
+//! Lengths are in units of the cell length, so the position of node i is i.
 
 use grainbench_lanes::Number;
 
-/// Compiles a call for the selected basis.
+/// Evaluates a call with the type of the selected basis functions.
 macro_rules! with_basis {
     ($basis:expr, $B:ident => $call:expr) => {
         match $basis {
@@ -31,10 +31,10 @@ pub(crate) use with_basis;
 pub(crate) struct Axis<N> {
     /// Value at the point; for GIMP, mean over the point's extent.
     pub(crate) value: [N; 3],
-    /// Derivative (per cell), or its mean.
+    /// Derivative at the point (per cell); for GIMP, mean over the point's extent.
     pub(crate) slope: [N; 3],
-    /// Weights that give the affine part of a velocity field (per cell): w (i − x)/D with D = Σ w (i − x)² (Jiang,
-    /// Schroeder & Teran 2017). The result is linear in the field and exact for affine fields.
+    /// Weights for the affine part of a velocity field (per cell): w (i − x)/D with D = Σ w (i − x)² (Jiang, Schroeder
+    /// & Teran 2017). The affine part is linear in the field and exact for affine fields.
     pub(crate) affine: [N; 3],
     /// D = Σ w (i − x)² (cells²).
     pub(crate) spread: N,
@@ -51,16 +51,16 @@ fn floor(at: f64) -> i32 {
 pub(crate) trait Basis: Copy + Send + 'static {
     /// Number of nodes along an axis that influence a point.
     const WIDTH: usize;
-    /// True if the extent of a point matters.
+    /// True if the functions depend on the extent of the point.
     const EXTENDED: bool = false;
-    /// Smallest distance of a point beyond its first node (cells); the largest distance is one more.
+    /// Smallest distance from the first node to the point (cells). The largest distance is greater by one cell.
     const START: f64;
     /// Returns the first node that influences the position `at`.
     #[inline(always)]
     fn first(at: f64) -> i32 {
         floor(at - Self::START)
     }
-    /// Computes the functions for a point at a distance `at` beyond its first node, with half extent `half`.
+    /// Computes the functions for a point at a distance `at` from its first node, with half extent `half` (cells).
     fn axis<N: Number>(at: N, half: N) -> Axis<N>;
 }
 
@@ -134,7 +134,8 @@ impl Basis for Gimp {
 mod tests {
     use super::*;
 
-    /// Every family reproduces affine fields: Σw = 1, Σw i = x, Σ∇w = 0, Σ∇w i = 1, and the affine part is exact.
+    /// Checks that the functions reproduce affine fields: Σw = 1, Σw i = x, Σ∇w = 0, Σ∇w i = 1, and the affine part is
+    /// exact.
     fn is_consistent<B: Basis>() {
         for step in 0..1000 {
             let at = -1.3 + 0.0037 * f64::from(step);

@@ -16,28 +16,28 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A deformable body.
+/// Deformable body with its points, surface and material.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) owner: Owner,
-    /// Points of the body and the window of their nodes.
+    /// Points of the body, and the window of nodes that they influence.
     pub(crate) part: Part,
-    /// Tracers on the surface.
+    /// Range of the tracers on the surface.
     pub(crate) tracers: Range<usize>,
-    /// Tracer chunks of the surface.
+    /// Range of the chunks of these tracers.
     pub(crate) chunks: Range<usize>,
-    /// Index of its material in the scene.
+    /// Index of the material in the scene.
     pub(crate) material: u16,
     pub(crate) law: Material,
     pub(crate) density: f64,
     pub(crate) deformable: Deformable,
-    /// Bounding box of its points and tracers (m).
+    /// Bounding box of points and tracers (m).
     pub(crate) bounds: [Vector3<f64>; 2],
     /// Rotation since the start at the last observation (rad).
     pub(crate) angle: f64,
-    /// Fixed or symmetry boundaries of a box, and its corners (m).
+    /// For a box with fixed or symmetry boundaries, its sides and corners (m).
     pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
-    /// Index of its group of driven grains.
+    /// Index of the group of driven grains that contains the body.
     pub(crate) driven: Option<u16>,
 }
 
@@ -62,8 +62,8 @@ struct Blank {
 
 /// Seeds all bodies of a scene with `per_cell` points per cell and axis.
 ///
-/// The constitutive laws are integrated with steps of `time_step` (s). Materials without elastic moduli are skipped,
-/// because the scene has been checked before.
+/// `time_step` (s) is the time step of the constitutive laws. Grains and blocks of materials without elastic moduli are
+/// skipped, because an earlier check rejects their scenes.
 pub(crate) fn seed<S: Space>(
     scene: &Scene,
     setting: &Setting,

@@ -1,4 +1,4 @@
-//! Boundaries with prescribed motion. They are walls, fixed or symmetry boundaries, and driven bodies.
+//! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
 
 use crate::bodies::Body;
 use crate::driven::DrivenGroups;

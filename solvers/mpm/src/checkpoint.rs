@@ -1,4 +1,4 @@
-//! State of a simulation between two steps, from which a restart continues with identical bits.
+//! State of a simulation between two steps. A restart from this state gives the same bits as an uninterrupted run.
 //!
 //! The order of points is stored, because the last bit of sums at nodes depends on it. Tracer positions and tangential
 //! spring displacements are stored too. Nodes, windows, pairs and planes are recomputed in each step.
@@ -30,7 +30,7 @@ struct CheckpointData<S: Space> {
     runs_in_order: Vec<usize>,
     step: u64,
     cost: Counts,
-    /// Energy budget if requested, and energies of contacts in the last step.
+    /// Sums of the energy budget and energies of contacts in the last step, if the run requests a budget.
     accounts: Option<(Sums, Tally)>,
     /// Monitored energy of a closed run.
     watched: Option<EnergyGuard>,
@@ -72,13 +72,13 @@ impl<S: Space> Simulation<S> {
             && kept.angles.len() == state.bodies.len()
             && kept.runs_in_order.len() == state.bodies.len();
         if !same {
-            return Err(CheckpointError::Damaged("it has another number of points, tracers or bodies".to_owned()));
+            return Err(CheckpointError::Damaged("it has a different number of points, tracers or bodies".to_owned()));
         }
         let Points { mass, reference_volume, volume, .. } = &kept.points;
         let is_positive = [mass, reference_volume, volume].into_iter().flatten().all(|value| *value > 0.0);
         let is_finite = is_finite(&(&kept.points, &kept.tracers, &kept.friction, &kept.angles));
         if !(is_positive && is_finite && kept.recorder.is_finite()) {
-            let reason = "it has a number that is not finite, or a mass or volume that is not positive";
+            let reason = "it has a number that is not finite, or a mass or volume that is zero or negative";
             return Err(CheckpointError::Damaged(reason.to_owned()));
         }
         state.before.clone_from(&kept.points.velocity);

@@ -1,4 +1,4 @@
-//! Contact stages of a cycle, which are spring forces between surfaces, and conditions on node velocities.
+//! Contact stages of a cycle: spring forces between surfaces, and conditions on node velocities.
 
 use crate::accounts::Accounts;
 use crate::basis::with_basis;
@@ -23,7 +23,8 @@ use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 use std::slice;
 
-/// Subranges of pairs per thread. Their cost varies strongly, so several are needed for load balance.
+/// Number of subranges of pairs per thread. The cost of subranges varies strongly, so several are needed for load
+/// balance.
 const SHARES: usize = 8;
 
 /// Requested outputs of springs in a step.
@@ -34,7 +35,7 @@ pub(crate) struct ContactRequest<'a, S: Space> {
     pub(crate) touches: bool,
 }
 
-/// Surfaces and their contacts.
+/// Surface tracers and contacts of all bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Contacts<S: Space> {
     pub(crate) tracers: Tracers<S>,
@@ -73,7 +74,7 @@ impl<S: Space> Contacts<S> {
 
     /// Removes tracers if no contact is possible or the contact method does not need them.
     ///
-    /// Until then, the tracers are needed only for the initial pressure.
+    /// The initial pressure needs the tracers even in these cases, so it must be applied before this call.
     pub(crate) fn drop_idle_surfaces(&mut self, contact: Contact, state: &mut State<S>, boundary: &Boundary<S>) {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;
@@ -127,7 +128,7 @@ impl<S: Space> Contacts<S> {
         }
     }
 
-    /// Adds forces of springs between surfaces to the nodes.
+    /// Adds the forces of springs between surfaces to the nodes.
     pub(crate) fn push(
         &mut self,
         scheme: &Scheme,
@@ -225,7 +226,7 @@ impl<S: Space> Contacts<S> {
         }
     }
 
-    /// Applies nodal contact to the projected velocities. The energy budget does not include them.
+    /// Applies nodal contact to the projected velocities. The energy budget does not include these impulses.
     pub(crate) fn meet_projected(
         &mut self,
         scheme: &Scheme,

@@ -1,16 +1,16 @@
 //! Transfer from nodes to points (G2P): velocities and displacements.
 //!
-//! The sums are over the nodes i that influence a point p. N_i are their basis functions, v_i their velocities after
-//! the step and Δv_i the changes of velocity in the step (m/s):
+//! The sums are over the nodes i that influence a point p. N_i are the basis functions of the nodes, v_i the node
+//! velocities after the step and Δv_i the changes of velocity in the step (m/s):
 //!
-//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i if points keep their velocity (Brackbill & Ruppel 1986), otherwise
-//!   Σ N_i(x_p) v_i; keep is the damping factor ([`Damping`]);
-//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m); if points move with the velocities of the stress update, this is
+//! - v_p ← keep v_p + Σ N_i(x_p) Δv_i if points keep their velocity (Brackbill & Ruppel 1986), otherwise Σ N_i(x_p)
+//!   v_i; keep is the damping factor ([`Damping`]);
+//! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m). If points move with the velocities of the stress update, this is
 //!   done later with those velocities ([`crate::gradients`]);
-//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), if points carry an affine part (1/s)
-//!   (Jiang et al. 2015);
-//! - for MUSL, back to the nodes: p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with the new values (Sulsky, Zhou &
-//!   Schreyer 1995).
+//! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), if points have an affine part of the
+//!   velocity (1/s) (Jiang et al. 2015);
+//! - for MUSL, momenta from the points back to the nodes: p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with the new
+//!   values (Sulsky, Zhou & Schreyer 1995).
 
 use crate::basis::{Basis, with_basis};
 use crate::damping::Damping;
@@ -32,8 +32,8 @@ use std::marker::PhantomData;
 
 /// Gathers velocities and displacements of points from the nodes.
 ///
-/// For MUSL it also scatters the momentum of the new velocities to the nodes. The same loop handles nodes that no
-/// earlier partition influences; a second loop handles the remaining nodes.
+/// For MUSL it also scatters the momentum of the new velocities to the nodes. The same loop does this for nodes that no
+/// earlier thread partition influences. A second loop does it for the remaining nodes.
 pub(crate) fn gather<S: Space>(
     scheme: &Scheme,
     Damping { keep, .. }: Damping,
@@ -80,8 +80,8 @@ pub(crate) fn gather<S: Space>(
     }
 }
 
-/// Scatters momentum to the remaining nodes: from a partition's own points to nodes that earlier partitions also
-/// influence, and from points of later partitions to all nodes that they influence.
+/// Scatters momentum to the remaining nodes. A partition's own points scatter to nodes that earlier partitions also
+/// influence. Points of earlier and later partitions scatter to all nodes of the partition that they influence.
 fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>) {
     let Scheme { setting, processor, .. } = *scheme;
     let State { points, shares, team, .. } = state;
@@ -106,10 +106,10 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
     });
 }
 
-/// Kernel of the gather: velocities of a body's points from its nodes.
+/// Kernel that gathers the velocities of a body's points from its nodes.
 ///
-/// With `MOVE` it also computes their next positions. With `PROJECT` it scatters momentum with the new velocities
-/// (MUSL).
+/// With `MOVE` it also computes the next positions of the points. With `PROJECT` it scatters momentum with the new
+/// velocities (MUSL).
 struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
     lattice: &'a Lattice,
     part: &'a Part,
@@ -239,7 +239,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
     }
 }
 
-/// Adds the momentum of four points, with the velocities `shown` at the nodes, to the nodes.
+/// Adds the momenta of four points to the nodes. `shown` contains their velocities, extrapolated to the nodes.
 #[inline(always)]
 fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
     shown: &ExtrapolatedVelocity<SimdPack<L>>,
@@ -264,7 +264,7 @@ fn bring<S: Space, B: Basis, T: Transfer, L: FourLanes>(
     }
 }
 
-/// Adds momentum of four points, by component, to the nodes of a row.
+/// Adds the momenta of four points, given by component, to the nodes of a row along x.
 #[inline(always)]
 fn give<S: Space, B: Basis, L: FourLanes>([x, y, z]: [[SimdPack<L>; 3]; 3], projected: &mut [S::Vector]) {
     let sums = if S::DIMENSION == 2 {

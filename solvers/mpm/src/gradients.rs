@@ -1,4 +1,4 @@
-//! Velocity gradients at points, and the positions to which these velocities move the points.
+//! Velocity gradients at points, and the next positions of the points.
 
 use crate::basis::Basis;
 use crate::patch::{Copies, StencilBlock};
@@ -8,13 +8,13 @@ use grainbench_lanes::{FourKernel, FourLanes, SimdPack};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// Computes velocity gradients (1/s) at the points of some batches of a body.
+/// Kernel that computes velocity gradients (1/s) at the points of some batches of a body.
 ///
 /// With `MOVE` it also computes the next positions x_p + Δt Σ N_i(x_p) v_i (m).
 pub(crate) struct Gradients<'a, S: Space, B, N, V, const MOVE: bool> {
     ground: Ground<'a, S>,
     nodes: &'a [N],
-    /// Velocity of a node (m/s).
+    /// Function that returns the velocity of a node (m/s).
     velocity: V,
     gradients: &'a mut [S::Matrix],
     /// Next positions (m), with the same index offset as the positions of `ground`.

@@ -1,8 +1,9 @@
-//! Grid of nodes. All velocity fields use a common lattice, and every field stores its own window of it.
+//! Grid of nodes. All velocity fields use a common lattice, and every field stores the nodes of its own window of the
+//! lattice.
 //!
-//! A field belongs to a body, or to all bodies if they share one velocity field. Its window is the box of nodes that
-//! its points influence. Memory and time therefore grow with the bodies and not with the space between them. A node
-//! shared by three bodies is stored three times, once in each window.
+//! A field belongs to one body, or to all bodies if they share one velocity field. The window is the box of nodes that
+//! the points of the field influence. Memory and time therefore grow with the bodies and not with the space between
+//! them. A node shared by three bodies is stored three times, once in each window.
 
 use crate::basis::{Axis, Basis};
 use grainbench_lanes::Number;
@@ -17,7 +18,7 @@ use std::ops::Range;
 pub(crate) struct Node<S: Space> {
     /// Mass (kg).
     pub(crate) mass: f64,
-    /// Momentum (kg m/s) while points are scattered; velocity (m/s) after.
+    /// Momentum (kg m/s) while points are scattered; velocity (m/s) afterwards.
     pub(crate) velocity: S::Vector,
     /// Force (N) while points are scattered; change of velocity in the step (m/s) afterwards.
     pub(crate) change: S::Vector,
@@ -32,7 +33,7 @@ impl<S: Space> Node<S> {
 pub(crate) struct Window {
     /// First node along each axis.
     pub(crate) low: [i32; 3],
-    /// Nodes along each axis.
+    /// Number of nodes along each axis.
     pub(crate) size: [i32; 3],
     /// Slot of the first node in the common node array.
     pub(crate) start: usize,
@@ -45,12 +46,12 @@ impl Window {
         self.size[0] as usize * self.size[1] as usize * self.size[2] as usize
     }
 
-    /// Returns the slots of its nodes.
+    /// Returns the slots of the window's nodes in the common node array.
     pub(crate) const fn slots(&self) -> Range<usize> {
         self.start..self.start + self.len()
     }
 
-    /// Returns the index of a node along an axis within the window.
+    /// Returns the index of a node within the window along an axis.
     #[inline(always)]
     pub(crate) fn along(&self, axis: usize, node: i32) -> usize {
         let place = node - self.low[axis];
@@ -95,7 +96,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Returns a position along an axis in cells.
+    /// Returns a position along an axis, in units of the cell length.
     #[inline(always)]
     pub(crate) fn cells<S: Space>(&self, position: S::Vector, axis: usize) -> f64 {
         (S::component(position, axis) - self.origin[axis]) * self.inverse[axis]
@@ -118,11 +119,11 @@ impl Lattice {
         self.cell[..dimensions].iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the window for a box of positions (m), without its start slot.
+    /// Returns the window of nodes for a box of positions (m). The start slot of the window is not set.
     pub(crate) fn window<S: Space>(&self, low: S::Vector, high: S::Vector) -> Window {
         let mut window = Window { size: [1; 3], ..Window::default() };
         for axis in 0..S::DIMENSION {
-            // The smoothed density of cells needs one node more below than any basis.
+            // `SharedNodes::smooth_normals` needs one node more at the lower end than any basis function.
             let first = (self.cells::<S>(low, axis) - 0.5).floor() as i32 - 1;
             let last = (self.cells::<S>(high, axis) - 0.5).floor() as i32 + 2;
             window.low[axis] = first;
@@ -134,7 +135,7 @@ impl Lattice {
         window
     }
 
-    /// Returns the node within the first period.
+    /// Returns the image of the node within the first period.
     pub(crate) fn wrapped(&self, mut node: [i32; 3]) -> [i32; 3] {
         for (node, period) in node.iter_mut().zip(self.period) {
             if let Some(period) = period {
@@ -145,7 +146,7 @@ impl Lattice {
     }
 }
 
-/// Nodes that influence a point, or four points with the same nodes, and their basis functions.
+/// Nodes that influence a point (or four points with the same nodes), with their basis functions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stencil<N> {
     base: [i32; 3],
@@ -159,20 +160,20 @@ pub(crate) struct Stencil<N> {
 /// Basis functions of a row of nodes along x, without the factors along x.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowBasis<N> {
-    /// Product of the functions along y and z.
+    /// Product of the functions along y and z at the point.
     pub(crate) value: N,
-    /// Same product with the slope along y, and along z (1/m).
+    /// Products with the slope instead of the value: first the slope along y, then the slope along z (1/m).
     pub(crate) slope: [N; 2],
-    /// Same product with the affine weight along y, and along z (1/m).
+    /// Products with the affine weight instead of the value: first the weight along y, then the weight along z (1/m).
     pub(crate) affine: [N; 2],
 }
 
-/// Node of a stencil, with its index and its weight.
+/// Node of a stencil, with index and weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StencilNode<S: Space> {
-    /// Slot of the node.
+    /// Slot of the node in the common node array.
     pub(crate) slot: usize,
-    /// Basis function at the point.
+    /// Value of the node's basis function at the point.
     pub(crate) weight: f64,
     axes: [usize; 3],
     _space: std::marker::PhantomData<S>,
@@ -236,7 +237,7 @@ impl<N: Number> Stencil<N> {
         RowBasis { value: y.value[j] * deep, slope: [slope * deep, deep_slope], affine: [affine * deep, deep_affine] }
     }
 
-    /// Returns the distance from the point to the first node along an axis (m).
+    /// Returns the component along an axis of the vector from the point to the first node (m).
     #[inline(always)]
     pub(crate) fn arm_of_first(&self, axis: usize) -> N {
         self.at[axis] * -self.cell[axis]
@@ -260,7 +261,7 @@ impl Stencil<f64> {
         self.base
     }
 
-    /// Visits every node.
+    /// Calls `visit` for every node of the stencil.
     #[inline(always)]
     pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(StencilNode<S>)) {
         let solid = S::DIMENSION == 3;
@@ -291,7 +292,8 @@ impl Stencil<f64> {
         }
     }
 
-    /// Returns the product of function values over the axes, with `other` instead along each axis in turn (1/m).
+    /// Returns a vector whose component along each axis is a product of function values, with `other` instead of the
+    /// value along this axis (1/m).
     #[inline(always)]
     fn along<S: Space>(&self, node: &StencilNode<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
         let [i, j, k] = node.axes;
@@ -318,8 +320,8 @@ mod tests {
     use crate::basis::{Gimp, Linear, Quadratic};
     use grainbench_scene::space::Solid;
 
-    /// With cells of 1, 2 and 3 m, a field that is linear in position has the same gradient everywhere, both from node
-    /// by node and from row by row evaluation.
+    /// Checks that a field that is linear in position has the same gradient everywhere, with cells of 1, 2 and 3 m. The
+    /// gradient is evaluated node by node and row by row.
     fn keeps_a_gradient<B: Basis>() {
         let inverse = [1.0, 1.0 / 2.0, 1.0 / 3.0];
         let lattice = Lattice { cell: [1.0, 2.0, 3.0], inverse, origin: [0.3, -0.2, 0.1], period: [None; 3] };

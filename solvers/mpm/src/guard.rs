@@ -1,5 +1,6 @@
-//! Periodic checks of a run. The time step is compared with the critical time step of the deformed material, and the
-//! energy of a closed run with its initial energy. Initial overlaps of bodies are checked once, in the first step.
+//! Periodic checks of a run. One compares the time step with the critical time step of the deformed material. Another
+//! compares the energy of a closed run with its initial energy. The initial overlaps of bodies are checked once, in the
+//! first step.
 
 use crate::bodies::Body;
 use crate::contact::ContactPartner;
@@ -13,26 +14,26 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Steps between two checks. A check takes about as long as two steps.
+/// Number of steps between two checks. A check takes about as long as two steps.
 const INTERVAL: u64 = 256;
 
 /// Allowed energy gain of a closed run, relative to its largest kinetic plus elastic energy so far.
 ///
-/// Known gains of the checked settings are half a per cent for two colliding discs. They are up to an eighth for three
-/// discs (nodal contact of penetrating surfaces), plus an offset of half a step between velocities and positions. An
-/// instability exceeds any bound within tens of steps.
+/// Runs with the checked settings gain half a per cent for two colliding discs, and up to an eighth for three discs
+/// (nodal contact of penetrating surfaces). The offset of half a step between velocities and positions adds to the gain.
+/// An instability exceeds any bound within tens of steps.
 const ALLOWED_GAIN: f64 = 0.25;
 
-/// Largest strain of the surface layer, caused by springs of an initial overlap, with which a run starts.
+/// Largest allowed strain of the surface layer at the start, caused by the contact springs of an initial overlap.
 ///
-/// At a strain of a quarter the stress of neo-Hookean material exceeds the linear stress by a third. The shock that
-/// leaves the surface then moves it at a quarter of the speed of sound.
+/// At a strain of a quarter the stress of neo-Hookean material exceeds the linear stress by a third. A shock wave that
+/// starts at the surface then moves the surface at a quarter of the speed of sound.
 const LARGEST_STRAIN: f64 = 0.25;
 
 /// Energy of a closed run (J; J/m for discs).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyGuard {
-    /// Initial kinetic, elastic and gravitational energy; without the springs, whose energy is `springs`.
+    /// Initial kinetic, elastic and gravitational energy, without the energy of the springs.
     start: f64,
     /// Initial energy of springs; known after the first step.
     springs: Option<f64>,
@@ -40,7 +41,8 @@ pub(crate) struct EnergyGuard {
     largest: f64,
 }
 
-/// Returns true if only gravity does work on the bodies. Then no wall or grain is driven, and there is no manufactured force.
+/// Returns true if only gravity does work on the bodies: no wall or grain is driven, and there is no manufactured body
+/// force.
 fn is_closed(scene: &Scene) -> bool {
     let rests = scene.walls.iter().all(|wall| !wall.motion.is_moving());
     rests && scene.driven.is_empty() && scene.start.manufactured.is_none()
@@ -48,8 +50,8 @@ fn is_closed(scene: &Scene) -> bool {
 
 /// Returns true if the contact method creates no energy by design.
 ///
-/// The methods of the original papers do create energy: nodes are stopped before surfaces are in contact, and released
-/// with more energy than before (up to 1.8 times the energy of a collision).
+/// The methods of the original papers do create energy. They stop nodes before surfaces are in contact, and nodes later
+/// depart with more energy than before (up to 1.8 times the energy of a collision).
 fn keeps_energy(contact: Contact) -> bool {
     !matches!(contact, Contact::Kinematic | Contact::Traction)
 }
@@ -77,7 +79,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Returns true if the next step must record contact points.
+    /// Returns true if the next step must record contact points for the checks.
     pub(crate) fn wants_touches(&self) -> bool {
         self.is_fresh || self.watched.is_some_and(|watched| watched.springs.is_none())
     }
@@ -85,7 +87,8 @@ impl<S: Space> Simulation<S> {
     /// Checks the last step.
     ///
     /// # Errors
-    /// When bodies overlap too much at the start, the step exceeds the critical time step, or the energy has grown.
+    /// Returns an error if bodies overlap too much at the start, the step exceeds the critical time step, or the energy
+    /// has grown too much.
     pub(crate) fn check(&mut self) -> Result<(), Box<SimulationFailure>> {
         let is_first = std::mem::take(&mut self.is_fresh);
         if is_first {
@@ -106,7 +109,8 @@ impl<S: Space> Simulation<S> {
 
     /// Rejects initial overlaps whose springs strain the surface layer too much.
     ///
-    /// The strain is p/M, with p = κ δ the pressure of the springs and M the modulus of the softer body.
+    /// The strain is p/M, with the pressure p = κ δ of the springs (κ: stiffness per area, δ: overlap) and the
+    /// longitudinal modulus M of the softer body.
     fn check_overlaps(&self) -> Result<(), Box<SimulationFailure>> {
         let Self { scheme, state, contacts, grid, .. } = self;
         if scheme.setting.contact != Contact::Penalty {
@@ -138,7 +142,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Compares the time step with the current critical time step, in runs that satisfied it at the start.
+    /// Compares the time step with the current critical time step, if the run satisfied the limit at the start.
     fn check_step(&self) -> Result<(), Box<SimulationFailure>> {
         let Self { scheme, state, grid, critical, .. } = self;
         if scheme.time_step > *critical {
@@ -173,7 +177,7 @@ impl<S: Space> Simulation<S> {
         self.watched = Some(EnergyGuard { start, springs, largest });
         let gained = inner + height - start - brought;
         let allowed = ALLOWED_GAIN * f64::max(largest - gained.max(0.0), brought);
-        // NaN is reported where it arises.
+        // NaN does not count as an energy gain, because other checks report it.
         if gained <= allowed.max(self.rounding()) || gained.is_nan() {
             return Ok(());
         }
@@ -187,7 +191,7 @@ impl<S: Space> Simulation<S> {
         Err(self.simulation_failure(self.state.failure(place, point, cause), self.critical))
     }
 
-    /// Returns kinetic plus elastic energy, and gravitational potential energy (J).
+    /// Returns the kinetic plus elastic energy, and the gravitational potential energy (J).
     fn energies(&self) -> [f64; 2] {
         let Self { scheme, state, grid, .. } = self;
         let elastic: f64 = state.bodies.iter().map(|body| self.elastic_energy(body)).sum();
@@ -204,7 +208,8 @@ impl<S: Space> Simulation<S> {
         (0..points.len()).map(|at| -points.mass[at] * gravity.dot(&S::embed(points.position[at]))).sum()
     }
 
-    /// Returns the rounding error of the energy (J), from potential and initial energy and the number of steps.
+    /// Returns an estimate of the rounding error of the energy (J), from potential and initial energy and the number of
+    /// steps.
     fn rounding(&self) -> f64 {
         let start = self.watched.map_or(0.0, |watched| watched.start.abs());
         (start + self.height_energy().abs()) * f64::EPSILON * self.step as f64

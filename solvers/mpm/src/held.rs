@@ -1,5 +1,5 @@
-//! Fixed or symmetry boundaries of boxes. The body continues as its mirror image beyond the side, so that the side
-//! keeps its position to the order of the basis. A side coincides with the nearest nodes.
+//! Fixed or symmetry boundaries of boxes. Beyond such a side the body continues as its mirror image, so the side keeps
+//! its position to the order of the basis functions. The side is moved to the nearest nodes.
 
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Window};
@@ -7,20 +7,20 @@ use grainbench_scene::body::Hold;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// A fixed or symmetry boundary.
+/// Side of a box that is a fixed or symmetry boundary.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: usize,
     axis: usize,
-    /// Node on the side along the axis.
+    /// Index along the axis of the nodes on the side.
     node: i32,
-    /// +1 if the body is above the side along the axis, otherwise −1.
+    /// +1 if the body is on the upper side of the boundary along the axis, otherwise −1.
     inward: i32,
     /// True if tangential motion is fixed too.
     fixed: bool,
 }
 
-/// All fixed or symmetry boundaries.
+/// Fixed or symmetry boundaries of all bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FixedBoundaries {
     sides: Vec<Side>,
@@ -46,9 +46,9 @@ impl FixedBoundaries {
 
     /// Adds the contribution of the mirror image to the inner nodes, before velocities are computed.
     ///
-    /// The mirror image of gravity (m/s²) has the opposite direction along the normal. Mass m that is folded back from
-    /// beyond a side must carry m times mirrored gravity. Nodes are later accelerated by gravity with all of their
-    /// mass, so the difference is added here.
+    /// The mirror image of gravity (m/s²) has the opposite direction along the normal. A mass m that is folded back
+    /// from beyond a side needs the force m times mirrored gravity. Later, gravity acts on the full mass of the nodes,
+    /// so the difference is added here.
     pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>], gravity: S::Vector) {
         for side in &self.sides {
             let pull = side.mirrored::<S>(gravity) - gravity;
@@ -73,7 +73,7 @@ impl FixedBoundaries {
         }
     }
 
-    /// Sets the velocities on the sides and beyond them.
+    /// Sets the velocities of nodes on the sides and beyond them.
     pub(crate) fn hold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
         for side in &self.sides {
             let window = &bodies[side.body].part.window;
@@ -88,7 +88,7 @@ impl FixedBoundaries {
         }
     }
 
-    /// Sets the projected velocities on the sides and beyond them.
+    /// Sets the projected velocities of nodes on the sides and beyond them.
     pub(crate) fn hold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
         for side in &self.sides {
             let window = &bodies[side.body].part.window;
@@ -98,7 +98,8 @@ impl FixedBoundaries {
     }
 }
 
-/// Returns the mass of a node beyond the side: if it has mass, the mass of its image, so that points see its velocity.
+/// Returns the mass of a node beyond the side. If the node has mass, it gets the mass of its mirror image, so that
+/// points use its velocity.
 fn to_mass(inside: f64, beyond: f64) -> f64 {
     if beyond > 0.0 { inside } else { 0.0 }
 }
@@ -114,7 +115,7 @@ impl Side {
         S::restrict(mirrored)
     }
 
-    /// Returns the part of a velocity on the side that is not constrained.
+    /// Returns the unconstrained part of a velocity on the side.
     fn kept<S: Space>(&self, vector: S::Vector) -> S::Vector {
         if self.fixed {
             return S::ORIGIN;
@@ -165,10 +166,13 @@ mod tests {
     use nalgebra::Vector2;
 
     /// A box of 2 kg/m² on cells of 1 m moves at (3, 5) m/s before its side on nodes is constrained. Points are at
-    /// quarters of cells, where the quadratic function of a node is N(¼) = 11/16, N(¾) = 9/32 and N(1¼) = 1/32. An
-    /// inner node has the 2 kg of its cell. The node next to the side lacks ½ · 1/32 of it, which the node beyond the
-    /// side has. After folding, it has all of the mass and the momentum of the mirror image: (1 − 1/32) of 2 · 3 kg m/s
-    /// along x. Along y it has 2 · 5 on a sliding side and (1 − 1/32) of it on a fixed side.
+    /// quarters of cells, where the quadratic function of a node has the values N(¼) = 11/16, N(¾) = 9/32 and N(1¼) =
+    /// 1/32.
+    ///
+    /// An inner node has the 2 kg of its cell. The node next to the side lacks ½ · 1/32 of this mass, which is at the
+    /// node beyond the side. After folding, the node next to the side has the full mass and also the momentum of the
+    /// mirror image. Its momentum along x is (1 − 1/32) of 2 · 3 kg m/s. Along y it is 2 · 5 kg m/s on a sliding side
+    /// and (1 − 1/32) of this value on a fixed side.
     #[test]
     fn a_held_side_gives_nodes_the_mass_of_the_mirror_image() {
         let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
@@ -198,7 +202,7 @@ mod tests {
         }
     }
 
-    /// Projected momenta are folded before the division by mass, which has been folded already. The velocities equal
+    /// Projected momenta are folded before they are divided by the mass, which is folded already. The velocities equal
     /// those from folded momenta and masses.
     #[test]
     fn a_held_side_folds_momenta_before_they_are_divided() {
@@ -230,8 +234,8 @@ mod tests {
     }
 
     /// The mirror image of gravity has the opposite direction. The node next to a side has 2 kg, of which 1/32 of half
-    /// a cell is folded back from beyond. The force is the weight of the rest less the weight of this part. Along a
-    /// sliding side the full weight acts.
+    /// a cell is folded back from beyond the side. The force normal to the side is the weight of the remaining mass
+    /// minus the weight of the folded mass. Along a sliding side the full weight acts.
     #[test]
     fn a_held_side_mirrors_gravity() {
         let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };

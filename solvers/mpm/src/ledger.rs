@@ -1,4 +1,4 @@
-//! Outputs of the loops over tracers, nodes and points for the energy budget, if a run requests it.
+//! Energies that the loops over tracers, nodes and points record for the energy budget, if a run requests it.
 
 use crate::off::AbsentEffect;
 use serde::{Deserialize, Serialize};
@@ -12,12 +12,12 @@ pub(crate) struct Tally {
     pub(crate) friction: f64,
     /// Work of walls (J).
     pub(crate) walls: f64,
-    /// Energy that springs take from the motion of surfaces (J). It includes the half from velocities before the step,
-    /// and the whole part of walls.
+    /// Energy that springs take from the motion of surfaces (J). It includes the half with velocities before the step,
+    /// and the full contribution of walls.
     pub(crate) taken: f64,
 }
 
-/// Receiver of contact energies: the budget of a run that requests it, or its absence.
+/// Receiver of contact energies: a [`Tally`] if the run requests an energy budget, otherwise [`AbsentEffect`].
 pub(crate) trait Ledger {
     /// Returns the energies of contacts in the step, if requested.
     fn tally(&mut self) -> Option<&mut Tally>;

@@ -1,7 +1,7 @@
 //! The material point method: deformable grains in frictional contact, in two dimensions (plane strain) and three.
 //!
-//! The method is explicit, with lumped mass, in f64. A body is a cloud of material points that carry mass, velocity,
-//! deformation and stress, with a surface of massless tracers. Each step has four stages:
+//! The method is explicit, with lumped mass, in f64. A body is a set of material points with mass, velocity,
+//! deformation and stress. Massless tracers represent its surface. Each step has four stages:
 //!
 //! 1. points scatter mass, momentum and internal force to the nodes of their body's window of the grid;
 //! 2. contact acts, as springs between penetrating surfaces or as a condition on node velocities;
@@ -13,9 +13,10 @@
 //! (`contacts`) and the energy budget (`accounts`). The sums over points and nodes are in `scatter` and `gather`.
 //!
 //! Type parameters select space, basis, transfer and material, each only in the loops over points that need it. An enum
-//! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Absent
-//! effects are removed by the same means. Friction of springs, plastic strain and the energy budget are [`off::AbsentEffect`] in
-//! loops without them and need no memory; the affine part of velocities is stored only if the transfer uses it.
+//! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Types also
+//! remove absent effects. A run without friction of springs, plastic strain or an energy budget uses
+//! [`off::AbsentEffect`] instead, which needs no memory. The affine part of velocities is stored only if the transfer
+//! uses it.
 
 mod accounts;
 mod basis;

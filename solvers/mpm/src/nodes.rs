@@ -10,24 +10,24 @@ use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// Maximum number of nodes; a larger grid is treated as an error.
+/// Maximum number of nodes. A grid with more nodes is an error.
 const MOST_NODES: f64 = 5e7;
 
-/// Node velocities of a stage.
+/// Kind of node velocities that a stage uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Velocities {
     /// Velocities after the step.
     Stepped,
-    /// Velocities scattered from points to the nodes again.
+    /// Velocities that points scatter to the nodes again.
     Projected,
 }
 
-/// The lattice, and the nodes of all windows one after another.
+/// Lattice and nodes. The nodes of all windows are stored one window after another.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid<S: Space> {
     pub(crate) lattice: Lattice,
     pub(crate) nodes: Vec<Node<S>>,
-    /// Momenta (kg m/s), later velocities (m/s), that points scatter to the nodes again.
+    /// Momenta (kg m/s) that points scatter to the nodes again; later velocities (m/s).
     pub(crate) projected: Vec<S::Vector>,
     /// Weight limit of each node at a surface.
     pub(crate) most: Vec<f64>,
@@ -69,7 +69,7 @@ impl<S: Space> Grid<S> {
     /// Assigns a window to every field.
     ///
     /// # Errors
-    /// A body that extends farther than a grid can, with the cause.
+    /// Returns the index of the body with which the number of nodes exceeds the limit or is not finite, and the cause.
     pub(crate) fn place_windows(&mut self, bodies: &mut [Body], one_field: bool) -> Result<(), (usize, Cause)> {
         let (mut start, mut count) = (0, 0.0);
         let mut all: Option<[Vector3<f64>; 2]> = None;
@@ -103,8 +103,9 @@ impl<S: Space> Grid<S> {
         Ok(())
     }
 
-    /// Computes node velocities after the step, v ← keep v + gain (f/m + g), from momenta and forces, and keeps the
-    /// velocities before it. Returns the number of nodes with mass. See [`Damping`] for keep and gain.
+    /// Computes node velocities after the step, v ← keep v + gain (f/m + g), from momenta and forces. Stores the
+    /// velocities before the step in `change`. Returns the number of nodes with mass. See [`Damping`] for keep and
+    /// gain.
     pub(crate) fn step(&mut self, state: &State<S>, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
         let step = |_, own: NodePartition<'_, S>| {
             let mut stepped = 0;
@@ -124,14 +125,14 @@ impl<S: Space> Grid<S> {
         state.team.fold(self.parts(&state.shares), step, 0, |sum, stepped| sum + stepped)
     }
 
-    /// Computes velocity changes in the step, without damping, after velocities are final.
+    /// Computes the velocity changes in the step without damping, v − keep v_before. Node velocities must be final.
     pub(crate) fn find_changes(&mut self, state: &State<S>, Damping { keep, .. }: Damping) {
         state.team.each(self.parts(&state.shares), |_, own| {
             own.nodes.iter_mut().for_each(|node| node.change = node.velocity - node.change * keep);
         });
     }
 
-    /// Copies the momenta scattered from points, for the stress update first.
+    /// Copies the momenta that points have scattered. `StressUpdate::First` uses them.
     pub(crate) fn project(&mut self) {
         for (projected, node) in self.projected[..self.used].iter_mut().zip(&self.nodes) {
             *projected = node.velocity;

@@ -9,26 +9,27 @@ pub enum Basis {
     Linear,
     /// Quadratic B-splines.
     Quadratic,
-    /// Hat functions averaged over the extent of points (GIMP); the extent grows with the stretch along each axis.
+    /// Hat functions averaged over the extent of points (GIMP). The extent grows with the stretch along each axis.
     Gimp,
 }
 
 /// Transfer of velocities between points and nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transfer {
-    /// Points add the change of the nodes' velocity to their own, blended with a fraction `pic` of the velocity itself.
+    /// FLIP: points add the change of the node velocity to their own velocity, blended with a fraction `pic` of the
+    /// node velocity (PIC).
     Flip {
-        /// Fraction of the velocity itself in each step; 0 for none.
+        /// Fraction of the node velocity in the new velocity; 0 for pure FLIP.
         pic: f64,
     },
-    /// Points carry the affine part of the nodes' velocity.
+    /// APIC: points store the affine part of the node velocity.
     Apic,
-    /// Points add the change of the nodes' velocity and of its spin to their own.
+    /// FLIP with spin: points add the changes of velocity and spin of the velocity field to their own velocity and spin.
     Spin,
 }
 
 impl Transfer {
-    /// Returns true if points carry the affine part of the velocity, or its spin.
+    /// Returns true if points store the affine part of the velocity, or its spin.
     pub(crate) const fn carries_affine(self) -> bool {
         !matches!(self, Self::Flip { .. })
     }
@@ -37,56 +38,58 @@ impl Transfer {
 /// Time of the stress update within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressUpdate {
-    /// First, from velocities that points scatter to the nodes.
+    /// At the start of the step, from velocities that points scatter to the nodes.
     First,
-    /// Last, from node velocities at the end of the step.
+    /// At the end of the step, from the node velocities after the step.
     Last,
-    /// Last, from velocities that points scatter to the nodes again (MUSL: Sulsky, Zhou & Schreyer 1995).
+    /// At the end of the step, from velocities that points scatter to the nodes again (MUSL: Sulsky, Zhou & Schreyer
+    /// 1995).
     ModifiedLast,
 }
 
 /// Contact between bodies, and between bodies and walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// One velocity field for all bodies, which also follows walls.
+    /// One velocity field for all bodies. At walls, this field has the velocity of the wall.
     NoSlip,
-    /// At nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000): bodies separate freely. Each body has
-    /// its own normal, from a density smoothed as in eq. 24 of the paper.
+    /// Contact at nodes at which bodies approach (Bardenhagen, Brackbill & Sulsky 2000). Bodies separate freely. Each
+    /// body has its own normal, from a density smoothed as in eq. 24 of the paper.
     Kinematic,
-    /// At nodes with compressive normal traction (Bardenhagen et al. 2001), with each body's own normal. The impulse is
-    /// scaled so that cells do not collapse (eq. 22, whose `max` must read `min`).
+    /// Contact at nodes with compressive normal traction (Bardenhagen et al. 2001), with each body's own normal. The
+    /// impulse is scaled so that cells do not collapse (eq. 22, whose `max` must read `min`).
     Traction,
-    /// At nodes near penetrating surface tracers: bodies are treated in pairs along a common normal, while they
-    /// approach or are under pressure.
+    /// Contact at nodes near penetrating surface tracers. It acts between pairs of bodies along a common normal, while
+    /// they approach or are under pressure.
     Gap,
-    /// Springs between surface tracers and surfaces, with a tangential spring limited by Coulomb friction. They act at
-    /// contact points and not at nodes.
+    /// Springs between surface tracers and surfaces, with a tangential spring limited by Coulomb friction. The springs
+    /// act at contact points and not at nodes.
     Penalty,
 }
 
-/// A setting of the method.
+/// Setting of the method: all parameters except the resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Basis functions.
     pub basis: Basis,
-    /// Transfer of velocities.
+    /// Transfer of velocities between points and nodes.
     pub transfer: Transfer,
     /// Time of the stress update.
     pub stress_update: StressUpdate,
-    /// True if points move with the velocities of the stress update, and not with node velocities after the step; only
-    /// for [`StressUpdate::ModifiedLast`].
+    /// True if points move with the velocities of the stress update instead of node velocities after the step. It
+    /// applies only to [`StressUpdate::ModifiedLast`].
     ///
-    /// The two velocities differ by Δt (1 − S) a, with a the acceleration and S the smoothing by the transfer from
+    /// The two velocities differ by Δt (1 − S) a, with the acceleration a and the smoothing S by the transfer from
     /// points to nodes and back. In material that vibrates with the velocity v, positions then differ by Δt (1 − S) v
-    /// from those that the stress uses. The forces −Σ V σ ∇N(x) of a tension σ respond to this as to a force along v.
-    /// With smooth ∇N, waves of wave number k grow at the rate Δt σ k² (1 − S)/2ρ. A bar under a tension of .08 E
-    /// breaks apart at rest. Hat functions are not affected, because their ∇N is constant within a cell.
+    /// from the positions that the stress uses. The forces −Σ V σ ∇N(x) of a tension σ respond to this difference as to
+    /// a force along v. With smooth ∇N, waves of wave number k grow at the rate Δt σ k² (1 − S)/2ρ. A bar at rest under
+    /// a tension of .08 E breaks apart. Hat functions are not affected, because their ∇N is constant within a cell.
     pub moves_with_stress: bool,
     /// Contact algorithm between bodies and with walls.
     pub contact: Contact,
-    /// Springs of [`Contact::Penalty`]: stiffness per area in E'/h, with E' = E/(1 − ν²), harmonic mean of both bodies.
+    /// Stiffness per area of the springs of [`Contact::Penalty`], in units of E'/h. E' is the harmonic mean of E/(1 −
+    /// ν²) over both bodies, and h the cell length.
     pub penalty: f64,
-    /// Tracers on a surface per cell length.
+    /// Number of surface tracers per cell length.
     pub tracers: f64,
     /// Shift of the grid along each axis (cells).
     pub phase: [f64; 3],
@@ -95,9 +98,10 @@ pub struct Setting {
 impl Setting {
     /// Best known setting, used for all scenes.
     ///
-    /// Hat functions cost half and are as good for rolling and impacts. However, points with a spin become unstable on
-    /// them after some thousand steps. With softer springs, contacts of a quarter of a cell are more than a tenth too
-    /// soft. Stiffer springs, or fewer tracers, slow down discs and spheres that roll at two to four cells per radius.
+    /// Hat functions cost half as much and are as good for rolling and impacts. However, with hat functions, points with
+    /// a spin become unstable after some thousand steps. With softer springs, contacts that are a quarter of a cell wide
+    /// are more than a tenth too soft. With stiffer springs or fewer tracers, discs and spheres roll too slowly at two to
+    /// four cells per radius.
     pub const BEST: Self = Self {
         basis: Basis::Quadratic,
         transfer: Transfer::Spin,
@@ -109,7 +113,8 @@ impl Setting {
         phase: [0.0; 3],
     };
 
-    /// Returns the setting of the original papers with the given contact. More tracers would mark more nodes as in contact.
+    /// Returns the setting of the original papers with the given contact. It has fewer tracers than [`Self::BEST`],
+    /// because more tracers would mark more nodes as in contact.
     #[must_use]
     pub const fn classic(contact: Contact) -> Self {
         let transfer = Transfer::Flip { pic: 0.0 };

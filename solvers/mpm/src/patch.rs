@@ -1,5 +1,5 @@
-//! Stencil blocks, which are the nodes that influence a particle batch, row by row. Blocks are used in place, or copied
-//! if a periodic boundary cuts through them.
+//! Stencil blocks. A block contains the nodes that influence a particle batch, in rows along x. It is used in place in
+//! the node array, or copied if a periodic boundary cuts through it.
 
 use crate::basis::Basis;
 use crate::grid::Window;
@@ -21,7 +21,7 @@ pub(crate) struct StencilBlock {
 }
 
 impl StencilBlock {
-    /// Block of copies.
+    /// Position of the block in an array of copies.
     const COPIES: Self = Self { first: 0, row: 3, layer: 9 };
 
     /// Returns the number of rows along x.
@@ -29,7 +29,7 @@ impl StencilBlock {
         if S::DIMENSION == 3 { B::WIDTH * B::WIDTH } else { B::WIDTH }
     }
 
-    /// Returns the range of a row of nodes.
+    /// Returns the range of a row of nodes in the array of the block.
     #[inline(always)]
     pub(crate) fn row<S: Space, B: Basis>(&self, row: usize) -> Range<usize> {
         let (j, k) = if S::DIMENSION == 3 { (row % B::WIDTH, row / B::WIDTH) } else { (row, 0) };
@@ -39,7 +39,8 @@ impl StencilBlock {
 }
 
 impl Window {
-    /// Returns the nodes of the block with first node `base`, for reading.
+    /// Returns an array for reading, and the position of the block with first node `base` in this array. The array is
+    /// the node array, or an array of copies.
     #[inline(always)]
     pub(crate) fn seen<'a, S: Space, B: Basis, T: Copy>(
         &self,
@@ -56,7 +57,8 @@ impl Window {
         }
     }
 
-    /// Returns a slot after all nodes of the block with first node `base`: the end of a row.
+    /// Returns a slot after all nodes of the block with first node `base`. It is the end of a row, in three dimensions
+    /// of a layer.
     pub(crate) fn end_of<S: Space, B: Basis>(&self, base: [i32; 3]) -> usize {
         let slowest = S::DIMENSION - 1;
         let layer = self.len() / self.size[slowest] as usize;
@@ -64,7 +66,7 @@ impl Window {
         self.start + layer * end.min(self.size[slowest] as usize)
     }
 
-    /// Returns the position of the block, or `None` if a periodic boundary cuts through it.
+    /// Returns the position of the block with first node `base`, or `None` if a periodic boundary cuts through it.
     #[inline(always)]
     fn patch<S: Space, B: Basis>(&self, base: [i32; 3]) -> Option<StencilBlock> {
         let [length, rows, _] = self.size.map(|size| size as usize);
@@ -76,7 +78,7 @@ impl Window {
         Some(StencilBlock { first: self.start + (z * rows + y) * length + x, row: length, layer: length * rows })
     }
 
-    /// Iterates over the slots of the nodes and the indices of their copies.
+    /// Iterates over the nodes of a block, with the slot of each node and the index of its copy.
     fn places<S: Space, B: Basis>(&self, base: [i32; 3]) -> impl Iterator<Item = (usize, usize)> {
         let depth = if S::DIMENSION == 3 { B::WIDTH } else { 1 };
         (0..depth * B::WIDTH * B::WIDTH).map(move |number| {
@@ -95,7 +97,7 @@ impl Window {
     }
 }
 
-/// Consecutive nodes in whole rows, to which a thread adds.
+/// Mutable view of consecutive nodes in whole rows, to which one thread adds.
 pub(crate) struct NodeRows<'a, T> {
     /// Slot of the first node in the common node array.
     first: usize,
@@ -120,8 +122,9 @@ impl<'a, T: Copy> NodeRows<'a, T> {
         self.nodes.get_mut(start..start.wrapping_add(row.end - row.start))
     }
 
-    /// Returns the nodes of the view in the block with first node `base`, for accumulation followed by
-    /// [`NodeRows::put_back`]; returns `None` if the view contains no node of the block.
+    /// Returns the view to which contributions to the block with first node `base` are added, and the position of the
+    /// block in this view. Returns `None` if the view contains no node of the block. [`NodeRows::put_back`] must be
+    /// called after the additions.
     #[inline(always)]
     pub(crate) fn reached<'b, S: Space, B: Basis>(
         &'b mut self,

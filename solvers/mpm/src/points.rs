@@ -20,7 +20,7 @@ pub(crate) struct Points<S: Space> {
     pub(crate) next: Vec<S::Vector>,
     /// Velocity (m/s).
     pub(crate) velocity: Vec<S::Vector>,
-    /// Affine part of the velocity (1/s); empty unless the transfer carries it.
+    /// Affine part of the velocity (1/s); empty unless the transfer uses it.
     pub(crate) affine: Vec<S::Matrix>,
     /// Mass (kg).
     pub(crate) mass: Vec<f64>,
@@ -37,7 +37,7 @@ pub(crate) struct Points<S: Space> {
 }
 
 impl<S: Space> Points<S> {
-    /// Memory of a point (bytes), without optional values.
+    /// Memory of a point (bytes), without affine part and plastic strain.
     const BYTES: usize = size_of::<u32>()
         + 4 * size_of::<S::Vector>()
         + size_of::<S::Matrix>()
@@ -81,7 +81,7 @@ impl<S: Space> Points<S> {
         (mass, moment / mass)
     }
 
-    /// Adds an affine part of the velocity, initially zero, to every point if the transfer `carries` one.
+    /// Adds an affine part of the velocity, initially zero, to every point if the transfer `carries` such a part.
     pub(crate) fn set_affine(&mut self, carries: bool) {
         self.affine = vec![S::NO_GRADIENT; if carries { self.len() } else { 0 }];
     }
@@ -115,7 +115,7 @@ impl<S: Space> Points<S> {
         self.stress.push(S::Symmetric::default());
     }
 
-    /// Returns true if all arrays have the same length as those of `other`, with the same optional values.
+    /// Returns true if all arrays are as long as those of `other`, including affine part and plastic strain.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let count = other.len();
         let same = self.affine.len() == other.affine.len() && self.plastic_strain.len() == other.plastic_strain.len();
@@ -135,12 +135,13 @@ impl<S: Space> Points<S> {
         .all(|&length| length == count)
     }
 
-    /// Sorts a body's points by `place`, keeping the order of equal places, and returns the permutation.
+    /// Returns the permutation that sorts a body's points by `place`. Points with equal places keep their order.
     pub(crate) fn order(&self, range: Range<usize>, place: impl Fn(S::Vector) -> usize) -> Order {
         let places: Vec<usize> = self.position[range.clone()].iter().map(|&position| place(position)).collect();
         let low = places.iter().copied().min().unwrap_or(0);
         let high = places.iter().copied().max().unwrap_or(0);
-        // Counting sort: the number of points at lower places, which becomes the next free index of each place.
+        // Counting sort. `before` contains the number of points at lower places, which becomes the next free index of
+        // each place.
         let mut before = vec![0; high - low + 2];
         places.iter().for_each(|place| before[place - low + 1] += 1);
         (1..before.len()).for_each(|place| before[place] += before[place - 1]);
@@ -153,7 +154,7 @@ impl<S: Space> Points<S> {
         Order { range, numbers }
     }
 
-    /// Applies permutations to the points of bodies; each thread handles some of the arrays.
+    /// Applies permutations to the points of bodies. Each thread handles some of the arrays.
     pub(crate) fn put_in(&mut self, orders: &[Order], team: &Team) {
         let tasks = [
             put_in(&mut self.deformation, orders),
@@ -180,7 +181,7 @@ pub(crate) struct Order {
     numbers: Vec<usize>,
 }
 
-/// Returns a task that applies permutations to an array; nothing is done if the array is empty.
+/// Returns a task that applies permutations to an array. It does nothing if the array is empty.
 fn put_in<'a, T: Copy + Send>(values: &'a mut [T], orders: &'a [Order]) -> Box<dyn FnOnce() + Send + 'a> {
     Box::new(move || {
         if values.is_empty() {

@@ -1,5 +1,5 @@
-//! Particle batches, which are consecutive points that share the same nodes. Points are sorted by cell, so most batches
-//! are long. Loops process the points of a batch four at a time with one set of nodes.
+//! Particle batches. A batch consists of consecutive points that influence the same nodes. Points are sorted by cell,
+//! so most batches are long. Loops process the points of a batch four at a time with one set of nodes.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Stencil};
@@ -11,27 +11,28 @@ use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Maximum number of points in a batch, so that their velocity gradients stay in the cache.
+/// Maximum number of points in a batch. It keeps their velocity gradients in the cache.
 pub(crate) const LONGEST: usize = 256;
 
-/// A particle batch: consecutive points that share the same nodes.
+/// Particle batch: consecutive points that influence the same nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ParticleBatch {
     pub(crate) start: usize,
     pub(crate) end: usize,
     /// First node of the stencil block.
     pub(crate) base: [i32; 3],
-    /// True if all points at their current positions are known to use these nodes.
+    /// True if all points are known to influence these nodes at their current positions.
     pub(crate) is_known: bool,
 }
 
 impl ParticleBatch {
-    /// Returns true if all positions in a box (m), given by its lower and upper corner, use the nodes of the batch.
+    /// Returns true if all positions in a box (m), given by its lower and upper corner, influence the nodes of the
+    /// batch.
     pub(crate) fn holds<S: Space>(&self, lattice: &Lattice, start: f64, box_around: [[f64; 3]; 2]) -> bool {
         box_around.iter().all(|&[x, y, z]| self.reaches::<S>(lattice, start, S::restrict(Vector3::new(x, y, z))))
     }
 
-    /// Returns true if a position (m) uses the nodes of the batch; `start` is the [`Basis::START`] of the basis.
+    /// Returns true if a position (m) influences the nodes of the batch. `start` is the [`Basis::START`] of the basis.
     #[inline(always)]
     fn reaches<S: Space>(&self, lattice: &Lattice, start: f64, position: S::Vector) -> bool {
         let beyond = |axis: usize| lattice.cells::<S>(position, axis) - (f64::from(self.base[axis]) + start);
@@ -39,9 +40,10 @@ impl ParticleBatch {
     }
 }
 
-/// Finds the batches of a range of points and returns their indices in `runs`.
+/// Finds the batches of a range of points, appends them to `runs`, and returns their index range in `runs`.
 ///
-/// The points of a batch from the step `before` need not be checked if it is still known and starts at the same point.
+/// `before` contains the batches of the previous step. If such a batch is still known and starts at the same point, its
+/// points are not checked again.
 pub(crate) fn find<S: Space, B: Basis>(
     lattice: &Lattice,
     range: Range<usize>,
@@ -74,7 +76,7 @@ pub(crate) fn find<S: Space, B: Basis>(
     first..runs.len()
 }
 
-/// Groups consecutive batches so that a group has at most as many points as the longest batch.
+/// Groups consecutive batches. A group has at most [`LONGEST`] points.
 pub(crate) fn in_groups(mut runs: &[ParticleBatch]) -> impl Iterator<Item = &[ParticleBatch]> {
     std::iter::from_fn(move || {
         let start = runs.first()?.start;
@@ -85,7 +87,7 @@ pub(crate) fn in_groups(mut runs: &[ParticleBatch]) -> impl Iterator<Item = &[Pa
     })
 }
 
-/// Batches of a part with their grid and points.
+/// Batches of a body's points, with the arrays that stencils need.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a, S: Space> {
     pub(crate) lattice: &'a Lattice,
@@ -114,7 +116,7 @@ impl<'a, S: Space> Ground<'a, S> {
         Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
     }
 
-    /// Creates the view from a mutable view of points, and returns their next positions (m) separately.
+    /// Creates the view from a mutable view of points, and also returns the next positions of the points (m).
     #[inline(always)]
     pub(crate) fn and_next(
         lattice: &'a Lattice,
@@ -126,7 +128,7 @@ impl<'a, S: Space> Ground<'a, S> {
         (Self { lattice, part, runs, first: *first, deformation, position }, next)
     }
 
-    /// Computes the stencil of a SIMD pack of a batch.
+    /// Computes the stencil of up to four points with the same nodes, one point per lane of a SIMD register.
     #[inline(always)]
     pub(crate) fn stencil<B: Basis, L: FourLanes>(
         &self,
@@ -150,14 +152,14 @@ impl<'a, S: Space> Ground<'a, S> {
     }
 }
 
-/// A SIMD pack: up to four points of a batch.
+/// Up to four consecutive points with the same nodes. Each point fills one lane of a SIMD register.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Batch {
     pub(crate) start: usize,
     pub(crate) count: usize,
 }
 
-/// Returns the first positions, up to four, that share the same nodes, and the first of these nodes.
+/// Returns the first positions, at most four, that influence the same nodes, and the first of these nodes.
 #[inline(always)]
 pub(crate) fn first_batch<S: Space, B: Basis>(
     lattice: &Lattice,
@@ -174,12 +176,12 @@ pub(crate) fn first_batch<S: Space, B: Basis>(
     (Batch { start: range.start, count }, base)
 }
 
-/// Lane masks: one for each lane with a point, zero for the other lanes.
+/// Lane masks by the number of points: one in lanes with a point, zero in the other lanes.
 const OWN: [[f64; LANES]; LANES + 1] =
     [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; 4]];
 
 impl ParticleBatch {
-    /// Iterates over its points, four at a time.
+    /// Iterates over the points of the batch, four at a time.
     #[inline(always)]
     pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
         let Self { start, end, .. } = *self;
@@ -194,7 +196,7 @@ impl Batch {
         Self { start: self.start - first, ..self }
     }
 
-    /// Returns the values of its points. Lanes without a point get the value of another point.
+    /// Returns the values of the points. Lanes without a point get the value of another point.
     #[inline(always)]
     fn four<'a, T: Copy>(self, values: &'a [T], last: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {
         match values[self.start..].first_chunk() {
@@ -203,13 +205,13 @@ impl Batch {
         }
     }
 
-    /// Returns the last values of an array when fewer than four are left.
+    /// Returns the last values of an array that has fewer than four left. The last value is repeated.
     #[cold]
     fn last<T: Copy>(self, values: &[T]) -> [T; LANES] {
         from_fn(|lane| values[(self.start + lane).min(values.len() - 1)])
     }
 
-    /// Returns the positions of its points (m) by component, for a stencil: lanes without a point use the same nodes.
+    /// Returns the positions of the points (m) by component, for a stencil. Lanes without a point use the same nodes.
     #[inline(always)]
     pub(crate) fn spread_vectors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Vector]) -> [SimdPack<L>; 3] {
         let mut vectors = self.vectors::<S, L>(lanes, values);
@@ -226,7 +228,7 @@ impl Batch {
         values.like(0.0).pick_below(SimdPack::four(lanes, OWN[self.count]), values, values.like(first))
     }
 
-    /// Returns an extensive quantity of each point, such as mass; zero in lanes without a point.
+    /// Returns an extensive quantity of each point, such as mass, with zero in lanes without a point.
     #[inline(always)]
     pub(crate) fn amounts<L: FourLanes>(self, lanes: L, values: &[f64]) -> SimdPack<L> {
         let mut last = None;
@@ -255,7 +257,7 @@ impl Batch {
         side_by_side::<S, L>(lanes, &four)
     }
 
-    /// Returns the components of a symmetric tensor of each point in this space, by rows.
+    /// Returns a symmetric tensor of each point, by rows, with the components along the axes of this space.
     #[inline(always)]
     pub(crate) fn tensors<S: Space, L: FourLanes>(self, lanes: L, values: &[S::Symmetric]) -> [[SimdPack<L>; 3]; 3] {
         let mut last = None;
@@ -286,7 +288,7 @@ impl Batch {
     }
 }
 
-/// Packs the components of four matrices in this space, by rows.
+/// Packs four matrices by rows, with the components along the axes of this space.
 #[inline(always)]
 fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; LANES]) -> [[SimdPack<L>; 3]; 3] {
     let mut rows = [[SimdPack::splat(lanes, 0.0); 3]; 3];
@@ -315,8 +317,9 @@ mod tests {
         (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Points move at random, and a few change cells in each step. A search that reuses known batches finds the same
-    /// batches as a search without them. Some cells have more points than the longest batch.
+    /// Checks the search for batches with points that move at random. A few points change cells in each step. A search
+    /// that reuses known batches must find the same batches as a search without them. Some cells have more points than
+    /// the longest batch.
     fn found_as_by_whoever_knows_nothing<B: Basis>(spread: f64) {
         let mut state = 7;
         let mut points = Points::<Plane>::new();
@@ -333,7 +336,7 @@ mod tests {
             let before = std::mem::take(&mut runs);
             known += before.iter().filter(|run| run.is_known).count();
             unknown += before.iter().filter(|run| !run.is_known).count();
-            // Two bodies, and sometimes other thread partitions.
+            // Two ranges of points. The boundary between them changes in some steps, as between thread partitions.
             let cut = if step % 10 == 0 { 450 } else { 300 };
             let (mut left, mut none) = (&before[..], &[][..]);
             let mut expected = Vec::new();

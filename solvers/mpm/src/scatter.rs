@@ -1,12 +1,12 @@
 //! Transfer from points to nodes (P2G): mass, momentum and internal force.
 //!
-//! The sums are over the points p of a body, at each of its nodes i with basis function N_i:
+//! The sums are over the points p of a body, at each node i of the body with basis function N_i:
 //!
 //! - m_i = Σ N_i(x_p) m_p, mass (kg);
-//! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with x positions (m), v velocities (m/s) and A
-//!   the affine part of the velocity (1/s) where the transfer carries one (Jiang et al. 2015);
-//! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with V volumes (m³; m² in the plane) and σ Cauchy stresses (Pa)
-//!   (Sulsky, Chen & Schreyer 1994).
+//! - p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)), momentum (kg m/s), with positions x (m) and velocities v (m/s). A is
+//!   the affine part of the velocity (1/s), if the transfer uses one (Jiang et al. 2015);
+//! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with volumes V (m³; m² in two dimensions) and Cauchy stresses σ
+//!   (Pa) (Sulsky, Chen & Schreyer 1994).
 
 use crate::basis::{Basis, with_basis};
 use crate::contact::grip;
@@ -24,8 +24,8 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 
-/// Scatters mass, momentum and internal force of points to the nodes, which are cleared first. With `grips`, it also
-/// computes the weight limits of nodes at surfaces.
+/// Clears the nodes and scatters mass, momentum and internal force of points to them. With `grips`, it also computes
+/// the weight limits of nodes at surfaces.
 pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S>, grips: bool) {
     let Scheme { setting, processor, .. } = scheme;
     let State { bodies, points, shares, team, .. } = state;
@@ -63,8 +63,8 @@ pub(crate) fn weighted<B: Basis, N: Number>(values: [N; 3], weights: [N; 3]) -> 
     if B::WIDTH == 3 { sum + values[2] * weights[2] } else { sum }
 }
 
-/// Velocity of points extrapolated to the nodes of a stencil, v + A r with r from the point to the node. It holds the
-/// value at the first node, and the increment to the next node along each axis.
+/// Velocity of points extrapolated to the nodes of a stencil, v + A r with the vector r from the point to the node. It
+/// is stored as the value at the first node and the increment to the next node along each axis.
 pub(crate) struct ExtrapolatedVelocity<N> {
     first: [N; 3],
     next: [[N; 3]; 3],
@@ -177,7 +177,7 @@ fn give<S: Space, B: Basis, L: FourLanes>(brought: [[SimdPack<L>; 2 * LANES]; 3]
     let zero = brought[0][7];
     let [x, y, z] = brought;
     let last = if S::DIMENSION == 2 {
-        // One value of each node is left.
+        // In two dimensions one value of each node remains.
         let [x, y, z, _] = SimdPack::sums([x[4], y[4], z[4], zero]);
         [[x, 0.0, 0.0, 0.0], [y, 0.0, 0.0, 0.0], [z, 0.0, 0.0, 0.0]]
     } else {

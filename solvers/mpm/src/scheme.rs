@@ -1,4 +1,4 @@
-//! Scheme of a run, constant from its first step to its last.
+//! Parameters of a run that do not change between steps.
 
 use crate::options::{Contact, Setting, StressUpdate};
 use grainbench_lanes::Processor;
@@ -24,7 +24,7 @@ impl Scheme {
         self.setting.stress_update == StressUpdate::ModifiedLast
     }
 
-    /// Returns true if points move with the velocities that they scatter to the nodes again.
+    /// Returns true if points move with the projected velocities, which they scatter to the nodes again.
     pub(crate) fn moves_with_stress(&self) -> bool {
         self.setting.moves_with_stress && self.is_projected()
     }
@@ -35,7 +35,7 @@ impl Scheme {
     }
 }
 
-/// Forces on all bodies; they have other values during relaxation.
+/// Gravity and damping of all bodies. They have other values during relaxation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings<S: Space> {
     /// Gravity g (m/s²).

@@ -1,17 +1,17 @@
-//! Fills bodies with material points and covers their surfaces with tracers.
+//! Material points in bodies, and tracers on their surfaces.
 //!
 //! Points of a disc are on rings, and points of a sphere on shells. Radius and latitude are chosen so that mass, centre
-//! and inertia tensor of the body are exact. Points of a box are on a lattice that fits it.
+//! and inertia tensor of the body are exact. Points of a box are on a lattice that fits the box.
 
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
-/// Seed of a material point.
+/// Initial position and volume of a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seed {
     /// Position (m).
     pub position: Vector3<f64>,
-    /// Volume (m³; m² in the plane).
+    /// Volume (m³; m² in two dimensions).
     pub volume: f64,
 }
 
@@ -20,7 +20,7 @@ pub struct Seed {
 pub struct Patch {
     /// Position on the surface (m).
     pub position: Vector3<f64>,
-    /// Area times outward unit normal (m²; m in the plane).
+    /// Area times outward unit normal (m²; m in two dimensions).
     pub area: Vector3<f64>,
 }
 
@@ -29,9 +29,9 @@ fn parts(length: f64, spacing: f64) -> usize {
     (length / spacing).round().max(1.0) as usize
 }
 
-/// Fills a disc, or the ring between two radii (m), with rings of a width of about `spacing`.
+/// Fills a disc, or the ring between two radii (m), with rings of a width of about `spacing` (m).
 ///
-/// Points of a ring from r₁ to r₂ are at √((r₁² + r₂²)/2), which gives its exact moment of inertia.
+/// Points of a ring from r₁ to r₂ are at √((r₁² + r₂²)/2), which gives the exact moment of inertia of the ring.
 #[must_use]
 pub fn rings(centre: Vector3<f64>, inner: f64, outer: f64, spacing: f64) -> Vec<Seed> {
     let count = parts(outer - inner, spacing);
@@ -53,10 +53,10 @@ fn around(sector: usize, sectors: usize) -> Vector3<f64> {
     Vector3::new(cosine, sine, 0.0)
 }
 
-/// Fills a sphere with shells of a thickness of about `spacing`.
+/// Fills a sphere with shells of a thickness of about `spacing` (m).
 ///
 /// Points of a shell from r₁ to r₂ are at the radius with r² = (3/5)(r₂⁵ − r₁⁵)/(r₂³ − r₁³). Points of a band between
-/// two latitudes are at the root mean square of its height.
+/// two latitudes are at the root mean square of the band's height.
 #[must_use]
 pub fn shells(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Seed> {
     let count = parts(radius, spacing);
@@ -76,8 +76,8 @@ pub fn shells(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Seed> {
     seeds
 }
 
-/// Returns unit vectors over the sphere in an even number of latitude bands, each with its share of the area:
-/// Σ share = 1, Σ share n = 0 and Σ share n nᵀ = 1/3.
+/// Returns unit vectors n over the sphere in an even number of latitude bands, each with its share of the area: Σ share
+/// = 1, Σ share n = 0 and Σ share n nᵀ = 1/3.
 fn directions(bands: usize) -> Vec<(Vector3<f64>, f64)> {
     let bands = bands.div_ceil(2).max(1) * 2;
     let mut all = Vec::new();
@@ -94,7 +94,7 @@ fn directions(bands: usize) -> Vec<(Vector3<f64>, f64)> {
     all
 }
 
-/// Fills a box from `low` to `high` (m) with a lattice of about `spacing` along each axis.
+/// Fills a box from `low` to `high` (m) with a lattice of about `spacing` (m) along each axis.
 #[must_use]
 pub fn lattice(low: Vector3<f64>, high: Vector3<f64>, spacing: [f64; 3], dimensions: usize) -> Vec<Seed> {
     let mut count = [1; 3];
@@ -117,8 +117,8 @@ pub fn lattice(low: Vector3<f64>, high: Vector3<f64>, spacing: [f64; 3], dimensi
     seeds
 }
 
-/// Returns the surface of a disc, counter-clockwise: tracers at most `spacing` apart, their number a multiple of four.
-/// With `outward` = −1 it is the surface of a hole, clockwise.
+/// Returns the surface of a disc, counter-clockwise. Tracers are at most `spacing` (m) apart, and their number is a
+/// multiple of four. With `outward` = −1 the result is the surface of a hole, clockwise.
 #[must_use]
 pub fn circle(centre: Vector3<f64>, radius: f64, spacing: f64, outward: f64) -> Vec<Patch> {
     let count = 4 * (TAU * radius / spacing / 4.0).ceil().max(1.0) as usize;
@@ -130,7 +130,7 @@ pub fn circle(centre: Vector3<f64>, radius: f64, spacing: f64, outward: f64) -> 
         .collect()
 }
 
-/// Returns the surface of a sphere, with elements of an area of about `spacing` squared.
+/// Returns the surface of a sphere, in elements with an area of about `spacing`² (m²).
 #[must_use]
 pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
     let area = 4.0 * PI * radius * radius;
@@ -143,9 +143,10 @@ pub fn globe(centre: Vector3<f64>, radius: f64, spacing: f64) -> Vec<Patch> {
         .collect()
 }
 
-/// Returns the surface of a rectangle, counter-clockwise: the centres of elements of a length of at most `spacing`.
+/// Returns the surface of a rectangle, counter-clockwise: the centres of elements with a length of at most `spacing`
+/// (m).
 ///
-/// No tracer is on a corner, where it would belong to two sides.
+/// No tracer is on a corner, because it would belong to two sides there.
 #[must_use]
 pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let corners = [low, Vector3::new(high.x, low.y, 0.0), high, Vector3::new(low.x, high.y, 0.0)];
@@ -161,7 +162,7 @@ pub fn rectangle(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Pat
     patches
 }
 
-/// Returns the surface of a box in three dimensions: the centres of rectangles with edges of about `spacing`.
+/// Returns the surface of a box in three dimensions: the centres of rectangles with edges of about `spacing` (m).
 #[must_use]
 pub fn faces(low: Vector3<f64>, high: Vector3<f64>, spacing: f64) -> Vec<Patch> {
     let mut patches = Vec::new();

@@ -1,8 +1,7 @@
-//! Thread partitions, which are consecutive points and consecutive nodes of a thread.
+//! Thread partitions. A partition consists of consecutive points and consecutive nodes that one thread handles.
 //!
-//! The partition with a point computes its gather from nodes. The partition with a node computes its sum over all
-//! batches that influence the node, in their order. The result is therefore independent of the number of threads, bit
-//! by bit.
+//! Each partition gathers velocities for its points. For each of its nodes, it sums over all batches that influence the
+//! node, in the order of the batches. Results are therefore equal to the bit for any number of threads.
 
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -17,18 +16,19 @@ use std::ops::Range;
 /// Minimum number of points in a partition. With fewer points, threads mostly wait for each other.
 pub(crate) const FEWEST: usize = 2000;
 
-/// A thread partition of points and nodes.
+/// Points and nodes of one thread, with the batches of the points.
 #[derive(Clone, Debug)]
 pub(crate) struct ThreadPartition<S: Space> {
     /// Range of points in the common point arrays.
     pub(crate) points: Range<usize>,
-    /// Nodes of the partition, in whole rows along x.
+    /// Range of nodes in the common node array, in whole rows along x.
     pub(crate) nodes: Range<usize>,
-    /// First of its nodes such that no earlier partition influences this node or any later one.
+    /// Slot of the first node of the partition for which this holds: no earlier partition influences this node or a
+    /// later node.
     pub(crate) alone_from: usize,
-    /// End of the nodes that its points influence.
+    /// End of the range of nodes that the points of the partition influence.
     reach: usize,
-    /// Batches of its points in the current step.
+    /// Batches of the partition's points in the current step.
     pub(crate) runs: Vec<ParticleBatch>,
     /// Batches of the previous step.
     pub(crate) before: Vec<ParticleBatch>,
@@ -38,22 +38,21 @@ pub(crate) struct ThreadPartition<S: Space> {
     pub(crate) gradients: Vec<S::Matrix>,
     /// Energies of stresses for the budget, batch by batch, if requested.
     pub(crate) flows: Vec<Flow>,
-    /// First failure of its points.
+    /// First failure of a point of the partition.
     pub(crate) failure: Option<Failure>,
 }
 
 /// Particle batches of one body in a partition.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyBatches {
-    /// Index of the body.
     pub(crate) body: usize,
-    /// Range of its batches within the partition.
+    /// Range of the batches within the partition.
     pub(crate) runs: Range<usize>,
-    /// Bounding box of its points after they have moved, lower and upper corner (m).
+    /// Bounding box of the points after they have moved, lower and upper corner (m).
     pub(crate) bounds: [[f64; 3]; 2],
 }
 
-/// Empty box.
+/// Empty bounding box.
 pub(crate) const NO_BOX: [[f64; 3]; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
 /// Largest displacement of a point in a step.
@@ -73,7 +72,6 @@ impl LargestDisplacement {
 }
 
 impl<S: Space> ThreadPartition<S> {
-    /// Returns an empty partition.
     pub(crate) fn new() -> Self {
         Self {
             points: 0..0,
@@ -89,13 +87,13 @@ impl<S: Space> ThreadPartition<S> {
         }
     }
 
-    /// Iterates over its batches with their bodies.
+    /// Iterates over the batches of the partition, body by body.
     pub(crate) fn parts<'a>(&'a self, bodies: &'a [Body]) -> impl Iterator<Item = (&'a Body, &'a [ParticleBatch])> {
         self.pieces.iter().map(|piece| (&bodies[piece.body], &self.runs[piece.runs.clone()]))
     }
 
-    /// Moves its points to their next positions, computes the bounding boxes of its bodies and marks batches that are
-    /// still known.
+    /// Moves the points of the partition to their next positions, computes the bounding boxes of bodies and marks
+    /// batches that are still known.
     ///
     /// `start` is the [`Basis::START`] of the basis. Returns the largest displacement.
     pub(crate) fn move_points(
@@ -129,7 +127,7 @@ impl<S: Space> ThreadPartition<S> {
         way
     }
 
-    /// Finds the batches of its points.
+    /// Finds the batches of the partition's points.
     pub(crate) fn find_runs<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], points: &Points<S>) {
         std::mem::swap(&mut self.runs, &mut self.before);
         self.runs.clear();
@@ -151,7 +149,8 @@ impl<S: Space> ThreadPartition<S> {
 
 /// Splits the points of bodies into ranges of about equal length, one for each partition.
 ///
-/// A body is split only between points in different cells. Every batch ends there for any number of partitions.
+/// A body is split only between points in different cells. A batch ends between such points for any number of
+/// partitions.
 pub(crate) fn cut_points<S: Space, B: Basis>(
     shares: &mut [ThreadPartition<S>],
     lattice: &Lattice,
@@ -176,8 +175,8 @@ pub(crate) fn cut_points<S: Space, B: Basis>(
 
 /// Splits the nodes in use into ranges of whole rows, one for each partition.
 ///
-/// Each partition gets the nodes that its own points influence first. If all bodies share one field, the ranges are
-/// equal.
+/// The range of a partition starts at the first row that the points of the partition influence. If all bodies share one
+/// velocity field, all ranges have nearly the same length.
 pub(crate) fn cut_nodes<S: Space>(shares: &mut [ThreadPartition<S>], bodies: &[Body], used: usize, one_field: bool) {
     let count = shares.len();
     let first_of = |(number, share): (usize, &ThreadPartition<S>)| {
@@ -202,13 +201,13 @@ pub(crate) fn cut_nodes<S: Space>(shares: &mut [ThreadPartition<S>], bodies: &[B
     }
 }
 
-/// Returns the first slot of a node's row.
+/// Returns the slot at the start of a node's row.
 fn row_of(window: &Window, node: [i32; 3]) -> usize {
     let slot = window.slot(node);
     slot - window.along(0, node[0])
 }
 
-/// Returns the bounding box of a box and positions.
+/// Returns the bounding box of a box and of positions (m).
 #[inline(always)]
 pub(crate) fn enclose<S: Space>([mut low, mut high]: [[f64; 3]; 2], positions: &[S::Vector]) -> [[f64; 3]; 2] {
     for &position in positions {

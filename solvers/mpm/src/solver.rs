@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 pub struct Mpm {
     /// Name, such as `mpm:gap`.
     pub name: &'static str,
-    /// The setting.
+    /// Parameters of the method.
     pub setting: Setting,
 }
 
@@ -58,7 +58,7 @@ impl Mpm {
     /// Returns the grid and steps of a run, for example to estimate its cost.
     ///
     /// # Errors
-    /// When the scene is not supported or the resolution is invalid.
+    /// Returns an error if the scene is not supported or the resolution is invalid.
     pub fn plan(&self, scene: &Scene, resolution: &Resolution) -> Result<Plan, RunError> {
         if let Some(reason) = limits::reason(scene) {
             return Err(RunError::Unsupported { solver: self.name(), reason });
@@ -86,7 +86,7 @@ impl Mpm {
         let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
         if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
             return Err(self.resolution_error(format!(
-                "expected a radius of at least {SMALLEST} cells, found grain {} with {:.3}: {} cells would do for it",
+                "expected a radius of at least {SMALLEST} cells, found grain {} with {:.3}: {} cells are enough for it",
                 at + 1,
                 grain.radius / cell,
                 (SMALLEST * scene.reference_length / grain.radius).ceil()
@@ -95,7 +95,7 @@ impl Mpm {
         let dimensions = scene.dimension.count();
         if let Some(body) = scene.bodies.iter().find(|body| body.shape.length(dimensions) < SMALLEST * cell) {
             return Err(self.resolution_error(format!(
-                "expected a body at least {SMALLEST} cells wide, found `{}` with {:.3}: {} cells would do for it",
+                "expected a body at least {SMALLEST} cells wide, found `{}` with {:.3}: {} cells are enough for it",
                 body.name,
                 body.shape.length(dimensions) / cell,
                 (SMALLEST * scene.reference_length / body.shape.length(dimensions)).ceil()
@@ -106,8 +106,8 @@ impl Mpm {
             let between = (high[axis] - low[axis]) / lattice.cell[axis];
             if body.sides[axis].iter().all(|side| *side != Hold::Free) && between < BETWEEN_SIDES {
                 return Err(self.resolution_error(format!(
-                    "expected at least {BETWEEN_SIDES} cells between two sides of `{}` that are held, found {between:.3}: \
-                     in fewer the motion of both sides is folded into the same nodes, which makes energy",
+                    "expected at least {BETWEEN_SIDES} cells between two constrained sides of `{}`, found \
+                     {between:.3}: with fewer cells both sides act on the same nodes, which adds energy",
                     body.name
                 )));
             }
@@ -120,7 +120,7 @@ impl Mpm {
         let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
         let damped = scene.global_damping * time / steps;
         if damped >= 2.0 {
-            return Err(self.resolution_error(format!("expected damping times step below 2, found {damped}")));
+            return Err(self.resolution_error(format!("expected damping times time step below 2, found {damped}")));
         }
         let settling = scene.start.settle.map_or(0.0, |settle| settle.duration / (time / steps));
         if let Some(refusal) = beyond_run(scene, time / steps, steps).or_else(|| beyond_steps(settling)) {
@@ -181,12 +181,13 @@ impl Mpm {
 /// Maximum number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
 
-/// Memory of a material point with its share of tracers and springs (bytes).
+/// Memory of a material point, including tracers and springs per point (bytes).
 const BYTES_OF_A_POINT: f64 = 600.0;
-/// Memory of a node in each body that uses it (bytes).
+/// Memory of a node (bytes). A node is stored once for each body that uses it.
 const BYTES_OF_A_NODE: f64 = 150.0;
 
-/// Returns the reason if the points and nodes of a scene, with the given cell lengths (m), exceed the memory.
+/// Returns the reason for rejection if the points and nodes of a scene need too much memory. `cell` contains the cell
+/// lengths (m).
 fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
     let dimensions = scene.dimension.count();
     let in_cells = |volume: f64| cell[..dimensions].iter().fold(volume, |count, cell| count / cell);
@@ -211,7 +212,7 @@ fn beyond_memory(scene: &Scene, cell: [f64; 3], points: u32) -> Option<String> {
         .or_else(|| memory::beyond(nodes, "nodes", BYTES_OF_A_NODE))
 }
 
-/// Minimum radius in cells. A body smaller than a cell has no gradient on the grid.
+/// Minimum radius of a grain and minimum width of a block, in cells. A smaller body has no gradient on the grid.
 const SMALLEST: f64 = 0.5;
 
 /// Minimum number of cells between two fixed or symmetry boundaries.
@@ -219,7 +220,7 @@ const SMALLEST: f64 = 0.5;
 /// With one cell, the energy grew by a factor of 2e7 in 60 periods. With 1.5 cells it is constant within .2 %.
 const BETWEEN_SIDES: f64 = 1.5;
 
-/// Simulation that the main loop advances step by step.
+/// Simulation as the main loop runs it, with the identity of the run.
 struct RunningSimulation<'a, S: Space> {
     simulation: Simulation<S>,
     run: Run<'a>,
@@ -268,14 +269,14 @@ pub struct Plan {
     pub time_step: f64,
     /// Number of steps.
     pub steps: u64,
-    /// Crossing time of the fastest wave through a cell (s).
+    /// Time in which the fastest wave crosses a cell (s).
     pub critical: f64,
 }
 
-/// Returns a lattice with cells of about `cell` (m), a whole number of them along periodic axes.
+/// Returns a lattice with cells of about `cell` (m). Along periodic axes, the number of cells is whole.
 ///
-/// Along periodic axes, nodes are on the faces of the domain. Along other axes, they are on the first fixed or symmetry
-/// boundary, or at zero if there is none. The phase of the setting shifts them.
+/// Along periodic axes, nodes are on the faces of the domain. Along other axes, nodes are on the first fixed or
+/// symmetry boundary, or at zero if there is none. The phase of the setting then shifts all nodes.
 fn lattice(scene: &Scene, setting: &Setting, cell: f64) -> Lattice {
     let mut lattice = Lattice { cell: [cell; 3], inverse: [1.0 / cell; 3], origin: [0.0; 3], period: [None; 3] };
     for axis in 0..scene.dimension.count() {

@@ -27,7 +27,7 @@ impl<S: Space> Simulation<S> {
             }
             let (gravity, damping) = (S::restrict(self.scene.gravity), self.scene.global_damping);
             self.surroundings = Surroundings { gravity, damping };
-            // The steps of relaxation do not count for the simulated time, but they count as cost.
+            // The steps of relaxation do not count as simulated time, but they count as cost.
             (self.settling, self.step) = (false, 0);
             self.contacts.touches.clear();
         }
@@ -43,10 +43,11 @@ impl<S: Space> Simulation<S> {
 
     /// Sets the initial velocity of every point, half a step before time zero: v − a Δt/2.
     ///
-    /// Here a is the acceleration of the first step ([`Simulation::accelerations`]), so that all steps are alike.
+    /// Here a is the acceleration of the first step ([`Simulation::accelerations`]), so the first step is like all
+    /// later steps.
     ///
     /// # Errors
-    /// When bodies extend farther than a grid can.
+    /// Returns an error if the grid would have too many nodes.
     pub(crate) fn set_moving(&mut self) -> Result<(), Failure> {
         let half = 0.5 * self.scheme.time_step;
         let accelerations = self.accelerations()?;
@@ -54,8 +55,8 @@ impl<S: Space> Simulation<S> {
         before.resize(points.len(), S::ORIGIN);
         for body in bodies.iter() {
             let medium = body.medium();
-            // A relaxed grain has sunk. It must rotate about its current centre of mass, or it would start with a
-            // velocity.
+            // A relaxed grain has moved. It must rotate about its current centre of mass. Otherwise its rotation would
+            // add to the velocity of its centre.
             let (_, centre) = points.centre_of_mass(body.part.points.clone());
             for at in body.part.points.clone() {
                 let position = S::embed(points.position[at]);
@@ -94,10 +95,10 @@ impl<S: Space> Simulation<S> {
 
     /// Returns the acceleration of every point at the start (m/s²).
     ///
-    /// Relaxed bodies are in equilibrium, and only the change of gravity after relaxation acts on them. Other bodies
-    /// are accelerated by gravity and by their initial stress. Through the nodes i that influence a point, a = Σ N_i
-    /// (f_i/m_i + g), with f_i = −Σ V σ ∇N_i over the points. There is no acceleration across fixed or symmetry
-    /// boundaries. A body rests if its stress carries its weight.
+    /// Relaxed bodies are in equilibrium, and only the change of gravity after relaxation acts on them. Gravity and the
+    /// initial stress accelerate all other bodies. The acceleration of a point is a = Σ N_i (f_i/m_i + g) over the
+    /// nodes i that influence the point, with f_i = −Σ V σ ∇N_i over the points. There is no acceleration across fixed
+    /// or symmetry boundaries. A body stays at rest if its stress balances its weight.
     fn accelerations(&mut self) -> Result<Vec<S::Vector>, Failure> {
         let start = &self.scene.start;
         let balanced = start.settle.map_or_else(Vector3::zeros, |settle| settle.gravity);

@@ -1,4 +1,4 @@
-//! State of a simulation, which consists of bodies and their material points.
+//! State of a simulation: bodies and their material points.
 
 use crate::basis::with_basis;
 use crate::bodies::Body;
@@ -15,9 +15,9 @@ use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// Inverse of the relative growth in the number of batches at which points are sorted again.
+/// Inverse of the allowed relative growth in the number of batches. Beyond this growth, points are sorted again.
 ///
-/// With a third more batches a step costs little more, while sorting costs up to a tenth of a step.
+/// With a third more batches, a step costs little more. Sorting costs up to a tenth of a step.
 const DISORDER: usize = 3;
 
 /// Bodies of a simulation with their points, and the partition of the points among threads.
@@ -25,8 +25,8 @@ const DISORDER: usize = 3;
 pub(crate) struct State<S: Space> {
     pub(crate) bodies: Vec<Body>,
     pub(crate) points: Points<S>,
-    /// Velocities of the points one step before the last observation (m/s), because velocities are half a step behind
-    /// positions.
+    /// Velocities of the points before the last observed step (m/s). Velocities are half a step behind positions, so an
+    /// observation extrapolates from these and the current velocities.
     pub(crate) before: Vec<S::Vector>,
     /// Partition of the particle batches for each thread.
     pub(crate) shares: Vec<ThreadPartition<S>>,
@@ -40,7 +40,7 @@ impl<S: Space> State<S> {
         Self { bodies, before: points.velocity.clone(), points, shares, team }
     }
 
-    /// Replaces the threads.
+    /// Replaces the threads of the run.
     #[cfg(test)]
     pub(crate) fn set_team(&mut self, team: Team) {
         (self.shares, self.team) = (vec![ThreadPartition::new(); team.members()], team);
@@ -52,8 +52,8 @@ impl<S: Space> State<S> {
         self.points.bytes() + size_of_val(&*self.before) + runs + size_of_val(&*self.bodies)
     }
 
-    /// Assigns points to thread partitions and finds their batches. The points of a body are sorted by cell when they
-    /// are too disordered.
+    /// Assigns points to thread partitions and finds the batches of the points. If a body has too many batches, its
+    /// points are sorted by cell.
     pub(crate) fn find_runs(&mut self, basis: Basis, lattice: &Lattice) {
         with_basis!(basis, B => {
             self.share_points::<B>(lattice);
@@ -101,7 +101,7 @@ impl<S: Space> State<S> {
     }
 
     /// Iterates over the bodies whose windows contain any of these nodes, with their batches and the number of the
-    /// partition; the batches of a body are in order.
+    /// partition. The batches of a body are in order.
     pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[ParticleBatch])> {
         let Self { bodies, shares, .. } = self;
         let all = shares.iter().enumerate();
@@ -121,7 +121,7 @@ impl<S: Space> State<S> {
         team.fold(parts, go, LargestDisplacement::default(), LargestDisplacement::farther)
     }
 
-    /// Computes the bounding boxes of all bodies from those of thread partitions and tracer chunks.
+    /// Computes the bounding boxes of all bodies from the boxes of thread partitions and tracer chunks.
     pub(crate) fn gather_bounds(&mut self, tracers: &Tracers<S>) {
         let Self { bodies, shares, .. } = self;
         let mut around = vec![NO_BOX; bodies.len()];
@@ -146,10 +146,10 @@ impl<S: Space> State<S> {
         }
     }
 
-    /// Returns the kinetic energy (J) of the points' velocities and their affine part, ½ m tr(A D Aᵀ) with D = Σ w r
-    /// rᵀ.
+    /// Returns the kinetic energy (J) of all points, Σ ½ m (v² + tr(A D Aᵀ)), with velocity v, affine part A and D = Σ
+    /// w r rᵀ.
     ///
-    /// This is the energy of their momentum on the nodes, without the smoothing.
+    /// This is the energy of the points' momentum on the nodes, without the smoothing.
     pub(crate) fn kinetic_energy(&self, basis: Basis, lattice: &Lattice) -> f64 {
         let Self { points, bodies, .. } = self;
         let mut sum = 0.0;
@@ -176,7 +176,8 @@ impl<S: Space> State<S> {
         Failure { owner: self.bodies[place].owner, position: S::embed(self.points.position[point]), cause }
     }
 
-    /// Returns the failure of the fastest point, which has moved more than a `cell` (m) in a step (s).
+    /// Returns the failure for a step (s) in which a point has moved more than a `cell` (m). It names the first point
+    /// with a position that is not finite, otherwise the fastest point.
     pub(crate) fn ran_away(&self, time_step: f64, cell: f64) -> Failure {
         let points = &self.points;
         let all = |body: &Body| -> Range<usize> { body.part.points.clone() };
@@ -200,7 +201,7 @@ impl<S: Space> State<S> {
     }
 }
 
-/// Embeds a box in three dimensions; it is flat in the plane.
+/// Converts a box to three dimensions. In two dimensions its extent along z is zero.
 fn in_space<S: Space>(bounds: [[f64; 3]; 2]) -> [Vector3<f64>; 2] {
     bounds.map(|[x, y, z]| S::embed(S::restrict(Vector3::new(x, y, z))))
 }

@@ -20,7 +20,7 @@ use grainbench_scene::solver::Cause;
 use grainbench_scene::space::Space;
 use nalgebra::Matrix3;
 
-/// A point with an invalid state.
+/// Material point with an invalid state, by its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BrokenPoint {
     point: usize,
@@ -39,10 +39,10 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
 
 /// Computes velocity gradients, deformation and stress of the points, then calls `then` for each thread partition.
 ///
-/// Returns the energies for the budget, if it `counts`, and the largest displacement that `then` returns.
+/// Returns the energies for the budget (zero unless `counts`) and the largest displacement that `then` returns.
 ///
 /// # Errors
-/// The failure of the first point with an invalid state.
+/// Returns the failure of the first point with an invalid state.
 pub(crate) fn follow<S: Space>(
     scheme: &Scheme,
     state: &mut State<S>,
@@ -124,26 +124,26 @@ fn follow_piece<S: Space>(
     }
 }
 
-/// Kernel of the update F ← (1 + Δt ∇v) F, of volume and of stress, for every point of some batches with velocity
-/// gradients `gradients` (1/s).
+/// Kernel of the update F ← (1 + Δt ∇v) F, of volume and of stress, for every point of some batches. `gradients`
+/// contains the velocity gradients ∇v (1/s).
 ///
-/// With `COUNT` it records three energies of each batch. The first is the work of the stresses after the step on its
-/// strain. The second is the plastic work: the flow stress after the step times the plastic strain increment, on the
-/// mean volume. The third is the work against viscosity: half of the work of viscous stresses before and after the step
-/// on its strain.
+/// With `COUNT` it records three energies of each batch. The first is the work of the stresses after the step on the
+/// strain of the step. The second is the plastic work: the flow stress after the step times the plastic strain
+/// increment, on the mean volume. The third is the work against viscosity: half of the work of viscous stresses before
+/// and after the step on the strain of the step.
 ///
-/// If points carry `spins`, a yielding point takes the spin of the velocity field around it, because the neighbours
-/// that shared its spin have moved away. Otherwise unbalanced spins would grow until a grain of a few cells breaks
-/// apart.
+/// With `spins`, points have a spin, and a yielding point takes the spin of the velocity field around it, because its
+/// neighbours with the same spin have moved away. Without this rule, unbalanced spins would grow until a grain of a few
+/// cells breaks apart.
 struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     law: L,
-    /// Consecutive batches with at most as many points as the longest batch.
+    /// Consecutive batches with at most [`LONGEST`] points in all.
     runs: &'a [ParticleBatch],
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
     points: &'a mut PointsMut<'b, S>,
-    /// Energies by batch, because these do not depend on the thread partitions.
+    /// Energies of each batch. Batches do not depend on the thread partitions.
     flows: &'a mut Vec<Flow>,
     /// First point with an invalid state.
     failure: &'a mut Option<BrokenPoint>,

@@ -1,4 +1,4 @@
-//! Initial stress of bodies, which is a hydrostatic pressure or a stress given by the scene.
+//! Initial stress of bodies: a hydrostatic pressure or a stress given by the scene.
 
 use crate::bodies::Body;
 use crate::material::{Law, Material, State as Material3, with_law};
@@ -11,9 +11,9 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
-/// Returns the reason why a body cannot have the initial stress that the scene gives, or `None`.
+/// Returns the reason why a body cannot have the initial stress that the scene gives, or `None` if it can.
 ///
-/// A stress that is linear in position has its maximum at a corner of the bounding box.
+/// A stress that is linear in position is largest at a corner of the bounding box, so only the corners are checked.
 pub(crate) fn refusal(scene: &Scene) -> Option<String> {
     let dimensions = scene.dimension.count();
     scene.bodies.iter().find_map(|body| {
@@ -36,8 +36,8 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
         };
         let place: Vec<String> = place.iter().take(dimensions).map(f64::to_string).collect();
         Some(format!(
-            "body `{}` starts with a stress that its material `{}` ({kind}) cannot bear, {there} [{}]: expected one below its \
-             moduli, and below its yield stress where it has one",
+            "body `{}` starts with a stress that its material `{}` ({kind}) cannot bear, {there} [{}]: expected a \
+             stress below its moduli, and below its yield stress if it has one",
             body.name,
             scene.materials[usize::from(body.material)],
             place.join(", ")
@@ -45,7 +45,7 @@ pub(crate) fn refusal(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Returns true if a body starts with a stress.
+/// Returns true if the scene gives an initial pressure or the initial stress of a body.
 pub(crate) fn is_given(scene: &Scene) -> bool {
     scene.start.initial_pressure.is_some() || scene.bodies.iter().any(|body| body.stress.is_some())
 }
@@ -54,7 +54,7 @@ fn state_under(law: &Material, stress: &Matrix3<f64>, dimensions: usize) -> Opti
     with_law!(law, law => law.under_stress(stress, dimensions))
 }
 
-/// Applies the initial stress of the scene to the points; `gravity` (m/s²) determines the hydrostatic pressure.
+/// Applies the initial stress of the scene to the points. `gravity` (m/s²) determines the hydrostatic pressure.
 pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut State<S>, tracers: &Tracers<S>) {
     let State { bodies, points, .. } = state;
     for body in bodies.iter() {
@@ -76,10 +76,10 @@ pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut S
     }
 }
 
-/// Applies the stress at its position (Pa) to every point of a body.
+/// Applies to every point of a body the stress (Pa) at the point's position.
 fn press<S: Space>(body: &Body, points: &mut Points<S>, stress: impl Fn(S::Vector) -> Matrix3<f64>) {
     for at in body.part.points.clone() {
-        // Stresses that no material can carry were rejected before. A NaN state fails at the first step and is
+        // Stresses that the material cannot have were rejected before. A NaN state would fail at the first step and be
         // reported.
         let broken = || Material3 { deformation: Matrix3::from_element(f64::NAN), ..Material3::default() };
         let wanted = stress(points.position[at]);

@@ -1,4 +1,4 @@
-//! Tracers: massless points on the surface of bodies that move with the grid.
+//! Tracers: massless points on the surface of bodies. They move with the velocity of the grid.
 
 use crate::basis::Basis;
 use crate::bodies::Body;
@@ -19,15 +19,15 @@ use std::ops::Range;
 pub(crate) struct Tracers<S: Space> {
     /// Position (m).
     pub(crate) position: Vec<S::Vector>,
-    /// Area times outward unit normal (m²; m in the plane).
+    /// Area times outward unit normal (m²; m in two dimensions).
     pub(crate) area: Vec<S::Vector>,
-    /// In the plane, the previous and the next tracer along the surface.
+    /// In two dimensions, the previous and the next tracer along the surface.
     pub(crate) neighbours: Vec<[u32; 2]>,
     /// Chunks of tracers with their bounding boxes.
     pub(crate) chunks: Vec<Chunk<S>>,
 }
 
-/// A chunk of consecutive tracers.
+/// Chunk of consecutive tracers, with its bounding box.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk<S: Space> {
     pub(crate) tracers: Range<usize>,
@@ -36,13 +36,13 @@ pub(crate) struct Chunk<S: Space> {
 }
 
 impl<S: Space> Chunk<S> {
-    /// Computes the bounding box of its tracers from their positions.
+    /// Computes the bounding box of the chunk from the positions of its tracers.
     #[inline(always)]
     fn enclose(&mut self, positions: &[S::Vector]) {
         [self.low, self.high] = enclose::<S>(NO_BOX, positions).map(|[x, y, z]| S::restrict(Vector3::new(x, y, z)));
     }
 
-    /// Returns true if its box intersects another box.
+    /// Returns true if the box of the chunk intersects another box.
     #[inline(always)]
     pub(crate) fn meets(&self, low: S::Vector, high: S::Vector) -> bool {
         (0..S::DIMENSION).all(|axis| {
@@ -51,13 +51,13 @@ impl<S: Space> Chunk<S> {
         })
     }
 
-    /// Returns the squared distance from a position to its box (m²).
+    /// Returns the squared distance from a position to the box of the chunk (m²).
     #[inline(always)]
     fn away(&self, position: S::Vector) -> f64 {
         self.away_from(position, position)
     }
 
-    /// Returns the squared distance between its box and another box (m²).
+    /// Returns the squared distance between the box of the chunk and another box (m²).
     #[inline(always)]
     fn away_from(&self, low: S::Vector, high: S::Vector) -> f64 {
         let mut squared = 0.0;
@@ -82,14 +82,15 @@ pub(crate) struct NearSurface<S: Space> {
 /// Number of tracers in a chunk.
 const RUN: usize = 16;
 
-/// Radius of the mean over tracers in three dimensions, in tracer spacings. About twelve tracers contribute.
+/// Radius of the mean over tracers in three dimensions, in units of the tracer spacing. About twelve tracers
+/// contribute.
 const SPREAD: f64 = 2.0;
 
 /// Cosine between the normals of two surfaces above which they do not face each other.
 const FACING: f64 = -0.2;
 
 impl<S: Space> Tracers<S> {
-    /// Memory of a tracer with its part of a chunk (bytes).
+    /// Memory of a tracer with its share of a chunk (bytes).
     pub(crate) const BYTES: usize =
         2 * size_of::<S::Vector>() + size_of::<[u32; 2]>() + size_of::<Chunk<S>>().div_ceil(RUN);
 
@@ -107,7 +108,7 @@ impl<S: Space> Tracers<S> {
         TracersMut { first: 0, position, area, neighbours, chunks }
     }
 
-    /// Adds a closed surface; in the plane its elements are ordered with the body on their left.
+    /// Adds a closed surface. In two dimensions the elements are ordered with the body on their left.
     pub(crate) fn add(&mut self, patches: &[seed::Patch]) {
         let (start, count) = (self.len() as u32, patches.len() as u32);
         for (number, patch) in (0..count).zip(patches) {
@@ -134,7 +135,7 @@ impl<S: Space> Tracers<S> {
         self.chunks.iter_mut().for_each(|chunk| chunk.enclose(&self.position[chunk.tracers.clone()]));
     }
 
-    /// Returns the bounding box of a box and some chunks (m).
+    /// Returns the bounding box of a box and of some chunks (m).
     pub(crate) fn enclose_runs(&self, runs: Range<usize>, around: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
         self.chunks[runs].iter().fold(around, |around, chunk| enclose::<S>(around, &[chunk.low, chunk.high]))
     }
@@ -145,7 +146,8 @@ impl<S: Space> Tracers<S> {
         unit::<S>(self.area[at])
     }
 
-    /// Finds the chunks that can contain the nearest tracer of any tracer of the chunk `searched`, which is moved by `shift`.
+    /// Finds the chunks that can contain the tracer nearest to any tracer of the chunk `searched`. The box of `searched`
+    /// is first moved by `shift` (m).
     #[inline(always)]
     pub(crate) fn find_near(
         &self,
@@ -163,14 +165,14 @@ impl<S: Space> Tracers<S> {
         near.extend(chunks.clone().filter(is_near));
     }
 
-    /// Returns the surface of some chunks where a position has penetrated it.
+    /// Returns the surface near a position that has penetrated it. The surface consists of the tracers of some chunks.
     ///
     /// `facing` is an outward vector of any length at the position. Returns `None` if the position is outside, does not
     /// face the surface, or is farther than `reach` (m) from it.
     ///
-    /// On entry, `closest` is the tracer of these chunks nearest to the previous position, on return the tracer nearest
-    /// to this position. Neighbouring positions have neighbouring nearest tracers, so `closest` limits the search
-    /// radius. The result does not depend on it.
+    /// On entry, `closest` is the tracer of these chunks nearest to the previous position. On return, it is the tracer
+    /// nearest to this position. Neighbouring positions have neighbouring nearest tracers, so `closest` limits the
+    /// search radius. The result does not depend on `closest`.
     #[inline(always)]
     pub(crate) fn gone_through(
         &self,
@@ -215,7 +217,8 @@ impl<S: Space> Tracers<S> {
         (faces && near.gap <= 0.0 && -near.gap < reach).then_some(near)
     }
 
-    /// Returns true if a position is certainly outside: its height over the nearest tracer exceeds the tracer spacing.
+    /// Returns true if a position is certainly outside, because its height over the nearest tracer exceeds the tracer
+    /// spacing.
     #[inline(always)]
     fn is_above(&self, closest: usize, position: S::Vector) -> bool {
         let area = self.area[closest];
@@ -224,13 +227,13 @@ impl<S: Space> Tracers<S> {
         S::dot(position - self.position[closest], area) > squared * spacing
     }
 
-    /// Returns the surface near a position in three dimensions, where tracers have no neighbours.
+    /// Returns the surface near a position x in three dimensions, where tracers have no neighbours.
     ///
-    /// The sums are over tracers y that face the given normal, with weights w = a (1 − r²/H²)². Here a is the area of a
-    /// tracer, and r its distance from the foot of the position on the tangent plane of the nearest tracer. The normal
-    /// is n̄ = Σ w n/|Σ w n|, and the gap is Σ w (x − y)·(n̄ + n)/2 / Σ w. This is exact on planes, and on spheres at
-    /// zero gap, where x − y is perpendicular to the sum of the normals. Returns `None` if the foot is beside the
-    /// surface.
+    /// The sums are over tracers at positions y with normals n that face the given normal, with weights w = a (1 −
+    /// r²/H²)². Here a is the area of a tracer, and r its distance from the foot of x on the tangent plane of the
+    /// nearest tracer. H is [`SPREAD`] times the spacing of tracers. The normal is n̄ = Σ w n/|Σ w n|, and the gap is Σ
+    /// w (x − y)·(n̄ + n)/2 / Σ w. This is exact on planes, and on spheres at zero gap, where x − y is perpendicular to
+    /// the sum of the normals. Returns `None` if the foot is beside the surface.
     #[inline(always)]
     fn around(
         &self,
@@ -271,7 +274,7 @@ impl<S: Space> Tracers<S> {
         Some(NearSurface { gap: 0.5 * (S::dot(way, normal) + along) / total, normal })
     }
 
-    /// Returns the chord between two tracers with its point nearest to a position.
+    /// Returns the chord between two tracers, with the point of the chord nearest to a position.
     #[inline(always)]
     fn chord(&self, from: usize, to: usize, position: S::Vector) -> Chord<S> {
         let chord = self.position[to] - self.position[from];
@@ -280,38 +283,38 @@ impl<S: Space> Tracers<S> {
         Chord { ends: [from, to], chord, part, off: way - chord * part }
     }
 
-    /// Returns the surface over a chord: the cubic with the tracers' normals at its ends.
+    /// Returns the surface over a chord. It is the cubic curve with the normals of the two tracers at its ends.
     #[inline(always)]
     fn on(&self, &Chord { ends: [from, to], chord, part, off }: &Chord<S>) -> NearSurface<S> {
         let [first, last] = [self.normal(from), self.normal(to)];
         let mean = first * (1.0 - part) + last * part;
         let normal = mean * (1.0 / S::dot(mean, mean).sqrt());
-        // Slopes of the surface relative to the chord, times its length, at both ends.
+        // Slopes of the surface relative to the chord at both ends, times the length of the chord (m).
         let slope = |end: S::Vector| -S::dot(end, chord) / S::dot(end, normal);
         let bump = slope(first) * part * (1.0 - part) * (1.0 - part) - slope(last) * part * part * (1.0 - part);
         NearSurface { gap: S::dot(off, normal) - bump, normal }
     }
 }
 
-/// Normalises a non-zero vector.
+/// Returns the unit vector along a vector, which must not be zero.
 #[inline(always)]
 fn unit<S: Space>(vector: S::Vector) -> S::Vector {
     vector * (1.0 / S::dot(vector, vector).sqrt())
 }
 
-/// Chord between two tracers, with its point nearest to a position.
+/// Chord between two tracers, with the point of the chord nearest to a position.
 struct Chord<S: Space> {
     ends: [usize; 2],
     /// Vector from the first to the second tracer (m).
     chord: S::Vector,
-    /// Nearest point on the chord, as a fraction of its length.
+    /// Position of the nearest point on the chord, as a fraction of the chord's length.
     part: f64,
     /// Vector from the nearest point to the position (m).
     off: S::Vector,
 }
 
 impl<S: Space> Chord<S> {
-    /// Returns the squared distance to the position (m²).
+    /// Returns the squared distance from the chord to the position (m²).
     #[inline(always)]
     fn away(&self) -> f64 {
         S::dot(self.off, self.off)
@@ -329,7 +332,7 @@ pub(crate) struct TracersMut<'a, S: Space> {
 }
 
 impl<S: Space> TracersMut<'_, S> {
-    /// Splits off the tracers of the first bodies.
+    /// Splits off the tracers of these bodies, which must be the first ones.
     pub(crate) fn take_off(&mut self, bodies: &[Body]) -> Self {
         let count = bodies.iter().map(|body| body.tracers.len()).sum();
         let first = self.first;
@@ -393,7 +396,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerM
                     for (component, way) in way.iter_mut().enumerate().take(S::DIMENSION) {
                         *way = *way + weight * S::component(velocity, component);
                     }
-                    // The gradient of a node is reduced with its weight.
+                    // If the weight of a node is limited, the gradient of its function does not count.
                     if S::DIMENSION == 3 && bounds[place] > 0.0 {
                         let whole = bound.pick_below(value, zero, zero.like(1.0));
                         let [y, z] = across.slope;
@@ -444,7 +447,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerM
     }
 }
 
-/// Returns an area vector moved with the material: ȧ = (tr L) a − Lᵀa (Nanson).
+/// Returns an area vector a after motion with the material: ȧ = (tr L) a − Lᵀa with the velocity gradient L (Nanson).
 #[inline(always)]
 fn transported<S: Space>(area: S::Vector, gradient: S::Matrix, elapsed: f64) -> S::Vector {
     let (gradient, area) = (S::embed_gradient(gradient), S::embed(area));
@@ -458,12 +461,12 @@ mod tests {
     use nalgebra::Vector2;
     use std::f64::consts::TAU;
 
-    /// Gap of a position inside a circle of radius R that is sampled by chords of length L.
+    /// The test checks the gap of a position inside a circle of radius R that is sampled by chords of length L.
     ///
-    /// The error of the cubic over a chord is at most L⁴/(128 R³), at its middle. With half the angle of the chord a =
-    /// L/2R and the position q L along it, −½ < q < ½, the gap on the circle is R a⁴ (−⅛ + q² − 2q⁴). At a depth d the
-    /// normal is not taken at the foot on the circle, at the angle φ ≤ a R/(R − d), but at φ (R − d)/R. The resulting
-    /// error is φ² d² (R − d)/2R² ≤ L² d²/(8R² (R − d)). Further terms are smaller by (L/R)².
+    /// The error of the cubic over a chord is at most L⁴/(128 R³), at its middle. Let a = L/2R be half the angle of the
+    /// chord, and q L the position along the chord, −½ < q < ½. Then the gap on the circle is R a⁴ (−⅛ + q² − 2q⁴). At
+    /// a depth d the normal is not taken at the foot on the circle, at the angle φ ≤ a R/(R − d), but at φ (R − d)/R.
+    /// The resulting error is φ² d² (R − d)/2R² ≤ L² d²/(8R² (R − d)). Further terms are smaller by (L/R)².
     #[test]
     fn the_gap_in_a_circle_is_of_fourth_order() {
         let (centre, radius) = (Vector3::new(0.3, -0.2, 0.0), 1.5);

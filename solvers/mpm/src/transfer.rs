@@ -9,26 +9,27 @@ use std::ops::Range;
 
 /// Transfer of velocities between points and nodes.
 pub(crate) trait Transfer: Copy + Send + 'static {
-    /// True if points carry the affine part of the velocity, or its spin.
+    /// True if points store the affine part of the velocity, or its spin.
     const AFFINE: bool;
-    /// True if points use the velocity of the nodes itself, and not only its change.
+    /// True if points use the node velocity, and not only its change.
     const AROUND: bool;
     /// Returns a component of a point's velocity after the step.
     ///
-    /// `before` is the damped velocity before the step, `around` the velocity of the nodes and `change` the change of
-    /// node velocities without damping.
+    /// `before` is the damped velocity before the step, `around` the interpolated node velocity, and `change` the
+    /// interpolated change of the node velocity without damping.
     fn taken<N: Number>(&self, before: N, around: N, change: N) -> N;
-    /// Selects the node values that make the affine part: velocities or their changes.
+    /// Selects the node values from which the affine part is computed: velocities or their changes.
     fn source<N>(velocity: N, change: N) -> N;
-    /// Returns the affine part after the step, by rows, from the previous one and the one computed from the nodes.
+    /// Returns the affine part after the step, by rows, from the previous affine part and the one computed from the
+    /// nodes.
     fn carried<S: Space, N: Number>(before: [[N; 3]; 3], made: [[N; 3]; 3], stencil: &Stencil<N>) -> [[N; 3]; 3];
 }
 
-/// FLIP. Points keep their velocity and add the change of the grid velocity (Brackbill & Ruppel 1986), blended with the
-/// grid velocity: v ← (1 − α)(v + Δv) + α v_grid.
+/// FLIP transfer. Points keep their velocity and add the change of the node velocity (Brackbill & Ruppel 1986), blended
+/// with the node velocity: v ← (1 − α)(v + Δv) + α v_node.
 #[derive(Clone, Copy)]
 pub(crate) struct Flip {
-    /// Fraction α of the grid velocity in the update.
+    /// Fraction α of the node velocity in the update.
     pub(crate) pic: f64,
 }
 
@@ -50,8 +51,8 @@ impl Transfer for Flip {
     }
 }
 
-/// APIC. Points carry the affine part of the velocity (Jiang et al. 2015). The method conserves angular momentum and
-/// damps motion with wavelengths below a few cells.
+/// APIC transfer. Points store the affine part of the velocity (Jiang et al. 2015). The method conserves angular
+/// momentum and damps motion with wavelengths below a few cells.
 #[derive(Clone, Copy)]
 pub(crate) struct Apic;
 
@@ -73,12 +74,13 @@ impl Transfer for Apic {
     }
 }
 
-/// FLIP with spin. A point keeps its velocity and spin and adds the changes of both. Unlike FLIP it does not lose the
-/// angular momentum of points of finite extent, and unlike APIC it has no damping.
+/// FLIP transfer with spin. A point keeps its velocity and spin and adds the changes of both. Unlike FLIP, this
+/// transfer does not lose the angular momentum of points of finite extent. Unlike APIC, it has no damping.
 ///
 /// The velocity changes Δv of the nodes have an angular momentum about the point. The spin changes by the rigid
-/// rotation with this angular momentum: Δω = Σ w r × Δv / Σ w |r|² about each axis, with r from the point to the node,
-/// perpendicular to that axis. A yielding point takes the spin of the velocity around it ([`crate::stress::Update`]).
+/// rotation with this angular momentum: Δω = Σ w r × Δv / Σ w |r|² about each axis. Here r is the vector from the point
+/// to the node, perpendicular to the axis. A yielding point takes the spin of the velocity around it
+/// ([`crate::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 
@@ -116,9 +118,9 @@ impl Transfer for Spin {
 /// Points of one body and the window of their nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// The points.
+    /// Range of the points in the point arrays.
     pub(crate) points: Range<usize>,
-    /// Window of the nodes of their field.
+    /// Window of the nodes of the velocity field.
     pub(crate) window: Window,
     /// Number of batches when the points were last sorted.
     pub(crate) runs_in_order: usize,
@@ -131,8 +133,8 @@ pub(crate) struct Part {
 impl Part {
     /// Returns the half extent of a point along each axis (cells).
     ///
-    /// It grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if the
-    /// stretch is along the axes, and the extent does not change under rotation.
+    /// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if
+    /// the stretch is along the axes, and the extent does not change under rotation.
     #[inline(always)]
     pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
         if !B::EXTENDED {
@@ -162,7 +164,7 @@ pub(crate) fn scatter_force<S: Space, B: Basis>(
     }
 }
 
-/// Adds a force (N) of each point, such as that of a manufactured solution, to the nodes.
+/// Adds a force (N) of each point, such as the body force of a manufactured solution, to the nodes.
 pub(crate) fn scatter_body_force<S: Space, B: Basis>(
     lattice: &Lattice,
     part: &Part,
@@ -177,7 +179,7 @@ pub(crate) fn scatter_body_force<S: Space, B: Basis>(
     }
 }
 
-/// Sets a vector of each point of a part to Σ N_i Δv_i over the changes of nodes.
+/// Sets a vector of each point of a body to Σ N_i c_i, with the vectors c_i = `change` of the nodes.
 pub(crate) fn gather_changes<S: Space, B: Basis>(
     lattice: &Lattice,
     part: &Part,
@@ -212,8 +214,9 @@ mod tests {
         }
     }
 
-    /// Around a point in cells of 1 m × 2 m the change ∂v_y/∂x = g has the angular momentum Σ w x Δv_y = g D_x about it, and
-    /// ∂v_x/∂y = g that of −g D_y, with D = h²/4 along each axis. Over D_x + D_y that is the spin: g/5 and −4g/5.
+    /// A point in cells of 1 m × 2 m has D = h²/4 along each axis. The change ∂v_y/∂x = g has the angular momentum Σ w
+    /// x Δv_y = g D_x about the point, and the change ∂v_x/∂y = g has −g D_y. Division by D_x + D_y gives the spins g/5
+    /// and −4g/5.
     #[test]
     fn a_spin_has_the_angular_momentum_of_the_nodes() {
         let (cell, inverse) = ([1.0, 2.0, 1.0], [1.0, 0.5, 1.0]);

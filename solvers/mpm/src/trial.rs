@@ -8,7 +8,7 @@ use grainbench_scene::source::SceneSource;
 use grainbench_scene::space::Space;
 use std::path::Path;
 
-/// Returns a simulation of a scene text that has not begun yet, and its number of steps.
+/// Returns a simulation of a scene before its first step, and the number of steps of the run.
 pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, points: u32) -> (Simulation<S>, u64) {
     let text = format!("title = 'test'\n{text}");
     let source = SceneSource::from_text("test", Path::new(""), &text);

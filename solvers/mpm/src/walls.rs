@@ -5,7 +5,7 @@ use grainbench_scene::scene::{Wall, WallShape};
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// A plane at its current position.
+/// Plane of a wall, with its current position and velocity.
 #[derive(Clone, Debug)]
 pub(crate) struct RigidPlane<S: Space> {
     /// Point on the plane (m).
@@ -14,7 +14,7 @@ pub(crate) struct RigidPlane<S: Space> {
     pub(crate) normal: S::Vector,
     /// Force of bodies on the plane in the last step (N).
     pub(crate) force: S::Vector,
-    /// Index of its material in the scene.
+    /// Index of the material in the scene.
     pub(crate) material: u16,
     start: [Vector3<f64>; 2],
     motion: Motion,
@@ -40,7 +40,7 @@ impl<S: Space> RigidPlane<S> {
         })
     }
 
-    /// Moves the plane to its position at `time` (s), with the velocity of the step that starts then.
+    /// Moves the plane to its position at `time` (s) and sets its velocity in the step that starts at this time.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
         let now = self.motion.displacement(time, time_step);
         self.point = S::restrict(self.motion.moved(self.start[0], &now));
@@ -53,7 +53,7 @@ impl<S: Space> RigidPlane<S> {
         }
     }
 
-    /// Stops the plane, for the phase before time zero.
+    /// Sets the velocity to zero, for the relaxation before time zero.
     pub(crate) fn stop(&mut self) {
         (self.velocity, self.spin) = (Vector3::zeros(), Vector3::zeros());
     }
@@ -78,8 +78,9 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// A plane that turns at .5 rad/s about (2, 1) m, which a ramp to 1 m/s over 2 s carries off along x: over a step from t
-    /// on it has the velocity (t + Δt/2)/2 m/s + ω × r, with r from where the centre is at t, (2 + t²/4, 1) m.
+    /// A plane rotates at .5 rad/s about a centre that starts at (2, 1) m. A ramp to 1 m/s over 2 s moves the centre
+    /// along x. In a step from t on, the plane has the velocity (t + Δt/2)/2 m/s + ω × r, with r from the centre at t,
+    /// (2 + t²/4, 1) m.
     #[test]
     fn a_plane_turns_about_where_its_centre_is() {
         let text = "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\

@@ -15,7 +15,7 @@ use support::{collision, column, incline, run, scene};
 
 const AT: Resolution = Resolution::grid(4.0, 2);
 
-/// Two rotating discs that collide off centre, of a hypoelastic or readily yielding material, with or without friction.
+/// Returns two rotating discs that collide off centre, with the given constitutive law and coefficient of friction.
 fn discs(friction: f64, constitutive: &str) -> Scene {
     let modulus = "shear_modulus = 6.0";
     let text = collision(0.1, friction, 0.5).replace(modulus, &format!("{modulus}, {constitutive}"));
@@ -30,7 +30,7 @@ fn ran(solver: Mpm, scene: &Scene) -> Record {
     solver.run(scene, &AT, &mut ()).unwrap()
 }
 
-/// Returns the series and snapshots of a record with all bits, without cost and names of effects.
+/// Returns the series and snapshots of a record with all bits, without costs and names of effects.
 fn bits(record: &Record) -> String {
     format!("{:?} {:?}", record.series, record.snapshots)
 }
@@ -48,11 +48,11 @@ fn what_is_off_has_no_size() {
     assert_eq!(size_of::<<VonMises as Law>::PlasticStrain>(), size_of::<f64>());
 }
 
-/// Absent effects save exactly the memory of their data: four springs of 32 B per tracer, a number or a matrix per
-/// point, and three vectors per node.
+/// Each absent effect saves the memory of its data: friction four springs of 32 B per tracer, plasticity a number per
+/// point, and the affine part a matrix per point. A requested energy budget takes memory too.
 #[test]
 fn what_is_off_takes_no_memory() {
-    // The time is before the discs collide, while both scenes have the same nodes.
+    // The run ends before the discs collide, because both scenes must have the same nodes.
     let discs = |friction: f64, constitutive: &str| {
         let duration = Duration::Seconds(0.1);
         Scene { duration, ..discs(friction, constitutive) }
@@ -61,7 +61,8 @@ fn what_is_off_takes_no_memory() {
     let points = |cost: Cost| cost.particle_steps / cost.steps;
     let cost = ran(Mpm::BEST, &elastic).cost;
     let plain = cost.bytes.unwrap();
-    // Two circles with 6 tracers per cell and 4 cells per radius: 2π·24 on each, rounded up to a multiple of four.
+    // There are two circles with 6 tracers per cell and 4 cells per radius: 2π·24 on each, rounded up to a multiple of
+    // four.
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.5, ELASTIC)) - plain, 2 * 152 * 4 * 32);
     assert_eq!(bytes_of(Mpm::BEST, &discs(0.0, YIELDING)) - plain, points(cost) * 8);
     let flip = Mpm::BEST.with(|setting| setting.transfer = Transfer::Flip { pic: 0.0 });
@@ -73,7 +74,7 @@ fn what_is_off_takes_no_memory() {
     assert!(bytes_of(Mpm::BEST, &asked) > plain);
 }
 
-/// A disc at rest, for which both transfers have the same nodes.
+/// Returns a disc at rest, for which both transfers have the same nodes.
 fn alone() -> Scene {
     scene(
         "dimension = 2\nduration = 0.5\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
@@ -88,8 +89,8 @@ fn contact_at_nodes_has_no_springs() {
     assert_eq!(bytes_of(gap, &discs(0.5, ELASTIC)), bytes_of(gap, &discs(0.0, ELASTIC)));
 }
 
-/// An effect with a neutral value gives the same result as its absence. Tested are friction of a material that no grain
-/// has, between discs and at a plane, and a yield stress that is never reached.
+/// An effect with a neutral value gives the same result as its absence. The test covers friction of a material that no
+/// grain has, between discs and at a plane, a yield stress that is never reached, and a neutral viscosity.
 #[test]
 fn an_idle_effect_changes_no_bit() {
     let plane = || scene(&format!("{}[output]\nsnapshots = 3\n", incline(30.0, 0.0, 0.1, false)));

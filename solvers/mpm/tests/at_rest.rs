@@ -7,16 +7,20 @@ use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_scene::solver::Resolution;
 use support::{column, try_run};
 
-/// Density (kg/m³), gravity (m/s²), Young's modulus (Pa), Poisson's ratio, height (m).
+/// Density (kg/m³).
 const DENSITY: f64 = 1800.0;
+/// Gravity (m/s²).
 const GRAVITY: f64 = 9.81;
+/// Young's modulus (Pa).
 const YOUNG: f64 = 1e6;
+/// Poisson's ratio.
 const POISSON: f64 = 0.3;
+/// Height of the soil (m).
 const HEIGHT: f64 = 1.0;
 
-/// Soil in a smooth box under K₀ stress: σ_yy = ρg(y − H) and σ_xx = K₀ σ_yy, K₀ = ν/(1 − ν).
+/// Returns soil in a smooth box under K₀ stress: σ_yy = ρg(y − H) and σ_xx = K₀ σ_yy, with K₀ = ν/(1 − ν).
 ///
-/// The stress is given at half height, with `sign` times its gradient.
+/// The stress is given at half height, with `sign` times the correct gradient.
 fn soil(law: &str, sign: f64) -> String {
     let (middle, gradient) = (-0.5 * DENSITY * GRAVITY * HEIGHT, sign * DENSITY * GRAVITY);
     let beside = POISSON / (1.0 - POISSON);
@@ -33,13 +37,14 @@ fn soil(law: &str, sign: f64) -> String {
     )
 }
 
-/// Returns the settlement of the top without initial stress, ρgH²/2M, M = E(1 − ν)/(1 + ν)(1 − 2ν) (m).
+/// Returns the settlement of the top without initial stress (m): ρgH²/2M with M = E(1 − ν)/((1 + ν)(1 − 2ν)).
 fn settlement() -> f64 {
     let modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
     0.5 * DENSITY * GRAVITY * HEIGHT * HEIGHT / modulus
 }
 
-/// Returns the largest displacement of two points (m) in .2 s, or five wave transits of the height, and the steps.
+/// Returns the largest displacement component of two points (m) in .2 s, and the number of steps. The wave crosses the
+/// height five times in .2 s.
 fn moved(change: impl FnOnce(&mut Setting), text: &str, cells: f64, points: u32) -> (f64, f64) {
     let record = try_run("mpm", change, text, Resolution::grid(cells, points)).unwrap();
     let columns = ["top.ux", "top.uy", "middle.ux", "middle.uy"];
@@ -47,8 +52,8 @@ fn moved(change: impl FnOnce(&mut Setting), text: &str, cells: f64, points: u32)
     (most, record.cost.steps as f64)
 }
 
-/// With three points per cell the sums over points equal the integrals of basis functions times the linear stress. Only
-/// rounding remains: the spacing of floating-point numbers at the height, in every step.
+/// With three points per cell, the sums over points equal the integrals of basis functions times the linear stress. Only
+/// rounding errors remain, of at most ε H per step with the spacing ε of floating-point numbers at 1 and the height H.
 #[test]
 fn stress_of_the_weight_keeps_soil_at_rest() {
     let soft = soil("constitutive = 'hypoelastic'", 1.0);
@@ -71,8 +76,8 @@ fn stress_of_the_weight_keeps_soil_at_rest() {
     }
 }
 
-/// With two points per cell the midpoint rule leaves an error at the free surface, of second order in the cell size.
-/// With a gradient of the wrong sign the stress differs by −2ρg(y − H/2) from the stress of the weight. The middle then
+/// With two points per cell, the midpoint rule has an error at the free surface, of second order in the cell size. With
+/// a gradient of the wrong sign, the stress differs by −2ρg(y − H/2) from the stress of the weight. The middle then
 /// vibrates about a position that is lower by ρgH²/4M, half of the settlement.
 #[test]
 fn the_sign_of_a_stress_gradient_is_felt() {

@@ -1,4 +1,4 @@
-//! Collisions of two and three deformable discs, and conserved quantities.
+//! Tests of collisions of two and three deformable discs, and of conserved quantities.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -20,8 +20,8 @@ fn momentum_drift(record: &Record) -> f64 {
     pair.map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max) / (std::f64::consts::PI * SPEED)
 }
 
-/// In a head-on collision without friction energy is conserved, and restitution is .98, the converged elastic result.
-/// At four cells per radius quadratic functions are too coarse for the vibration after the impact.
+/// In a head-on collision without friction, energy is conserved. The coefficient of restitution is .98, the converged
+/// elastic result. At four cells per radius, quadratic functions are too coarse for the vibration after the impact.
 #[test]
 fn springs_keep_energy_and_momentum() {
     for (cells, energy_allowed, restitution_allowed) in [(4.0, 0.025, 0.04), (8.0, 0.005, 0.015)] {
@@ -34,8 +34,8 @@ fn springs_keep_energy_and_momentum() {
     }
 }
 
-/// Kinetic, elastic and contact energy refer to the same time: their sum is nearly constant during contact. (With
-/// spring energies at the beginning of the step the error would be +.8 and −1.8 % here.)
+/// Kinetic, elastic and contact energy refer to the same time, so their sum is nearly constant during contact. (With
+/// spring energies at the beginning of the step, the error would be +.8 and −1.8 % here.)
 #[test]
 fn the_sum_of_energies_hardly_rings() {
     let at = Resolution::Grid { cells: 8.0, points: 3, courant: 0.2 };
@@ -45,8 +45,8 @@ fn the_sum_of_energies_hardly_rings() {
     assert!(low > 0.99 * energy[0] && high < 1.002 * energy[0], "{} {}", low / energy[0], high / energy[0]);
 }
 
-/// Damping acts on the relative motion of points that nodes do not represent. Energy falls as e^(−αt) or faster. With
-/// damping of nodes alone, 2e-3 of it would remain. The budget reports the damping work.
+/// Damping also acts on relative motion of points that nodes do not represent. Energy falls as e^(−αt) or faster. With
+/// damping of nodes alone, 2e-3 of the energy would remain. The budget reports the damping work.
 #[test]
 fn damping_reaches_what_nodes_do_not_show() {
     let text = collision(0.02, 0.5, 0.5) + "budget.budget = true\n";
@@ -60,7 +60,7 @@ fn damping_reaches_what_nodes_do_not_show() {
     assert!((budget("unbalanced") / start - 1.0).abs() < 1e-3, "{} of {start}", budget("unbalanced"));
 }
 
-/// Off centre with strong friction, ωR/v₀ = .40 at eight cells per radius.
+/// After an off-centre collision with strong friction, ωR/v₀ = .40 at eight cells per radius.
 #[test]
 fn friction_turns_discs() {
     let record = run("mpm", &collision(0.25, 0.9, 0.5), 8.0, 3);
@@ -69,8 +69,8 @@ fn friction_turns_discs() {
     assert!(momentum_drift(&record) < 1e-12);
 }
 
-/// The gap contact creates no energy and conserves momentum. Release on departure (2000) creates energy, and the 2001
-/// criterion creates less.
+/// The contact `mpm:gap` creates no energy and conserves momentum. The 2000 contact releases departing bodies and
+/// creates energy, and the 2001 criterion creates less.
 #[test]
 fn nodal_contacts_do_what_they_are_known_for() {
     let gap = run("mpm:gap", &collision(0.5, 0.0, 0.0), 8.0, 3);
@@ -83,7 +83,7 @@ fn nodal_contacts_do_what_they_are_known_for() {
     assert!(energy(&traction) < energy(&kinematic));
 }
 
-/// Discs of materials without a contact law pass through each other, as in the other solvers.
+/// Discs of materials without a contact law pass through each other.
 #[test]
 fn without_a_law_nothing_is_felt() {
     let mut scene = support::scene(&collision(0.5, 0.0, 0.0));

@@ -1,5 +1,5 @@
-//! Conformance properties, with the weaker limits of methods with a grid: every named setting in the plane, and `mpm`
-//! also in three dimensions with `GRAINBENCH_LONG=1`.
+//! Conformance properties, with the weaker limits of methods with a grid. Every named setting is tested in two
+//! dimensions. With `GRAINBENCH_LONG=1`, `mpm` is also tested in three dimensions.
 
 use grainbench_harness::conformance::failures;
 use grainbench_mpm::solver::Mpm;

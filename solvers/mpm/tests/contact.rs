@@ -8,10 +8,10 @@ use grainbench_scene::record::Record;
 use grainbench_scene::solver::Resolution;
 use support::{column, incline, last, run, try_run};
 
-/// E' = E/(1 − ν²) of E = 100 Pa, ν = .3: 100/.91 Pa.
+/// Plane modulus E' = E/(1 − ν²) for E = 100 Pa and ν = .3: 100/.91 Pa.
 const PLANE_MODULUS: f64 = 109.890_109_890_109_89;
 
-/// Returns the first step of a block 2 m wide that overlaps a plane by .01 m; the plane moves at 10 m/s along x.
+/// Returns the first step of a block 2 m wide that overlaps a plane by .01 m. The plane moves at 10 m/s along x.
 fn pressed_block(friction: f64, change: impl FnOnce(&mut Setting)) -> Record {
     let text = format!(
         "dimension = 2\nduration = 1.0e-3\nreference_length = 1.0\noutput.every_cycles = 1\n\
@@ -24,11 +24,12 @@ fn pressed_block(friction: f64, change: impl FnOnce(&mut Setting)) -> Record {
     try_run("mpm", change, &text, Resolution::grid(4.0, 2)).unwrap()
 }
 
-/// Springs of κ = 2.6 E'/h per area, h = .25 m, push a face of 2 m at a depth g = .01 m with κ · 2 g.
+/// Springs with the stiffness per area κ = 2.6 E'/h, h = .25 m, push a face of 2 m. At the depth g = .01 m the force is
+/// κ · 2 g.
 ///
-/// They are displaced tangentially by 10 m/s Δt, more than μ g. The friction force is therefore μ times the normal
-/// force, and the plane receives the opposite forces. The forces scale with half the stiffness and with two thousandths
-/// more friction.
+/// The springs are displaced tangentially by 10 m/s Δt, more than μ g. The friction force is therefore μ times the normal
+/// force, and the plane receives the opposite forces. With half the stiffness, the forces are half as large. With two
+/// thousandths more friction, the friction force grows by two thousandths.
 #[test]
 fn a_plane_pushes_and_rubs_with_its_springs() {
     let push = 2.6 * PLANE_MODULUS / 0.25 * 2.0 * 0.01;
@@ -49,8 +50,8 @@ fn a_plane_pushes_and_rubs_with_its_springs() {
 
 /// Returns a scene of two discs of radius 1 m that overlap by .009 m, observed after the first step.
 ///
-/// `between` is their contact law with any further tables, and `second` the material of the second disc. They move past
-/// each other with `speed` (m/s) each.
+/// `between` is the contact law of the discs with any further tables, and `second` the material of the second disc. The
+/// discs move past each other with `speed` (m/s) each.
 fn two_discs(between: &str, second: &str, speed: f64) -> String {
     format!(
         "dimension = 2\nduration = 1.0e-3\noutput.every_cycles = 1\n\
@@ -62,13 +63,13 @@ fn two_discs(between: &str, second: &str, speed: f64) -> String {
     )
 }
 
-/// Two discs of radius R = 1 m that overlap by δ = .009 m, in the first step. Both have tracers on springs of ½κ per
-/// area, κ = 2.6 E'/h. At the arc length s from the line of centres the depth is g = δ − s²/R. The total force is
-/// κ ∫ g ds = κ (4/3) δ √(δR).
+/// Two discs of radius R = 1 m overlap by δ = .009 m in the first step. Both have tracers with springs of ½κ per area,
+/// κ = 2.6 E'/h. At the arc length s from the line of centres the depth is g = δ − s²/R. The total force is κ ∫ g ds =
+/// κ (4/3) δ √(δR).
 ///
-/// Tracers at a spacing of a sixth of a cell ℓ sum a parabola that ends in kinks with an error of ¼ ℓ²/(δR). The
-/// deviation from a parabola is of the order of δ/R. E' is the harmonic mean of both bodies: 3/2 of one if the other is
-/// three times as stiff.
+/// The tracer spacing ℓ is a sixth of a cell. The sum over tracers has an error of ¼ ℓ²/(δR), because the parabola ends
+/// in kinks. The deviation from a parabola is of the order of δ/R. E' is the harmonic mean of both bodies: 3/2 of one
+/// if the other is three times as stiff.
 #[test]
 fn discs_push_with_the_springs_of_both() {
     let force = |second: f64, penalty: f64| {
@@ -88,9 +89,9 @@ fn discs_push_with_the_springs_of_both() {
     assert!((force(3.0, 2.6) / alike - 1.5).abs() < 1e-12);
 }
 
-/// The same discs move past each other at 20 m/s. All tracer springs of both discs slip in the first step, with
-/// friction forces of μ times their normal forces. The first disc moves up, and its friction force points down. A
-/// downward force is positive: it points to the right of the line from the first to the second disc.
+/// Two discs move past each other at 20 m/s. All tracer springs of both discs slip in the first step, with friction
+/// forces of μ times their normal forces. The first disc moves up, so its friction force points down. A downward force
+/// counts as positive, because it points to the right of the line from the first to the second disc.
 #[test]
 fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     let force = |friction: f64, speed: f64| {
@@ -102,16 +103,17 @@ fn discs_that_pass_each_other_rub_with_the_springs_of_both() {
     for friction in [0.3, 0.1] {
         for (speed, sign) in [(10.0, 1.0), (-10.0, -1.0)] {
             let found = force(friction, speed);
-            // The direction of friction at a tracer turns by s/R from the middle of the contact, at most by δ/R.
+            // The direction of friction at a tracer turns by s/R, where s is the distance from the middle of the
+            // contact. The effect is at most δ/R.
             assert!((found / (sign * friction) - 1.0).abs() < 0.02, "{found} for {}", sign * friction);
         }
     }
 }
 
-/// A disc at rest on a belt that starts at V = 6 m/s. Springs exceed the Coulomb limit μ δ at a depth δ in every step.
-/// The friction is therefore μ times the normal force, and the disc gains v_x = μ (g t + v_y). Initial velocities
-/// belong to half a step earlier, when no friction acted, so that t is half a step longer. Sums of some hundred steps
-/// are exact to 1e-10. The belt turns the disc counter-clockwise.
+/// A disc is at rest on a belt that starts at V = 6 m/s. Springs exceed the Coulomb limit μ δ at a depth δ in every
+/// step. The friction is therefore μ times the normal force, and the disc gains v_x = μ (g t + v_y). Initial velocities
+/// belong to half a step earlier, when no friction acted, so t is half a step longer. Sums over some hundred steps are
+/// exact to 1e-10. The belt turns the disc counter-clockwise.
 #[test]
 fn a_belt_drags_a_disc_by_what_presses_it() {
     let (speed, time) = (6.0, 0.15);
@@ -130,10 +132,10 @@ fn a_belt_drags_a_disc_by_what_presses_it() {
     }
 }
 
-/// The incline in a moving frame: plane and disc also move at V, and after a time t they are V t farther. The remaining
-/// difference is caused by crossing nodes. It is within the discretisation error of the disc at this resolution (.7 %
-/// of the rigid displacement). If the plane moved 1 % faster, the rolling disc would be a third of .01 V t farther,
-/// which is 4.7 %.
+/// The incline is tested in a moving frame. Plane and disc also move at V, and after a time t they are V t farther. The
+/// remaining difference comes from crossing nodes. It is within the discretisation error of the disc at this resolution
+/// (.7 % of the rigid displacement). If the plane moved 1 % faster, the rolling disc would be a third of .01 V t
+/// farther, which is 4.7 %.
 #[test]
 fn an_incline_in_a_moving_frame_is_an_incline() {
     let (speed, time) = (4.0, 0.1);
@@ -157,7 +159,7 @@ fn an_incline_in_a_moving_frame_is_an_incline() {
     assert!((way_faster - speed * end - way_at_rest).abs() / rigid > 0.03, "{}", (way_faster - way_moving) / rigid);
 }
 
-/// The torque on a disc refers to its own centre at any position: eight radii farther along the wall it is the same.
+/// The torque on a disc refers to the centre of the disc. It is the same eight radii farther along the wall.
 #[test]
 fn a_torque_does_not_depend_on_the_place() {
     let torque = |place: &str| {

@@ -1,4 +1,4 @@
-//! Tests of run cost by counts that do not depend on the machine.
+//! Tests of the cost of runs, with counts that do not depend on the machine.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -9,7 +9,7 @@ use support::run;
 const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
     contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n";
 
-/// Slightly overlapping discs in a square lattice: each has four contacts, except at the rim.
+/// Returns the cost of slightly overlapping discs in a square lattice. Each has four contacts, except at the rim.
 fn discs(count: [u32; 2]) -> Cost {
     let text = format!(
         "dimension = 2\nduration = 0.2\n{MATERIAL}\
@@ -20,14 +20,14 @@ fn discs(count: [u32; 2]) -> Cost {
     run("mpm", &text, 3.0, 2).cost
 }
 
-/// Cost grows from ten to a thousand grains, at constant points per grain, with exponents near one.
+/// From ten to a thousand grains, with constant points per grain, the cost grows with exponents near one.
 #[test]
 fn cost_grows_with_the_number_of_grains_and_no_faster() {
     let [few, many] = [discs([2, 5]), discs([25, 40])];
     assert_eq!(few.steps, many.steps);
     assert_eq!(100 * few.particle_steps, many.particle_steps);
     let exponent = |count: fn(&Cost) -> u64| (count(&many) as f64 / count(&few) as f64).log10() / 2.0;
-    // Ten discs have 13 contacts and a thousand have 1935: counts by contact grow by 148.8 = 100^1.086.
+    // Ten discs have 13 contacts and a thousand have 1935. Counts by contact therefore grow by 148.8 = 100^1.086.
     let contacts = (1935.0_f64 / 13.0).log10() / 2.0;
     let nodes = exponent(|cost| cost.node_updates.unwrap());
     let memory = exponent(|cost| cost.bytes.unwrap());
@@ -38,8 +38,8 @@ fn cost_grows_with_the_number_of_grains_and_no_faster() {
     }
 }
 
-/// A single body has no surface, no pairs and no springs. The run evaluates no contact and takes as much memory as with
-/// one velocity field for all bodies.
+/// A single body has no surface, no pairs and no springs. The run evaluates no contact and takes as much memory as a
+/// run with one velocity field for all bodies.
 #[test]
 fn a_body_by_itself_pays_nothing_for_contact() {
     let text = format!(

@@ -6,7 +6,8 @@ mod support;
 use grainbench_scene::solver::Resolution;
 use support::{collision, column, last, run, scene, try_run};
 
-/// Returns a collision whose left disc is driven, fast enough that the right disc cannot escape; it yields if `yields`.
+/// Returns a collision in which the left disc is driven, so fast that the right disc cannot escape. With `yields`, the
+/// discs yield.
 fn pushed(friction: f64, offset: f64, yields: bool) -> String {
     let speed = 0.01 * 18.0_f64.sqrt();
     let mut text = collision(0.1, friction, offset);
@@ -26,7 +27,7 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
         let start = column(&record, "a.x")[0];
         assert!((last(&record, "a.x") - start - way).abs() < 1e-12, "{name}: {}", last(&record, "a.x"));
         assert!(last(&record, "a.angle").abs() < 1e-12 && (last(&record, "a.vx") - speed).abs() < 1e-14, "{name}");
-        // The pushed disc moves on.
+        // The right disc moves in the direction of the push.
         assert!(last(&record, "b.vx") > 0.0, "{name}: {}", last(&record, "b.vx"));
         let scale = last(&record, "budget.impulse_x");
         let off = last(&record, "budget.momentum_x") - column(&record, "budget.momentum_x")[0] - scale;
@@ -34,7 +35,8 @@ fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
     }
 }
 
-/// A driven grain pushes like a body of infinite mass: in nodal contact, eight times the density and moduli have no effect.
+/// A driven grain pushes like a body of infinite mass. With nodal contact, eight times the density and moduli have no
+/// effect.
 #[test]
 fn the_density_of_a_driven_grain_has_no_effect() {
     let light = pushed(0.5, 0.5, false);
@@ -56,7 +58,7 @@ fn the_density_of_a_driven_grain_has_no_effect() {
 
 #[test]
 fn the_budget_of_a_push_closes() {
-    // Yielding points take the spin of the field around them and lose their own spin energy.
+    // Yielding points take the spin of the velocity field around them and lose their own spin energy.
     for (name, yields, allowed, lost) in [
         ("mpm", false, 2e-3, 0.005),
         ("mpm", true, 2e-3, 0.02),
@@ -100,8 +102,8 @@ fn a_grain_that_yields_says_so() {
     assert_eq!(scene(&pushed(0.5, 0.5, true)).driven[0].grains, [0]);
 }
 
-/// The residual of the budget is of first order in the step. With a quarter of the step less than two fifths remain,
-/// for any contact and material.
+/// The residual of the budget is of first order in the time step. With a quarter of the step, less than two fifths of the
+/// residual remain, for any contact and material.
 #[test]
 fn the_budget_closes_as_the_step_goes_to_zero() {
     for name in ["mpm", "mpm:gap", "mpm:2000", "mpm:no-slip"] {
@@ -117,7 +119,7 @@ fn the_budget_closes_as_the_step_goes_to_zero() {
     }
 }
 
-/// Positions follow the function to rounding; a spin is rejected.
+/// Positions follow the sine to rounding. A spin is rejected.
 #[test]
 fn a_driven_grain_follows_a_sine() {
     let scene_text = |driven: &str| format!("{}[driven.ram]\ngrains = 'a'\n{driven}\n", collision(0.1, 0.0, 0.5));
@@ -130,5 +132,5 @@ fn a_driven_grain_follows_a_sine() {
     }
     assert!((last(&record, "a.y") - y[0]).abs() > 1e-3);
     let refusal = try_run("mpm", |_| (), &scene_text("spin = 1.0"), Resolution::grid(8.0, 2)).unwrap_err().to_string();
-    assert!(refusal.contains("driven grains that turn"), "{refusal}");
+    assert!(refusal.contains("driven grains that rotate"), "{refusal}");
 }

@@ -1,5 +1,5 @@
-//! Tests of runs that stop because of a step that became too long, created energy or an initial overlap. A bar under
-//! tension at rest must not stop.
+//! Tests of runs that stop because the time step became too long, energy was created, or bodies overlap at the start. A
+//! bar at rest under tension must not stop.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod support;
@@ -15,9 +15,9 @@ fn broken(error: RunError) -> SimulationFailure {
     *broken
 }
 
-/// Returns a bar between two fixed ends under an axial tension (E), with ν = 0.
+/// Returns a bar between two fixed ends under an axial tension, in units of E, with ν = 0.
 ///
-/// It vibrates slightly, at .02 m/s or a 3500th of the speed of sound.
+/// The bar vibrates slightly, at .02 m/s or a 3500th of the speed of sound.
 fn bar(tension: f64, duration: f64) -> String {
     format!(
         "dimension = 2\nduration = {duration}\nreference_length = 0.05\n\
@@ -29,8 +29,9 @@ fn bar(tension: f64, duration: f64) -> String {
     )
 }
 
-/// A vibration keeps its energy: kinetic energy exceeds its initial value by at most the 4 % that MUSL creates at the
-/// limit of the step. If points moved with other velocities than the stress update, it would grow a thousandfold.
+/// A vibration keeps its energy. The kinetic energy exceeds its initial value by at most the 4 % that MUSL creates at
+/// the stability limit. If points moved with velocities other than those of the stress update, the energy would grow a
+/// thousandfold.
 #[test]
 fn a_bar_under_tension_rests() {
     for (tension, basis) in [(0.08, Basis::Quadratic), (0.08, Basis::Gimp), (0.0, Basis::Quadratic)] {
@@ -45,8 +46,8 @@ fn a_bar_under_tension_rests() {
     }
 }
 
-/// Under a tension of .3 E a wave is √((1 + λ²)/2) = 1.184 times as fast. The stretch λ = 1.344 follows from
-/// E/2 (λ − 1/λ) = .3 E. A step of .95 h/c is then above the limit, and a step of .4 h/c is not.
+/// Under a tension of .3 E, a wave is √((1 + λ²)/2) = 1.184 times as fast. The stretch λ = 1.344 follows from E/2 (λ −
+/// 1/λ) = .3 E. A time step of .95 h/c is then above the limit, and a step of .4 h/c is not.
 #[test]
 fn a_step_that_becomes_too_long_is_told() {
     let at = |courant| Resolution::Grid { cells: 4.0, points: 3, courant };
@@ -54,14 +55,14 @@ fn a_step_that_becomes_too_long_is_told() {
     let Cause::Stiffened { crossing, at_start } = found.cause else { panic!("{found}") };
     let stretch = 0.3 + (0.09_f64 + 1.0).sqrt();
     let faster = ((1.0 + stretch * stretch) / 2.0).sqrt();
-    // The vibration changes the stretch by .02 m/s over the speed of sound.
+    // The vibration changes the stretch by its .02 m/s divided by the speed of sound.
     assert!((at_start / crossing / faster - 1.0).abs() < 1e-3, "{found}");
     assert!(found.time_step > crossing && found.to_string().contains("is stable"), "{found}");
     assert!(try_run("mpm", |_| (), &bar(0.3, 0.02), at(0.4)).is_ok());
 }
 
-/// Discs with a deep initial overlap would be thrown apart: at .1 R and eight cells per radius, springs strain the
-/// surface by 1.7. A tenth of this overlap is accepted.
+/// Discs with a deep initial overlap would be thrown apart. At an overlap of .1 R and eight cells per radius, springs
+/// strain the surface by 1.7. A tenth of this overlap is accepted.
 #[test]
 fn an_overlap_at_the_start_is_told() {
     let pair = |overlap: f64| {
@@ -84,8 +85,8 @@ fn an_overlap_at_the_start_is_told() {
     assert!(try_run("mpm", |_| (), &pair(0.01), at).is_ok());
 }
 
-/// GIMP with the stress updated last is stable up to .5 h/c and creates energy at .7. A flying and spinning disc breaks
-/// up without a point leaving its cell, and the energy check reports it. At .4 it is stable.
+/// GIMP with the stress updated last is stable up to .5 h/c and creates energy at .7 h/c. A flying and spinning disc
+/// breaks up although no point leaves its cell, and the energy check reports it. At .4 h/c the run is stable.
 #[test]
 fn energy_from_nowhere_is_told() {
     let text = "dimension = 2\nduration = 30.0\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\

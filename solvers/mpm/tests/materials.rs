@@ -14,12 +14,13 @@ const METAL: VonMises = VonMises {
     hardening_modulus: 0.01e9,
 };
 
-/// Converts the displacement gradient H at the middle of a step to the one at its start: H (1 − H/2)⁻¹.
+/// Converts the displacement gradient H at the middle of a step to the gradient at the start of the step, H (1 −
+/// H/2)⁻¹.
 fn at_start(middle: Matrix3<f64>) -> Matrix3<f64> {
     middle * (Matrix3::identity() - middle * 0.5).try_inverse().unwrap()
 }
 
-/// Integrates a state through steps whose displacement gradients at mid-step add up to `strain`.
+/// Integrates a state through steps. Their displacement gradients at mid-step add up to `strain`.
 fn strained(law: impl Law, state: &mut State, strain: Matrix3<f64>, steps: u32) {
     let increment = at_start(strain / f64::from(steps));
     for _ in 0..steps {
@@ -32,7 +33,7 @@ fn equivalent(stress: &Matrix3<f64>) -> f64 {
     (1.5 * deviator.norm_squared()).sqrt()
 }
 
-/// Pure shear e: ε_p = (3G·2e/√3 − Y)/(3G + H).
+/// In pure shear e, the plastic strain is ε_p = (3G·2e/√3 − Y)/(3G + H).
 #[test]
 fn plastic_shear_is_exact() {
     for steps in [10, 100, 1000] {
@@ -45,7 +46,8 @@ fn plastic_shear_is_exact() {
     }
 }
 
-/// Uniaxial strain −e and back: ε_p = (2Ge − Y)/(3G + H), then (2Ge − 2q)/(3G + H) more; σ_xx = −Ke − 2q/3.
+/// Uniaxial strain −e gives ε_p = (2Ge − Y)/(3G + H). The return to zero strain adds (2Ge − 2q)/(3G + H). At −e, σ_xx =
+/// −Ke − 2q/3.
 #[test]
 fn plastic_compression_and_back_is_exact() {
     for steps in [10, 100, 1000] {
@@ -63,7 +65,7 @@ fn plastic_compression_and_back_is_exact() {
     }
 }
 
-/// Simple shear by 2 with the Jaumann rate: the stress follows the hardening without oscillating.
+/// In simple shear by 2 with the Jaumann rate, the stress follows the hardening without oscillating.
 #[test]
 fn large_plastic_shear_does_not_oscillate() {
     let mut state = State::default();
@@ -85,7 +87,7 @@ fn rotation_makes_no_stress() {
     let law = Hypoelastic { bulk_modulus: BULK, shear_modulus: SHEAR };
     let mut state = State { stress: Matrix3::new(1.0, 2.0, 0.0, 2.0, -3.0, 0.0, 0.0, 0.0, 4.0), ..State::default() };
     let before = state.stress;
-    // In each step the rotation is 2 atan(w/2).
+    // The rotation in each step is 2 atan(w/2), with the off-diagonal entry w of the displacement gradient.
     let steps = 1000;
     let rate = 2.0 * (std::f64::consts::PI / f64::from(steps)).tan();
     let rounding = f64::from(steps) * BULK * f64::EPSILON;
@@ -93,7 +95,7 @@ fn rotation_makes_no_stress() {
     assert!((state.stress - before).norm() < rounding);
 }
 
-/// Rotates a stress in equal steps about an axis, with the displacement gradient R − 1 in each.
+/// Returns a stress after a rotation about an axis in equal steps, each with the displacement gradient R − 1.
 fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps: u32) -> Matrix3<f64> {
     let law = Hypoelastic { bulk_modulus: BULK, shear_modulus: SHEAR };
     let rotation = Rotation3::new(axis * (angle / f64::from(steps))).into_inner();
@@ -105,10 +107,10 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     S::embed_symmetric(stress)
 }
 
-/// Rounding error of stress (Pa): about the modulus times the rounding of unit strain, with 250 steps.
+/// Rounding error of stress (Pa) in 250 steps: about the modulus times the rounding error of unit strain in each step.
 const ROUNDING: f64 = 250.0 * BULK * f64::EPSILON;
 
-/// An eighth of a turn rotates the stress, σ' = R σ Rᵀ: σ_xx' = (σ_xx + σ_yy)/2 − σ_xy, σ_yy' the same with +σ_xy,
+/// An eighth of a turn rotates the stress, σ' = R σ Rᵀ: σ_xx' = (σ_xx + σ_yy)/2 − σ_xy, σ_yy' = (σ_xx + σ_yy)/2 + σ_xy,
 /// σ_xy' = (σ_xx − σ_yy)/2. A quarter of a turn would give the same stress in both directions.
 #[test]
 fn an_eighth_of_a_turn_carries_the_stress_along() {
@@ -131,7 +133,7 @@ fn an_eighth_of_a_turn_carries_the_stress_along() {
     }
 }
 
-/// A rotation of any size in a step gives no strain: metal does not yield, and a viscous solid has no stress.
+/// A rotation of any size in a step gives no strain. Metal does not yield, and a viscous solid has no stress.
 #[test]
 fn a_rotation_strains_nothing() {
     let rotation = Rotation3::new(Vector3::new(0.6, -0.48, 0.64) * 0.3).into_inner();
@@ -165,7 +167,8 @@ fn neo_hookean_energy_gives_its_stress() {
     }
 }
 
-/// ρ₀c² of a wave along n is the second derivative of the energy of (1 + ε n ⊗ n) F by ε, for n along each axis.
+/// For a wave along n, ρ₀c² is the second derivative with respect to ε of the energy of (1 + ε n ⊗ n) F. The test uses
+/// n along each axis.
 #[test]
 fn waves_are_as_fast_as_the_energy_says() {
     let law = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
@@ -185,8 +188,8 @@ fn waves_are_as_fast_as_the_energy_says() {
     }
 }
 
-/// The law gives the requested stress for the state under that stress, which has no rotation. Tested are a pressure, a
-/// shear, and stresses of a third of the moduli.
+/// For a given stress, `under_stress` returns a state without rotation from which the law gives the same stress. The
+/// test covers a pressure, a shear, and stresses of a third of the moduli.
 #[test]
 fn a_law_starts_under_any_stress() {
     let rubber = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
@@ -209,15 +212,16 @@ fn a_law_starts_under_any_stress() {
             }
         }
     }
-    // Tension is limited by the moduli, compression is not: no such state exists at fifty times the moduli.
+    // The moduli limit tension but not compression. At a tension of fifty times the moduli no such state exists.
     assert!(rubber.under_stress(&Matrix3::from_diagonal_element(100.0), 3).is_none());
-    // A law with history starts with the given stress, unless it yields at once.
+    // A law with history starts with the given stress, unless this stress exceeds the yield stress.
     let steel = Matrix3::new(0.17e9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     assert_eq!(METAL.under_stress(&steel, 2).unwrap().stress, steel);
     assert!(METAL.under_stress(&(steel * 2.0), 2).is_none());
 }
 
-/// σ − σ_elastic = 2η dev D + ζ tr D 1, and its work on the strain of the step is (2η dev D : D + ζ tr² D) Δt.
+/// The viscous stress is σ − σ_elastic = 2η dev D + ζ tr D 1. Its work on the strain of the step is (2η dev D : D + ζ
+/// tr² D) Δt.
 #[test]
 fn kelvin_and_voigt_add_the_stress_of_a_fluid() {
     let rubber = NeoHookean { lame: 3.0, shear_modulus: 2.0 };

@@ -1,12 +1,12 @@
-//! Tests of moving walls: the friction of a sliding block does not depend on the frame of reference.
+//! Tests that the friction of a block sliding on a moving wall does not depend on the frame of reference.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
 
 use support::{column, run};
 
-/// Returns the change of velocity (m/s) of a block that slides at 1 m/s relative to a wall with tangential velocity
-/// `wall`.
+/// Returns the change of velocity (m/s) of a block that slides at 1 m/s relative to a wall. The wall has the tangential
+/// velocity `wall` (m/s).
 fn braked(solver: &str, wall: f64) -> f64 {
     let text = format!(
         "dimension = 2\nduration = 0.1\ngravity = [0.0, -9.8]\nsettle = {{ duration = 0.3, damping = 60.0 }}\n\
@@ -23,9 +23,9 @@ fn braked(solver: &str, wall: f64) -> f64 {
     velocity[velocity.len() - 1] - velocity[0]
 }
 
-/// Coulomb friction changes the velocity by μ g t = .49 m/s in .1 s in any frame. If a wall at −2 m/s were treated as
-/// at rest, friction on the block, which moves at −1 m/s, would have the opposite sign. Crossing cells in only one of
-/// the frames causes a difference of at most a tenth.
+/// Coulomb friction changes the velocity by μ g t = .49 m/s in .1 s in any frame. With a wall at −2 m/s the block moves
+/// at −1 m/s. If the wall were treated as at rest, friction would have the opposite sign. The block crosses cells in
+/// only one of the frames, which causes a difference of at most a tenth.
 #[test]
 fn a_block_is_braked_alike_in_any_frame() {
     for solver in ["mpm", "mpm:2000", "mpm:2001", "mpm:gap"] {

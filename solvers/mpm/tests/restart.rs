@@ -36,7 +36,7 @@ fn checkpoints(solver: Mpm, text: &str, at: &Resolution, every: u64) -> (String,
     (whole, keeper.kept)
 }
 
-/// A rolling sphere with a short duration.
+/// Returns a short run of a rolling sphere.
 fn sphere() -> String {
     "dimension = 3\nduration = 0.05\ngravity = [3.0, 0.0, -9.0]\n\
      materials.m = { density = 1000.0, bulk_modulus = 6.0e6, shear_modulus = 3.0e6 }\n\
@@ -47,7 +47,7 @@ fn sphere() -> String {
         .to_owned()
 }
 
-/// A collision in which one disc is driven, with its energy budget.
+/// Returns a collision in which one disc is driven, with an energy budget.
 fn driven() -> String {
     format!("{}budget.budget = true\n[driven.ram]\ngrains = 'a'\nvelocity = [0.05, 0.0]\n", collision(0.1, 0.9, 0.5))
 }
@@ -79,7 +79,7 @@ fn a_continued_run_leaves_the_same_bits() {
 }
 
 /// A restart with another scene, setting, resolution or solver is rejected, and the message names the difference. A
-/// truncated file is rejected too.
+/// truncated checkpoint is rejected too.
 #[test]
 fn another_run_and_half_a_file_are_refused() {
     let (text, at) = (collision(0.1, 0.9, 0.5), Resolution::grid(4.0, 2));

@@ -8,7 +8,7 @@ use grainbench_scene::manufactured::Medium;
 use grainbench_scene::solver::{Cause, Resolution, RunError};
 use support::{column, last, run, scene, try_run};
 
-/// A spinning disc or sphere in free fall: the fall is exact to rounding, and the spin is conserved.
+/// A spinning disc or sphere falls freely. The fall is exact to rounding, and the spin is conserved.
 #[test]
 fn free_flight_keeps_momentum() {
     for (dimension, position, velocity, spin, gravity, cells) in [
@@ -28,7 +28,7 @@ fn free_flight_keeps_momentum() {
         assert!((last(&record, height) - fallen).abs() < 1e-12, "{}", last(&record, height));
         let spins = column(&record, spin);
         assert!((spins[0] - 0.3).abs() < 1e-12);
-        // Lumped mass spreads a body over its nodes, and spin is conserved only to that order.
+        // Lumped mass spreads a body over its nodes, so the spin is conserved only to second order in the cell size.
         assert!((last(&record, spin) / 0.3 - 1.0).abs() < 5e-3, "{}", last(&record, spin));
         if dimension == 2 {
             assert!((last(&record, "g.angle") - 0.3).abs() < 2e-3, "{}", last(&record, "g.angle"));
@@ -36,7 +36,7 @@ fn free_flight_keeps_momentum() {
     }
 }
 
-/// Points rotate with their body, also beyond a full turn, and are in the requested snapshots.
+/// Points rotate with their body, also beyond a full turn, and are contained in the requested snapshots.
 #[test]
 fn points_turn_with_their_body() {
     let text = "dimension = 2\nduration = 1.0\n\
@@ -56,7 +56,7 @@ fn points_turn_with_their_body() {
     }
 }
 
-/// Fixed–free bar, ν = 0: period 10 s and mean velocity .063662 cos ωt (exact).
+/// A bar with one fixed and one free end and ν = 0 has the period 10 s and the mean velocity .063662 cos ωt (exact).
 #[test]
 fn a_bar_vibrates_at_its_period() {
     let text = "dimension = 2\nduration = 10.0\nreference_length = 25.0\n\
@@ -111,7 +111,7 @@ fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
     (sum / volume).sqrt()
 }
 
-/// GIMP converges at second order; hat functions stagnate because points cross cells.
+/// GIMP converges at second order. Hat functions stagnate because points cross cells.
 #[test]
 fn manufactured_motion_converges_at_second_order() {
     let order = |basis, points| {
@@ -126,7 +126,7 @@ fn manufactured_motion_converges_at_second_order() {
     assert!(splines > 1.55, "{splines}");
 }
 
-/// Hat functions with the stress updated last fail at any step, with a typed error.
+/// A run with hat functions and the stress updated last fails, with an error that names the cause.
 #[test]
 fn hats_with_stress_last_break_typed() {
     let last = |setting: &mut grainbench_mpm::options::Setting| setting.stress_update = StressUpdate::Last;
@@ -156,9 +156,9 @@ fn what_cannot_be_run_is_refused() {
     assert!(matches!(refused(&incline, Resolution::grid(f64::NAN, 2)), RunError::Resolution { .. }));
 }
 
-/// A thin ring with an initial stretch rate and spin. Its kinetic energy is ½ρ(a² + ω²) π/2 (R⁴ − r⁴), and its angular
-/// momentum ρω π/2 (R⁴ − r⁴). With stretch alone it vibrates with ω² = E/ρR²: after an eighth of the period half of the
-/// energy is elastic.
+/// A thin ring has an initial stretch rate a and spin ω. Its kinetic energy is ½ρ(a² + ω²) π/2 (R⁴ − r⁴), and its
+/// angular momentum ρω π/2 (R⁴ − r⁴). With stretch alone it vibrates with the squared angular frequency E/ρR². After an
+/// eighth of the period, half of the energy is elastic.
 #[test]
 fn a_ring_expands_and_turns_back() {
     let ring = |more: &str, duration: f64| {

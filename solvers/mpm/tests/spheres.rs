@@ -1,4 +1,4 @@
-//! Collisions of two deformable spheres.
+//! Tests of collisions of two deformable spheres.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
@@ -8,12 +8,13 @@ use support::{column, last, run};
 
 const SPEED: f64 = 0.042_426_406_871_192_85;
 
-/// Two equal spheres of radius 1 that approach at .01 c each from a gap (m), with an offset of `offset` each.
+/// Returns two equal spheres of radius 1 that approach at .01 c each from a gap (m), each with an offset of `offset`
+/// (m).
 fn collision(gap: f64, friction: f64, offset: f64) -> String {
     impact(gap, friction, offset, SPEED, 5.0)
 }
 
-/// Two equal spheres at a speed (m/s), for a time `rest` (s) after first contact.
+/// Returns two equal spheres that approach at a speed (m/s) each, for a time `rest` (s) after first contact.
 fn impact(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
     let duration = 0.5 * gap / speed + rest;
@@ -43,7 +44,7 @@ fn energy(record: &Record) -> f64 {
 }
 
 /// In a head-on collision without friction, momentum is conserved to rounding, and no rotation starts. Springs return
-/// their energy; quadratic functions have damping at four cells per radius.
+/// their energy. Quadratic functions dissipate energy at four cells per radius.
 #[test]
 fn spheres_rebound() {
     for (solver, energies, restitutions) in [
@@ -67,7 +68,7 @@ fn own_normals_do_not_keep_momentum_in_space() {
     assert!(momentum_drift(&record) > 1e-3, "{}", momentum_drift(&record));
 }
 
-/// In an off-centre collision spheres hardly rotate without friction, and rotate alike with friction.
+/// In an off-centre collision, spheres hardly rotate without friction. With friction both rotate alike.
 #[test]
 fn friction_turns_spheres() {
     let smooth = run("mpm", &collision(0.1, 0.0, 0.5), 4.0, 2);
@@ -78,9 +79,9 @@ fn friction_turns_spheres() {
     assert!(momentum_drift(&rough) < 1e-12 && energy(&rough) < energy(&smooth));
 }
 
-/// In slow collisions waves cross the spheres many times. The contact time is then Hertz's, 2.94 δ/v, with
-/// δ = (15 m v²/(16 E* √R))^(2/5) (Johnson, Contact Mechanics, §11.4). Here m and R are half of a sphere's mass and
-/// radius, E* = E/(2 (1 − ν²)) with E = 15 and ν = 1/4, and v is the approach velocity.
+/// In slow collisions waves cross the spheres many times. The contact time is then that of Hertz, 2.94 δ/v, with δ =
+/// (15 m v²/(16 E* √R))^(2/5) (Johnson, Contact Mechanics, §11.4). Here m and R are half of a sphere's mass and radius,
+/// E* = E/(2 (1 − ν²)) with E = 15 and ν = 1/4, and v is the approach velocity.
 #[test]
 fn slow_spheres_touch_for_hertz_time() {
     let touch = |softer: f64| {

@@ -7,7 +7,7 @@ use grainbench_scene::solver::Resolution;
 use support::{collision, column, last, try_run};
 
 /// Two viscous discs collide. Their viscous dissipation is part of the damping entry, and the budget closes to first
-/// order in the step. Without viscosity the entry is zero.
+/// order in the time step. Without viscosity the damping entry is zero.
 #[test]
 fn the_budget_of_a_viscous_collision_closes() {
     let budget_error = |viscosity: &str, courant: f64| {

@@ -1,10 +1,10 @@
-//! Interface between the adapter and an engine of either dimension.
+//! Interface between the adapter and the engines rapier2d and rapier3d.
 
 use crate::pairs::Side;
 use crate::settings::Settings;
 use nalgebra::Vector3;
 
-/// Parameters of an engine's steps.
+/// Parameters of the time integration in the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stepping {
     /// Time step Δt (s).
@@ -13,14 +13,13 @@ pub(crate) struct Stepping {
     pub(crate) iterations: usize,
     /// Length unit of rapier's tolerances (m), equal to the mean radius.
     pub(crate) length: f64,
-    /// Unit of mass in the engine (kg). It is a power of two near the mean mass, so that the division by it does not
-    /// round.
+    /// Unit of mass in the engine (kg). It is a power of two near the mean mass, so a division by this unit is exact.
     pub(crate) mass: f64,
-    /// Settings of the method.
+    /// Settings of rapier that a scene does not define.
     pub(crate) settings: Settings,
 }
 
-/// Present centre of a wall, and its rotation since the start.
+/// Current centre of a moving wall and its rotation since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placement {
     /// Index of the wall in the scene.
@@ -44,7 +43,7 @@ pub(crate) struct GrainMotion {
     pub(crate) orientation: f64,
 }
 
-/// A contact that carried load in the last step.
+/// Contact that transmitted a force in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoadedContact {
     /// The two contact partners.
@@ -59,14 +58,14 @@ pub(crate) struct LoadedContact {
     pub(crate) friction: f64,
 }
 
-/// An engine that holds the grains and walls of a scene.
+/// Engine with the grains and walls of a scene.
 pub(crate) trait Engine {
-    /// Takes a step; moving walls are at the positions `walls` at its end.
+    /// Advances the engine by one step. `walls` are the placements of the moving walls at the end of the step.
     fn step(&mut self, walls: &[Placement]);
     /// Returns the state of a grain by its index in the scene.
     fn grain(&self, at: usize) -> GrainMotion;
-    /// Returns the contacts that carried load in the last step.
+    /// Returns the contacts that transmitted a force in the last step.
     fn touches(&self) -> Vec<LoadedContact>;
-    /// Returns the numbers of pairs that were tested for contact in the last step, and of pairs that were solved.
+    /// Returns two numbers of the last step: pairs that were tested for contact, and pairs that were in contact.
     fn counts(&self) -> (u64, u64);
 }

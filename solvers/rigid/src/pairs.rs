@@ -15,7 +15,7 @@ pub(crate) enum Side {
 const WALL: u128 = 1 << 64;
 
 impl Side {
-    /// Returns the number that an engine stores with a shape.
+    /// Returns the number that the engine stores with the shape of this partner.
     pub(crate) const fn tag(self) -> u128 {
         match self {
             Self::Grain(at) => at as u128,
@@ -23,7 +23,7 @@ impl Side {
         }
     }
 
-    /// Returns the partner of a stored number.
+    /// Returns the contact partner with this stored number.
     pub(crate) const fn of_tag(tag: u128) -> Self {
         let at = tag as u64 as usize;
         if tag & WALL == 0 { Self::Grain(at) } else { Self::Wall(at) }
@@ -66,19 +66,21 @@ impl Pairs {
         }
     }
 
-    /// Returns the coefficients of a pair, if the scene has a law for it.
+    /// Returns the coefficients of a pair; `None` if the scene has no law for this pair.
     pub(crate) fn between(&self, one: Side, other: Side) -> Option<Coefficients> {
         let ((a, inverse_a), (b, inverse_b)) = (self.side(one), self.side(other));
         let law = self.laws[usize::from(a) * self.materials + usize::from(b)].as_ref()?;
         Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
     }
 
-    /// Returns the coefficients if all pairs of the scene have the same, otherwise `None`.
+    /// Returns the coefficients if all pairs of the scene have the same coefficients, otherwise `None`. The result is
+    /// also `None` if there are more than [`MOST_KINDS`] kinds of grains.
     pub(crate) fn shared(&self) -> Option<Coefficients> {
         let mut kinds: Vec<(u16, f64)> = self.grains.clone();
         kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         kinds.dedup();
-        // With many sizes and damping some pair differs, and comparing all pairs has quadratic cost.
+        // With many different masses and damping, some pairs have different coefficients. A comparison of all pairs
+        // would have quadratic cost.
         if kinds.len() > MOST_KINDS {
             return None;
         }
@@ -97,14 +99,14 @@ impl Pairs {
     }
 }
 
-/// Maximum number of kinds of grains, by material and mass, for which pairs are compared.
+/// Maximum number of kinds of grains, distinguished by material and mass, for which pairs are compared.
 const MOST_KINDS: usize = 16;
 
 /// Returns the coefficient of restitution of the spring and dashpot of a law: e = exp(−πζ/√(1−ζ²)).
 ///
 /// ζ is the law's own damping ratio plus, for linear springs, c/(2√(k_n m)) with c = β k_n + γ_n m and the effective
-/// mass m of the pair. The dashpot may pull until the overlap is zero. The result is 1 without damping, and 0 from
-/// critical damping on.
+/// mass m of the pair. The contact lasts until the overlap is zero, so its force may be tensile at the end. Without
+/// damping e is 1; with critical or larger damping it is 0.
 fn restitution(law: &ContactLaw, mass: f64) -> f64 {
     let viscosity = law.stiffness_damping * law.normal_stiffness() + law.normal_damping * mass;
     let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()) };
@@ -129,7 +131,7 @@ mod tests {
 
     #[test]
     fn restitution_of_a_damping_ratio() {
-        // With k m* = 1, ζ = c/2.
+        // With k m* = 1 (m*: effective mass), ζ = c/2.
         let springs = Springs::Linear { normal: 2.0, tangential: 0.0 };
         let law = ContactLaw { springs, normal_damping: 0.4, ..ContactLaw::default() };
         let expected = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();

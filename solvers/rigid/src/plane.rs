@@ -43,7 +43,8 @@ fn shear(normal: Vector, component: rapier::math::TangentImpulse<f64>) -> Vector
     embedded(Vector::new(-push.y, push.x)) * component.x
 }
 
-/// Returns a finite wall about its origin. The contact point of a ball is the wall's nearest point, on either side.
+/// Returns the collider of a segment, relative to `origin`; `None` for other shapes. A ball on either side touches the
+/// nearest point of the segment.
 fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     match shape {
         WallShape::Segment { ends } => {

@@ -1,17 +1,17 @@
 //! Settings of rapier that a scene does not define.
 
-/// Settings of the method, with the defaults of rapier; tests change them to study their influence.
+/// Settings of rapier. The default values are those of rapier, and tests change them to study their influence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// True if a contact that has moved little keeps its contact points from an earlier step.
     ///
-    /// This is rapier's default, but it never applies to pairs whose coefficients are set by a hook.
+    /// True is rapier's default. Contacts whose coefficients are set by a hook never keep their contact points.
     pub recycling: bool,
     /// Natural frequency (Hz) of the correction towards zero overlap between two grains.
     pub frequency: f64,
-    /// Natural frequency (Hz) of the correction between a grain and a fixed wall.
+    /// Natural frequency (Hz) of the correction towards zero overlap between a grain and a fixed wall.
     pub wall_frequency: f64,
-    /// Damping ratio of the correction.
+    /// Damping ratio of both corrections towards zero overlap.
     pub damping_ratio: f64,
 }
 

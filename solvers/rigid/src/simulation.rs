@@ -1,4 +1,4 @@
-//! Simulation of one scene. It steps an engine, moves walls, detects failures and observes the state.
+//! Simulation of one scene. It steps an engine, moves walls, detects failures and reports the state.
 
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
@@ -13,14 +13,14 @@ const AT_LIMIT: f64 = 1.0 - 1e-9;
 
 /// Largest rotation in a step (rad) of a grain that spins in place on a contact.
 ///
-/// The engine rotates the contact points with the grain, and beyond this angle friction is lost. For a disc on a floor
-/// at 100 to 31,600 rad/s, rapier gave half of μ g t at .066 rad and more. It gave all of μ g t within 1 % at .02 rad
-/// and less.
+/// The engine rotates the contact points with the grain. Beyond this angle a part of the friction impulse is missing. A
+/// disc that spins on a floor should reach the velocity μ g t. For spins of 100 to 31,600 rad/s, rapier gave half of
+/// this velocity at .066 rad per step and more. At .02 rad per step and less it was right within 1 %.
 const LARGEST_TURN: f64 = 0.05;
 /// Ratio of surface speed to speed of the centre above which a grain counts as spinning in place.
 const IN_PLACE: f64 = 10.0;
 
-/// Engine with the scene, the walls and the output data of a run.
+/// Scene, engine and current state of a run.
 pub(crate) struct Simulation<'a> {
     scene: &'a Scene,
     stepping: Stepping,
@@ -30,7 +30,7 @@ pub(crate) struct Simulation<'a> {
     /// Rotation in the plane since the start, including full turns (rad).
     angles: Vec<f64>,
     step: u64,
-    /// Cost so far, without wall time.
+    /// Work counters since the start.
     pub(crate) cost: Counts,
 }
 
@@ -61,7 +61,8 @@ impl<'a> Simulation<'a> {
     /// Takes a step.
     ///
     /// # Errors
-    /// When the state of a grain is not finite, it has moved so far that contacts may be missed, or it spins too fast.
+    /// When the state of a grain is not finite, or a grain moves so far that contacts may be missed. Also when a grain
+    /// that spins in place on a contact rotates by more than [`LARGEST_TURN`].
     pub(crate) fn advance(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.step += 1;
         let time = self.time();
@@ -117,16 +118,16 @@ impl<'a> Simulation<'a> {
             // Rigid contacts have no critical time step.
             critical: f64::INFINITY,
             advice: match cause {
-                Cause::Runaway { .. } => format!("{:.0} times as many substeps would do", (moved / radius).ceil()),
+                Cause::Runaway { .. } => format!("{:.0} times as many substeps are enough", (moved / radius).ceil()),
                 Cause::Spun { turned } => {
-                    format!("{:.0} times as many substeps would do", (turned / LARGEST_TURN).ceil())
+                    format!("{:.0} times as many substeps are enough", (turned / LARGEST_TURN).ceil())
                 }
                 _ => "more substeps may help".to_owned(),
             },
         }))
     }
 
-    /// Returns the current observation. Forces are impulses of the last step divided by its length.
+    /// Returns the current state. Forces are impulses of the last step divided by the time step.
     pub(crate) fn look(&self) -> StepState {
         let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
         let mut contacts: Vec<ContactState> =
@@ -194,7 +195,8 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns a contact as seen from its grain, or from the grain with the lower index, with the current overlap.
+    /// Returns the state of a contact with the current overlap, or `None` for two walls. The forces act on the grain;
+    /// between two grains, they act on the grain with the lower index.
     fn contact(&self, touch: &LoadedContact, walls: &[WallShape]) -> Option<ContactState> {
         let (grain, other, sign) = match touch.sides {
             [Side::Grain(a), Side::Grain(b)] if a > b => (b, Side::Grain(a), -1.0),
@@ -277,8 +279,8 @@ mod tests {
         }
     }
 
-    /// Forces on grains and walls do not depend on the side that the engine names first. They are opposite on the two
-    /// sides.
+    /// The forces on grains and walls do not depend on which contact partner the engine lists first. The forces on the
+    /// two partners are opposite.
     #[test]
     fn a_contact_is_the_same_from_both_sides() {
         let text = "title = 't'\ndimension = 2\nduration = 1.0\nlargest_initial_overlap = 0.3\nmaterials.m.density = 1.0\n\

@@ -51,10 +51,11 @@ fn shear(normal: Vector, components: rapier::math::TangentImpulse<f64>) -> Vecto
     first * components.x + push.cross(&first) * components.y
 }
 
-/// Returns a finite wall about its origin, as a cuboid of zero thickness.
+/// Returns the collider of a rectangle, relative to `origin`; `None` for other shapes. The collider is a cuboid of zero
+/// thickness.
 ///
 /// The contact point of a ball is the nearest point of the cuboid, and thus of the rectangle. Two triangles would give
-/// two contacts on their common edge; a finite thickness would move the surface or the edges.
+/// two contacts on their common edge. A finite thickness would move the surface or the edges.
 fn finite(shape: &WallShape, origin: Vector3<f64>) -> Option<ColliderBuilder> {
     match shape {
         WallShape::Rectangle { corner, edges: [u, v] } => {

@@ -1,4 +1,4 @@
-//! rapier as a solver, with its input, the unsupported scenes, and the record of a run.
+//! Solver `rigid`: its conformance properties, its time steps, and its runs with rapier.
 
 use crate::engine::Stepping;
 use crate::limits;
@@ -10,15 +10,17 @@ use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Observer, Resolution, RunError, Solver, beyond_run};
 use grainbench_scene::terms::{Limitation, Terms};
 
-/// Version of rapier.
+/// Version of rapier and type of its numbers, as stated in records.
 const RAPIER: &str = "rapier 0.36, f64";
 
 /// Maximum number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 1000;
 
-/// Reason why a grain between walls that press on it does not follow them.
-const PRESSED: &str = "walls that press on a rigid grain from both sides overlap it, and nothing shares the load: impulses push \
-                       the overlap out on one side and then on the other, and friction turns the grain with them";
+/// Reason for the limitations of the property `objectivity`: a grain that is compressed between walls does not follow
+/// the motion of the walls.
+const PRESSED: &str = "walls that press on a rigid grain from both sides overlap it, and the load between them is \
+                       undetermined: impulses remove the overlap on one side and then on the other, and their friction \
+                       rotates the grain";
 
 /// Solver `rigid`, which runs scenes with rapier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,26 +30,28 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    /// Conformance properties, with the weaker limits of the engine.
+    /// Conformance properties, with the limitations of the engine.
     pub const TERMS: Terms = Terms::at(Resolution::substeps(8)).owing_less(&[
         Limitation {
             property: "momentum",
             quantity: "angular",
             at_most: 1e-3,
-            because: "points of contact are fixed on the grains for a step and turn with them: the two impulses of a contact \
-                      act at points that part by about v Δt",
+            because: "contact points are fixed to the grains for a step and rotate with them: the two impulses of a \
+                      contact act at points that separate by about v Δt",
         },
         Limitation {
             property: "galilean-invariance",
             quantity: "",
             at_most: 1e-9,
-            because: "tolerances of the engine are absolute lengths and speeds, which a moving frame meets elsewhere",
+            because: "tolerances of the engine are absolute lengths and speeds, which act differently in a moving \
+                      frame",
         },
         Limitation {
             property: "rotation-invariance",
             quantity: "",
             at_most: 1e-9,
-            because: "tolerances of the engine are absolute lengths and speeds, which a turned scene meets elsewhere",
+            because: "tolerances of the engine are absolute lengths and speeds, which act differently in a rotated \
+                      scene",
         },
         Limitation {
             property: "permutation",
@@ -60,7 +64,7 @@ impl Rigid {
             property: "free-flight",
             quantity: "",
             at_most: 1e-12,
-            because: "spins are turned to and from the engine's units at every step, which rounds them once more",
+            because: "spins are converted to the units of the engine and back in each step, which adds rounding",
         },
         Limitation { property: "objectivity", quantity: "place", at_most: 0.1, because: PRESSED },
         Limitation { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
@@ -96,7 +100,7 @@ impl Rigid {
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.unsupported("its duration is a number of calculation cycles".to_owned()));
         };
-        // The number of steps is whole; the tolerance prevents rounding from adding a step.
+        // The number of steps is rounded up. The tolerance prevents rounding errors from adding a step.
         let steps = (time / step * (1.0 - 1e-12)).ceil().max(1.0) * f64::from(substeps);
         if let Some(refusal) = beyond_run(scene, time / steps, steps) {
             return Err(error(refusal));
@@ -104,7 +108,7 @@ impl Rigid {
         Ok((time / steps, steps as u64, iterations as usize))
     }
 
-    /// Returns a description of the settings.
+    /// Returns a description of engine, settings, units and coefficients.
     fn words(&self, scene: &Scene, stepping: &Stepping) -> Vec<String> {
         let Settings { recycling, frequency, wall_frequency, damping_ratio } = self.settings;
         let shared = crate::pairs::Pairs::from_scene(scene).shared();

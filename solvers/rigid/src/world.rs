@@ -45,8 +45,8 @@ pub(crate) struct World {
 impl World {
     pub(crate) fn new(scene: &Scene, pairs: Pairs, stepping: &Stepping) -> Self {
         let shared = pairs.shared();
-        // If all pairs have the same coefficients, these are set on the shapes, as is usual for rapier. Otherwise they
-        // are set pair by pair.
+        // If all pairs have the same coefficients, the shapes store them, as is usual with rapier. Otherwise a hook
+        // sets the coefficients of each pair.
         let with_coefficients = |builder: ColliderBuilder, side: Side| {
             let builder = builder.density(0.0).user_data(side.tag());
             match shared {
@@ -68,7 +68,7 @@ impl World {
                 .translation(vector(grain.position))
                 .linvel(vector(grain.velocity))
                 .angvel(spin(grain.spin))
-                // rapier treats masses above 1e20 as infinite.
+                // rapier treats masses above 1e20 as infinite, so masses are in units near the mean mass.
                 .additional_mass_properties(mass_properties(grain.mass / stepping.mass, grain.inertia / stepping.mass))
                 .linear_damping(scene.global_damping)
                 .angular_damping(scene.global_damping)
@@ -102,7 +102,8 @@ impl World {
     }
 }
 
-/// Returns rapier's defaults, except for values that depend on units, limit velocities, or belong to the scene.
+/// Returns the integration parameters: rapier's defaults, except for values that depend on units, limit velocities, or
+/// are given by `stepping`.
 fn parameters(stepping: &Stepping) -> IntegrationParameters {
     let settings = &stepping.settings;
     let softness =
@@ -133,7 +134,7 @@ impl Engine for World {
     }
 
     fn grain(&self, at: usize) -> GrainMotion {
-        // A missing body, which rapier itself never causes, is reported as not finite.
+        // rapier never removes a body. A missing body would have the state NaN, which is reported as not finite.
         let gone = Vector3::repeat(f64::NAN);
         self.world.bodies.get(self.grains[at]).map_or(
             GrainMotion { position: gone, velocity: gone, spin: gone, orientation: 0.0 },

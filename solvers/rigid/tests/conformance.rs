@@ -1,4 +1,4 @@
-//! Conformance properties, with the weaker limits of a rigid-body engine.
+//! Test of the conformance properties of rapier, with its limitations.
 
 use grainbench_harness::conformance::failures;
 use grainbench_rigid::solver::Rigid;

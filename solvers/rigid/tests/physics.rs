@@ -50,7 +50,7 @@ fn slope(angle_deg: f64, friction: f64) -> Scene {
     let mut scene = scene(&format!("{GRAIN}{plane}"));
     let (sine, cosine) = angle_deg.to_radians().sin_cos();
     scene.gravity = Vector3::new(9.8 * sine, -9.8 * cosine, 0.0);
-    // Damping of real contacts: e = .16.
+    // Damping with a coefficient of restitution e = .16.
     let damping = (1e6 / scene.grains[0].mass).sqrt();
     scene.change_laws(|law| (law.friction, law.normal_damping) = (friction, damping));
     scene.duration = grainbench_scene::scene::Duration::Seconds(1.0);
@@ -68,7 +68,7 @@ fn free_flight_is_symplectic_euler() {
         let record = run(&scene, substeps);
         assert!((last(&record, "g.vy") - (2.0 - 4.9)).abs() < 1e-12);
         assert_eq!(last(&record, "g.omega"), 3.0);
-        // In a small step h rapier rotates by atan(Ωh).
+        // In a small step h rapier rotates the grain by atan(Ωh) instead of Ωh.
         assert!((last(&record, "g.angle") - 1.5).abs() < 1e-4);
         assert!((last(&record, "g.x") - 0.5).abs() < 1e-12);
         let small = record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS);
@@ -84,7 +84,7 @@ fn whole_turns_are_counted() {
     let mut scene = scene(GRAIN);
     scene.grains[0].spin.z = -50.0;
     assert!((last(&run(&scene, 16), "g.angle") + 25.0).abs() < 0.02);
-    // More than half a turn in a step: in each of its small steps h rapier turns by atan Ωh, with Ωh = 1.2.
+    // The grain rotates by more than half a turn in a step: in each small step h by atan(Ωh), with Ωh = 1.2.
     let steps = f64::from(Resolution::RIGID_ITERATIONS);
     let step = run(&scene, 1).provenance.time_step;
     scene.grains[0].spin.z = -1.2 * steps / step;
@@ -140,7 +140,7 @@ fn elastic_impact_exchanges_velocities() {
 
 #[test]
 fn restitution_is_that_of_each_pair() {
-    // The masses differ, so that the pairs have no common value and each pair must use its own.
+    // The masses differ, so pairs of these kinds of grains have no common coefficient and each pair must use its own.
     let mut scene = scene(PAIR);
     scene.grains[1].mass *= 3.0;
     scene.change_laws(|law| law.normal_damping = 20.0);
@@ -151,7 +151,7 @@ fn restitution_is_that_of_each_pair() {
     scene.walls.clear();
     let record = run(&scene, 4);
     assert!(((last(&record, "b.vx") - last(&record, "a.vx")) / 3.0 - expected).abs() < 1e-12);
-    // A distant third grain of another mass makes the pairs differ.
+    // A third grain of another mass, far away, must not change the result.
     let mut third = scene.grains[0];
     third.position = Vector3::new(0.0, 50.0, 0.0);
     third.mass *= 2.0;
@@ -163,7 +163,7 @@ fn restitution_is_that_of_each_pair() {
 
 #[test]
 fn two_impacts_in_one_step_do_not_keep_energy() {
-    // Single elastic impacts conserve energy to rounding; here a disc collides with two others at once.
+    // Single elastic impacts conserve energy up to rounding errors. Here a disc collides with two discs at once.
     let mut scene = scene(PAIR);
     let mut third = scene.grains[1];
     scene.grains[1].position = Vector3::new(1.0, 1.001, 0.0);
@@ -198,14 +198,14 @@ fn contact_forces_are_those_of_the_slope() {
     let weight = snapshot.grains[0].mass * 9.8;
     assert_eq!((contact.grain, contact.partner, contact.slipping), (1, Partner::Wall(0), false));
     assert!((contact.normal_force / (weight * 30_f64.to_radians().cos()) - 1.0).abs() < 1e-9);
-    // The friction force points up the slope, F = m g_t/3.
+    // The friction force points up the slope: F = m g_t/3, with the component g_t of gravity along the slope.
     assert!((contact.shear_force.x / (-weight * 30_f64.to_radians().sin() / 3.0) - 1.0).abs() < 1e-3);
     assert!((contact.normal - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
     assert!((snapshot.walls[0].force.unwrap() + snapshot.grains[0].force.unwrap()).norm() < 1e-9);
     assert!(run(&slope(60.0, 0.3), 16).snapshots.last().unwrap().told_contacts()[0].slipping);
 }
 
-/// The overlap at rest is that of a spring with the wall's frequency, for any step.
+/// The overlap at rest is that of a spring with the natural frequency of walls, whatever the time step.
 #[test]
 fn overlap_at_rest_is_a_setting_of_the_method() {
     let overlap = |frequency: f64, substeps| {
@@ -220,15 +220,15 @@ fn overlap_at_rest_is_a_setting_of_the_method() {
     }
 }
 
-/// The contact point is fixed on the grain for a step: for a fast rotating grain, smaller steps help and more
-/// iterations do not.
+/// The contact point is fixed on the grain for a step. For a grain that rotates fast, smaller steps reduce the error,
+/// but more iterations do not.
 #[test]
 fn lift_off_depends_on_the_step_and_not_on_the_iterations() {
     let fall = |substeps, iterations| {
         let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps, iterations };
         let record = Rigid::new().run(&slope(60.0, 0.3), &resolution, &mut ()).unwrap();
         let exact = 9.8 * (60_f64.to_radians().sin() - 0.3 * 60_f64.to_radians().cos());
-        // The missing friction impulse is μ m |v_n|.
+        // The missing friction impulse is μ m |v_n|, with the normal velocity v_n at the end.
         let (v, fall) = (last(&record, "g.vx"), last(&record, "g.vy"));
         assert!((v - exact + 0.3 * fall).abs() < 1e-9, "{substeps} {iterations}: {v} {exact} {fall}");
         -fall
@@ -237,7 +237,8 @@ fn lift_off_depends_on_the_step_and_not_on_the_iterations() {
     assert!(fall(16, 4).abs() < 1e-9);
 }
 
-/// An elastic contact never comes to rest: a grain that lifts off bounces, and more friction is missing.
+/// With an elastic contact (e = 1) a grain that lifts off bounces, so more of the friction impulse is missing than with
+/// damping.
 #[test]
 fn elastic_contacts_bounce_where_others_lift_off() {
     let error = |damping: f64| {
@@ -254,12 +255,12 @@ fn backspin_ends_in_rolling() {
     let mut scene = slope(0.0, 0.5);
     scene.grains[0].spin.z = -10.0;
     let record = run(&scene, 16);
-    // v = RΩ/3
+    // Rolling speed v = RΩ/3 from the initial spin Ω.
     assert!((last(&record, "g.vx") / (0.5 * 10.0 / 3.0) - 1.0).abs() < 5e-5);
     assert!((last(&record, "g.omega") / (-10.0 / 3.0) - 1.0).abs() < 2e-4);
 }
 
-/// A plane that moves tangentially, like a belt, drags a disc until both have the same velocity.
+/// A plane that moves tangentially, like a belt, drags a disc until the slip ends.
 #[test]
 fn a_moving_wall_drags_a_disc() {
     let mut scene = slope(0.0, 0.5);
@@ -270,7 +271,7 @@ fn a_moving_wall_drags_a_disc() {
         stop: grainbench_scene::motion::Moment::Never,
     };
     scene.walls[0].motion.phases.push(phase);
-    // Slip ends when v − ΩR equals the belt speed: v = iV/(1 + i) = V/3.
+    // The slip ends when v − ΩR equals the belt speed V. Then v = iV/(1 + i) = V/3, with i = 1/2 for a disc.
     assert!((last(&run(&scene, 16), "g.vx") - 1.0 / 3.0).abs() < 1e-3);
     // A plane that moves along its normal, like a lift, ends at the exact position.
     scene.walls[0].motion.phases[0].velocity = Vector3::new(0.0, 0.5, 0.0);
@@ -303,7 +304,7 @@ fn finite_walls_are_hit_on_both_sides_and_missed_beside() {
             assert!((flat(text, -1.0, 3.0, x) + 3.0).abs() < 1e-9);
         }
         assert_eq!(flat(text, 1.0, -3.0, 2.6), -3.0);
-        // A wall that turns slowly about a centre far from the origin is where its file has it.
+        // A wall that rotates slowly about a centre far from the origin stays at its position in the scene.
         let turning = text
             .replace("[-2.0, 0.0], [2.0, 0.0]", "[4.0, 0.0], [8.0, 0.0]")
             .replace("corner = [-2.0, -2.0, 0.0]", "corner = [4.0, -2.0, 0.0]");
@@ -395,8 +396,8 @@ fn a_rerun_gives_the_same_bits() {
 }
 
 /// A plane in contact with a grain at rest moves along its normal and pushes the grain without a rebound. After n steps
-/// the displacement of the grain is V n Δt, less at most V Δt/4 because it rests during the first of the small steps. A
-/// plane that started a step late, or was 1 % slower, would cause a larger difference.
+/// of Δt, the displacement of the grain differs from V n Δt by less than V Δt/4, because the grain rests only during
+/// the first of the four small steps. A plane that starts one step late, or is 1 % slower, causes a larger difference.
 #[test]
 fn a_pushed_grain_goes_as_far_as_its_wall() {
     for (dimension, position, along) in

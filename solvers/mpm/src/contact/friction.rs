@@ -1,8 +1,8 @@
-//! Friction of springs, which is the tangential force on a surface tracer that penetrates another surface.
+//! Friction of contact springs: the tangential force on a surface tracer that penetrates another surface.
 //!
 //! A tangential spring is displaced by the slip and limited by Coulomb friction (Cundall & Strack 1979): F_s = −k s,
-//! |F_s| ≤ μ k g. Here s is the tangential spring displacement (m), g the depth (m) and k the stiffness of the
-//! tracer's springs (N/m).
+//! |F_s| ≤ μ k g. Here s is the tangential spring displacement (m), g the depth (m) and k the stiffness of the tracer's
+//! springs (N/m).
 
 use super::ContactPartner;
 use crate::off::AbsentEffect;
@@ -16,16 +16,16 @@ pub(crate) struct Overlap<S: Space> {
     pub(crate) depth: f64,
     /// Outward unit normal of the penetrated body.
     pub(crate) normal: S::Vector,
-    /// Stiffness k of its springs (N/m).
+    /// Stiffness k of the tracer's springs (N/m).
     pub(crate) stiffness: f64,
-    /// Displacement relative to the other surface in the step (m).
+    /// Displacement of the tracer relative to the penetrated surface in the step (m).
     pub(crate) slip: S::Vector,
     /// Coefficient of friction μ.
     pub(crate) friction: f64,
 }
 
 impl<S: Space> Overlap<S> {
-    /// Returns the component of a vector along the surface.
+    /// Returns the component of a vector parallel to the surface.
     #[inline(always)]
     fn along(&self, vector: S::Vector) -> S::Vector {
         vector - self.normal * S::dot(vector, self.normal)
@@ -44,8 +44,8 @@ pub(crate) struct Shear<S: Space> {
 }
 
 impl<S: Space> Shear<S> {
-    /// Computes the tangential force −k s after a further `slip`, limited to μ times the normal force, and the new
-    /// spring displacement.
+    /// Computes the new spring displacement and the tangential force −k s after a further `slip`. The force is limited
+    /// to μ times the normal force.
     #[inline(always)]
     fn new(stretch: S::Vector, overlap: &Overlap<S>) -> Self {
         let Overlap { depth, stiffness, slip, friction, .. } = *overlap;
@@ -60,9 +60,10 @@ impl<S: Space> Shear<S> {
         }
     }
 
-    /// Returns the frictional work in the step (J): the mean spring force times the sliding displacement of its end.
+    /// Returns the frictional work in the step (J): the mean spring force times the sliding displacement of the
+    /// spring's end.
     ///
-    /// The sliding displacement is the slip less the change of the spring displacement.
+    /// The sliding displacement is the slip minus the change of the spring displacement.
     #[inline(always)]
     pub(crate) fn rubbed(&self, overlap: &Overlap<S>) -> f64 {
         let [before, after] = self.stretch;
@@ -79,7 +80,8 @@ impl<S: Space> Shear<S> {
 
     /// Returns the spring energy at the end of the step (J), when points and stresses are observed.
     ///
-    /// Forces are those at the beginning of the step. A slipping spring stores no more energy.
+    /// Spring forces belong to the beginning of the step. A spring that slips stays at the Coulomb limit, so its
+    /// displacement changes in proportion to the depth. A spring that sticks is displaced by the slip.
     #[inline(always)]
     pub(crate) fn energy_ahead(&self, overlap: &Overlap<S>) -> f64 {
         let Overlap { depth, normal, stiffness, slip, .. } = *overlap;
@@ -91,7 +93,7 @@ impl<S: Space> Shear<S> {
     }
 }
 
-/// Friction of tracer springs, or its absence.
+/// Friction of tracer springs. [`AbsentEffect`] is the implementation without friction.
 pub(crate) trait Tangential<S: Space> {
     /// True if tangential forces exist.
     const ACTIVE: bool;
@@ -102,7 +104,7 @@ pub(crate) trait Tangential<S: Space> {
 impl<S: Space> Tangential<S> for AbsentEffect {
     const ACTIVE: bool = false;
 
-    /// Returns no force. Surfaces slip wherever they move along each other.
+    /// Returns no force. Surfaces slip if they move along each other.
     #[inline(always)]
     fn respond(&mut self, _tracer: usize, _other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
         let along = overlap.along(overlap.slip);
@@ -118,15 +120,16 @@ const AT_ONCE: usize = 4;
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Spring<S: Space> {
-    /// Body or wall at the other end.
+    /// Contact partner of the tracer.
     other: ContactPartner,
-    /// Number of the evaluation at which it was last in contact.
+    /// Number of the evaluation at which the spring was last in contact.
     stamp: u64,
     /// Tangential spring displacement (m).
     stretch: S::Vector,
 }
 
-/// Tangential springs of all tracers. A spring without contact at the last evaluation is reset.
+/// Tangential springs of all tracers. A spring that had no contact at the previous evaluation restarts at zero
+/// displacement.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Coulomb<S: Space> {
@@ -179,12 +182,12 @@ pub(crate) enum Friction<S: Space> {
 }
 
 impl<S: Space> Friction<S> {
-    /// Returns the friction of a number of tracers; it is absent unless it `acts`.
+    /// Creates the tangential springs of a number of tracers if friction `acts`, otherwise none.
     pub(crate) fn new(acts: bool, tracers: usize) -> Self {
         if acts { Self::Present(Coulomb::new(tracers)) } else { Self::Absent }
     }
 
-    /// Starts an evaluation.
+    /// Starts a new evaluation of all contacts.
     pub(crate) const fn begin(&mut self) {
         if let Self::Present(springs) = self {
             springs.now += 1;
@@ -199,7 +202,7 @@ impl<S: Space> Friction<S> {
         }
     }
 
-    /// Returns true if both frictions are absent, or both have the same number of tracers.
+    /// Returns true if friction is absent in both, or if both have springs for the same number of tracers.
     pub(crate) const fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Absent, Self::Absent) => true,
@@ -223,7 +226,7 @@ mod tests {
         Tangential::respond(&mut &mut *springs, 0, ContactPartner::Wall(0), &overlap).force.x
     }
 
-    /// A spring keeps its displacement only during contact. After a hop it starts at zero.
+    /// A spring keeps its displacement only during contact. After an evaluation without contact it restarts at zero.
     #[test]
     fn a_hop_leaves_no_stretch() {
         let mut friction = Friction::<Plane>::new(true, 1);
@@ -231,7 +234,7 @@ mod tests {
             (true, 1e-3, -0.2),
             (true, 1e-3, -0.4),
             (true, 0.0, -0.4),
-            // One evaluation without contact, and the first evaluation after it.
+            // An evaluation without contact, and the first evaluation after it.
             (false, 0.0, f64::NAN),
             (true, 0.0, 0.0),
             (true, -1e-3, 0.2),
@@ -257,8 +260,8 @@ mod tests {
         }
     }
 
-    /// A slipping tracer has the force μ k g, independent of the displacement: μ 200 · .01 N. The force is proportional
-    /// to μ, so an increase of μ by two thousandths increases the force by the same ratio.
+    /// A slipping tracer has the force μ k g = μ · 200 N/m · .01 m, independent of the displacement. The force is
+    /// proportional to μ, so an increase of μ by two thousandths increases the force by the same ratio.
     #[test]
     fn what_slips_feels_the_coefficient_of_friction() {
         for coefficient in [0.3, 0.3 * 1.002] {

@@ -1,20 +1,21 @@
 //! Surface shape functions, which interpolate between a point on a body's surface and the nodes with mass around it.
 //!
-//! Forces on a surface act on nodes, and tracers follow nodes, with weights of the basis functions. In strong plastic
+//! Basis functions are the weights with which surface forces act on nodes and tracers follow nodes. In strong plastic
 //! flow a grain may be stretched to three times its length, and its points are then a cell and a half apart. A node can
 //! have half of the weight at a tracer but a thousandth of the mass of other nodes. An unlimited force would accelerate
-//! this node without bound, and it would drag the surface along. The weight of a node is therefore limited by its mass.
+//! this node without bound, and the node would drag the surface along. The weight of a node is therefore limited by its
+//! mass.
 
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::transfer::Part;
 use grainbench_scene::space::Space;
 
-/// Upper limit of w² of a node, relative to its mass over the mass of a full cell.
+/// Upper limit of w² m_cell/m for a node, with weight w, mass m and the mass m_cell of a full cell.
 ///
-/// An impulse on a surface changes the velocity there by Σ w²/m, which is 1 to 2 (per mass of a cell) where a surface
-/// is well sampled. There the limit affects only nodes with hardly any mass, which have small weights anyway. Rolling,
-/// impacts and presses change in the fourth digit.
+/// A unit impulse on a surface changes the velocity there by Σ w²/m. If the surface is well sampled, this sum is
+/// 1/m_cell to 2/m_cell. The limit then affects only nodes with hardly any mass, which have small weights anyway. It
+/// changes results for rolling, impact and compression in the fourth digit.
 const MOST: f64 = 4.0;
 
 /// Computes the weight limit of every node of a window from its mass (kg): √(4 m/m_cell).
@@ -38,7 +39,8 @@ pub(crate) struct SurfaceShapeFunction<S: Space> {
 }
 
 impl<S: Space> SurfaceShapeFunction<S> {
-    /// Creates the interpolation at `position`, or returns `None` if there is no mass nearby. Nodes hold momenta.
+    /// Creates the interpolation at `position`, or returns `None` if there is no mass nearby. The nodes must contain
+    /// momenta instead of velocities.
     #[inline(always)]
     pub(crate) fn new<B: Basis>(
         lattice: &Lattice,
@@ -90,12 +92,12 @@ mod tests {
 
     #[test]
     fn a_node_counts_by_its_function_until_it_has_hardly_any_mass() {
-        // A surface halfway between two nodes, and one on a node: the outer nodes have a sixth and a forty-eighth of
-        // the mass of a cell.
+        // Weights of quadratic functions at a surface halfway between two nodes, and at a surface on a node. In these
+        // cases, the outer nodes have a sixth and a forty-eighth of the mass of a cell.
         for (weight, mass) in [(0.5, CELL / 6.0), (0.75, 0.5 * CELL), (0.125, CELL / 48.0)] {
             assert!(weight < most(mass));
         }
-        // For smaller masses the limit acts, so that w²/m does not exceed its bound.
+        // For smaller masses the limit acts, and w² m_cell/m equals its upper limit.
         for mass in [0.1, 1e-6] {
             assert!((most(mass) * most(mass) / mass * CELL / MOST - 1.0).abs() < 1e-12);
         }

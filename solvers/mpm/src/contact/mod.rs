@@ -1,4 +1,4 @@
-//! Contact of bodies, by springs between surfaces or by conditions at nodes.
+//! Contact between bodies and with walls, by springs between surfaces or by conditions at nodes.
 
 pub(crate) mod friction;
 pub(crate) mod grip;
@@ -11,17 +11,16 @@ pub(crate) mod shared;
 use grainbench_scene::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Other body or wall in a contact.
+/// Contact partner of a body: a second body or a wall, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum ContactPartner {
     Body(u32),
     Wall(u16),
 }
 
-/// A contact point between a body and another body or a wall, in the last step.
+/// Contact point between a body and its contact partner in the last step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactPoint<S: Space> {
-    /// Index of the body.
     pub(crate) body: u32,
     pub(crate) other: ContactPartner,
     /// Contact point (m).
@@ -37,7 +36,7 @@ pub(crate) struct ContactPoint<S: Space> {
     pub(crate) energy: f64,
 }
 
-/// Friction coefficients between materials; pairs without a law do not interact.
+/// Friction coefficients between materials. Materials without a contact law do not interact.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionTable {
     coefficients: Vec<Option<f64>>,

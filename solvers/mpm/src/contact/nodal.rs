@@ -1,18 +1,19 @@
-//! Contact conditions of the original papers, at nodes that several bodies or a wall share. Each body is constrained
-//! relative to the common velocity.
+//! Contact conditions at nodes that several bodies, or a body and a wall, share. The conditions of the original papers
+//! constrain the velocity of each body relative to a common velocity v.
 //!
-//! The common velocity v is the velocity of the wall, if there is one, or of the centre of mass. For a body in contact
-//! with velocity vᵍ and its own outward normal n, Δv = vᵍ − v, and t is the unit vector along the tangential part of
-//! Δv. Then vᵍ ← vᵍ − Δv_n (n + μ' t), μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23;
-//! Bardenhagen et al. 2001, eq. 10). The contact condition depends on the paper:
+//! v is the velocity of the wall or of the driven body, if there is one, otherwise that of the centre of mass. Consider
+//! a body in contact, with velocity vᵍ and outward unit normal n. Its relative velocity is Δv = vᵍ − v, with normal
+//! component Δv_n and tangential component Δv_t along the unit vector t. The new velocity is vᵍ − Δv_n (n + μ' t), with
+//! μ' = min(μ, Δv_t/Δv_n) (Bardenhagen, Brackbill & Sulsky 2000, eqs. 20–23; Bardenhagen et al. 2001, eq. 10). The
+//! contact condition depends on the paper:
 //!
 //! - 2000: approach, Δv_n > 0;
-//! - 2001: compression, n·σn < 0, for any motion of the body. For a departing body the quotient above is negative and
-//!   the body sticks, as the equation states. The impulse is scaled by min(γ/(ε̇Δt), 1), γ = 1/2, with ε̇ the strain
-//!   rate that it would cause in a cell (eqs. 17–22; eq. 22 prints `max`, which would increase the impulse).
+//! - 2001: compression, n·σn < 0, for any motion of the body. For a departing body Δv_t/Δv_n is negative, and the body
+//!   sticks, as the equation states. The impulse is scaled by min(γ/(ε̇Δt), 1) with γ = 1/2 and the strain rate ε̇ that
+//!   the impulse would cause in a cell (eqs. 17–22; eq. 22 prints `max`, which would increase the impulse).
 //!
-//! At a wall the normal of the wall is used. The normals of two bodies are not opposite in general, and momentum is
-//! conserved only as far as they are.
+//! At a wall, n is opposite to the normal of the wall. The normals of two bodies are in general not opposite. Momentum is
+//! conserved only if they are opposite.
 
 use super::shared::{Field, SharedNodes};
 use super::{ContactPartner, FrictionTable};
@@ -27,7 +28,7 @@ use grainbench_scene::space::Space;
 /// Safety factor γ of eq. 21.
 const COLLAPSE: f64 = 0.5;
 
-/// Traction, relative to the modulus, below which a surface counts as traction-free.
+/// Traction divided by the modulus, below which a surface counts as traction-free.
 const UNSTRESSED: f64 = 1e-9;
 
 /// Parameters of nodal contact.
@@ -38,15 +39,15 @@ pub(crate) struct Rules<'a> {
     pub(crate) time_step: f64,
 }
 
-/// Bodies with prescribed motion, which receive the reactions as forces over the step: walls and driven bodies.
+/// Walls and driven bodies. The reactions of contact are added to them as forces over the step.
 pub(crate) struct ReactionReceivers<'a, S: Space, A> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
-    /// The energy budget, or its absence.
+    /// Receiver of contact energies; `AbsentEffect` if the run requests no energy budget.
     pub(crate) ledger: A,
 }
 
-/// Applies nodal contact to the velocities.
+/// Applies nodal contact to the velocities of `field`.
 pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -60,7 +61,7 @@ pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
     }
 }
 
-/// Applies the contact conditions of the papers at all shared nodes.
+/// Applies the no-slip condition, or the contact conditions of the papers, at all shared nodes.
 fn apply<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -86,7 +87,8 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
         let moved = group.wall.is_some() || mover.is_some();
         let common_before = if moved { common } else { before * (1.0 / mass) };
         for member in members {
-            // Driven bodies keep their velocity. With one field for all bodies, no member is a body of its own.
+            // Driven bodies keep their velocity. With one velocity field, a member represents all bodies and is
+            // constrained too.
             if bodies[member.body as usize].driven.is_some() && rules.contact != Contact::NoSlip {
                 continue;
             }
@@ -120,8 +122,8 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
                 let along = S::dot(away, normal);
                 let touching = match rules.contact {
                     Contact::Traction => {
-                        // A surface without any traction yet counts as in contact while bodies approach, so that
-                        // contact can begin.
+                        // A traction-free surface counts as in contact while bodies approach. Otherwise contact could
+                        // not begin.
                         let none = UNSTRESSED * body.deformable.longitudinal_modulus() * member.mass / body.density;
                         let traction = S::dot(normal, face.stress * normal);
                         traction < if along > 0.0 { none } else { 0.0 }
@@ -133,7 +135,7 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
                 }
                 let tangential = away - normal * along;
                 let size = S::dot(tangential, tangential).sqrt();
-                // For departing bodies Δv_t/Δv_n is negative and therefore always below μ.
+                // For departing bodies Δv_t/Δv_n is negative and therefore below μ.
                 let kept = if along > 0.0 && size > friction * along { friction * along / size } else { 1.0 };
                 let change = normal * along + tangential * kept;
                 let wanted = if rules.contact == Contact::Traction {
@@ -168,11 +170,11 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
     }
 }
 
-/// Applies contact to pairs of bodies, or bodies and walls, whose surfaces intersect near a node.
+/// Applies contact to pairs of bodies, or of a body and a wall, whose surfaces intersect near a node.
 ///
-/// Pairs are separated along their common normal while they approach or are under pressure, with Coulomb friction. The
-/// pairs of each node are solved by projected Gauss–Seidel. Impulses are equal and opposite, so momentum is conserved
-/// to rounding for any number of bodies.
+/// While a pair approaches or is under pressure, an impulse along the common normal stops the relative motion, with
+/// Coulomb friction. The pairs of each node are solved by projected Gauss–Seidel iteration. Impulses are equal and
+/// opposite, so momentum is conserved to rounding for any number of bodies.
 fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
     rules: &Rules<'_>,
     bodies: &[Body],
@@ -210,8 +212,8 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 if along <= 0.0 && !pressing && S::dot(before, normal) <= 0.0 {
                     continue;
                 }
-                // Normal impulse on the other body. The impulse stops the approach, and may be negative only while the
-                // bodies are under pressure.
+                // Normal impulse on the contact partner. It stops the relative normal motion, and may be negative only
+                // while the pair is under pressure.
                 let sum = S::dot(before, normal) + effective * along;
                 let push = if pressing { sum } else { sum.max(0.0) };
                 let rubbed = before - normal * S::dot(before, normal) + (apart - normal * along) * effective;
@@ -273,8 +275,8 @@ mod tests {
     use grainbench_scene::space::Plane;
     use nalgebra::Vector2;
 
-    /// Returns the velocities after contact of three bodies of 1, 2 and 3 kg at a node. The first and second body, and
-    /// the second and third body, are in contact along x.
+    /// Returns the velocities after contact of three bodies of 1, 2 and 3 kg at a node. The first and second body are
+    /// in contact along x, and so are the second and third body.
     fn after(friction: f64, velocities: [Vector2<f64>; 3]) -> [Vector2<f64>; 3] {
         let discs = ["a", "b", "c"].map(|name| format!("grains.{name} = {{ material = 'm', radius = 1.0, position = "));
         let text = format!(
@@ -309,9 +311,10 @@ mod tests {
         [0, 1, 2].map(|at| nodes[at].velocity)
     }
 
-    /// Three bodies at a node. The error of the second pair's impulse falls by (1/m₂)²/((1/m₁ + 1/m₂)(1/m₂ + 1/m₃)) =
-    /// 1/5 in each of twelve sweeps. The first pair is solved with the impulse of the previous sweep. The error of the
-    /// first velocity is then 5⁻¹¹ p₂/3, with p₂ = 5 N s for impacts from both sides, and smaller otherwise.
+    /// Three bodies meet at a node. Each of twelve sweeps reduces the error of the second pair's impulse by the factor
+    /// (1/m₂)²/((1/m₁ + 1/m₂)(1/m₂ + 1/m₃)) = 1/5. The first pair is solved with the impulse of the previous sweep. The
+    /// error of the first velocity is then 5⁻¹¹ p₂/3, with p₂ = 5 N s for impacts from both sides, and smaller
+    /// otherwise.
     #[test]
     fn three_bodies_at_a_node_end_with_one_velocity() {
         let vector = Vector2::new;
@@ -319,22 +322,23 @@ mod tests {
             let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).norm()).fold(0.0, f64::max);
             assert!(off < 3.5e-8, "{found:?}");
         };
-        // The first body pushes both others: 1 · 1/(1 + 2 + 3) m/s for all. Without friction they slide past each other.
+        // The first body pushes the other two, and all have 1 · 1/(1 + 2 + 3) m/s. Without friction they slide along
+        // each other.
         let [pushed, still] = [vector(1.0, 0.3), Vector2::zeros()];
         let sixth = 1.0 / 6.0;
         near(after(0.0, [pushed, still, still]), [vector(sixth, 0.3), vector(sixth, 0.0), vector(sixth, 0.0)]);
-        // With very high friction they move as one body.
+        // With very high friction the three bodies move as one.
         near(after(1e6, [pushed, still, still]), [vector(sixth, 0.05); 3]);
-        // The last body departs freely: (1 + 0)/(1 + 2) m/s for the other two.
+        // The last body departs freely. The first two have (1 + 0)/(1 + 2) m/s.
         let third = 1.0 / 3.0;
         near(after(0.0, [pushed, still, vector(5.0, 0.0)]), [vector(third, 0.3), vector(third, 0.0), vector(5.0, 0.0)]);
-        // Impacts from both sides: (1 · 4 − 3 · 2)/6 m/s.
+        // Impacts from both sides: all have (1 · 4 − 3 · 2)/6 m/s.
         let together = vector(-2.0 * sixth, 0.0);
         near(after(0.0, [vector(4.0, 0.0), still, vector(-2.0, 0.0)]), [together; 3]);
     }
 
     /// With μ = .1 the tangential impulse is .1 of the normal impulse. Two bodies of 1 and 2 kg meet at (6, 3) and 0
-    /// m/s: the normal impulse is 6/(1 + ½) = 4 N s, and the tangential impulse .4 N s.
+    /// m/s. The normal impulse is 6/(1 + ½) = 4 N s, and the tangential impulse .4 N s.
     #[test]
     fn friction_at_a_node_is_a_part_of_the_push() {
         let found = after(0.1, [Vector2::new(6.0, 3.0), Vector2::zeros(), Vector2::new(50.0, 0.2)]);

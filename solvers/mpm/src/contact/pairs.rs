@@ -5,23 +5,24 @@ use crate::grid::Lattice;
 use grainbench_scene::space::Space;
 use nalgebra::Vector3;
 
-/// Two bodies whose bounding boxes intersect. Tracers of the first are tested against the surface of the second.
+/// Two bodies with bounding boxes close to each other. Tracers of the first are tested against the surface of the
+/// second.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<S: Space> {
     pub(crate) first: u32,
     pub(crate) second: u32,
-    /// Translation from the second body to its periodic image nearest to the first (m): whole periods.
+    /// Translation of the second body, by whole periods, to its periodic image nearest to the first (m).
     pub(crate) shift: S::Vector,
 }
 
-/// Finds pairs with a coarse grid of cells, so that the work grows linearly with the number of bodies.
+/// Search for pairs with a coarse grid of cells. The work grows almost linearly with the number of bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<S: Space> {
-    /// Numbers of the cells that each body intersects, with the body.
+    /// Cell number and body index for every cell that a body intersects.
     reached: Vec<(u64, u32)>,
-    /// Each pair once, with the lower body index first.
+    /// Pairs that were found. Each pair appears once, with the lower body index first.
     pub(crate) found: Vec<Pair<S>>,
-    /// Number of tested pairs of boxes.
+    /// Number of tests of two bounding boxes.
     pub(crate) tests: u64,
 }
 
@@ -30,7 +31,6 @@ impl<S: Space> Pairs<S> {
         Self { reached: Vec::new(), found: Vec::new(), tests: 0 }
     }
 
-    /// Removes all pairs.
     pub(crate) fn clear(&mut self) {
         self.found.clear();
         self.tests = 0;
@@ -41,7 +41,7 @@ impl<S: Space> Pairs<S> {
         size_of_val(&*self.reached) + size_of_val(&*self.found)
     }
 
-    /// Finds all pairs whose boxes are closer than `margin` (m).
+    /// Finds all pairs whose bounding boxes are closer than `margin` (m).
     pub(crate) fn find(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
         self.clear();
         self.reach(bodies, lattice, margin);
@@ -70,16 +70,17 @@ impl<S: Space> Pairs<S> {
         self.found.dedup_by_key(|pair| (pair.first, pair.second));
     }
 
-    /// Finds the cells that each box, enlarged by half of `margin` (m), intersects; sorted by cell and body.
+    /// Finds the cells that each bounding box intersects. Boxes are enlarged by half of `margin` (m), and the result is
+    /// sorted by cell and body.
     ///
-    /// The cell size is the mean size of the bodies.
+    /// The cell size is the mean size of the bodies plus `margin`.
     fn reach(&mut self, bodies: &[Body], lattice: &Lattice, margin: f64) {
         self.reached.clear();
         let extent =
             |body: &Body| (0..S::DIMENSION).map(|axis| body.bounds[1][axis] - body.bounds[0][axis]).fold(0.0, f64::max);
         let sum: f64 = bodies.iter().map(extent).sum();
         let size = sum / bodies.len() as f64 + margin;
-        // Along periodic axes there is a whole number of cells.
+        // The number of cells in a period is whole.
         let periods = [0, 1, 2].map(|axis| {
             let length = f64::from(lattice.period[axis]?) * lattice.cell[axis];
             Some((length, (length / size).floor().max(1.0)))
@@ -111,7 +112,8 @@ impl<S: Space> Pairs<S> {
     }
 }
 
-/// Returns the whole periods that move the centre of the second box next to the centre of the first.
+/// Returns the translation by whole periods (m) that moves the centre of the second box nearest to the centre of the
+/// first.
 fn shift(lattice: &Lattice, first: &[Vector3<f64>; 2], second: &[Vector3<f64>; 2]) -> Vector3<f64> {
     let mut shift = Vector3::zeros();
     for axis in 0..3 {
@@ -125,7 +127,7 @@ fn shift(lattice: &Lattice, first: &[Vector3<f64>; 2], second: &[Vector3<f64>; 2
 }
 
 impl<S: Space> Pair<S> {
-    /// Returns the pair with its bodies exchanged.
+    /// Returns the pair with first and second body exchanged.
     pub(crate) fn exchanged(&self) -> Self {
         Self { first: self.second, second: self.first, shift: -self.shift }
     }

@@ -1,7 +1,7 @@
-//! Springs between surfaces. Each tracer that penetrates another surface is pushed out by the force κ |g| a. Here g is
-//! the gap (m), a the tracer's area and κ a stiffness per area. With friction, a tangential spring of the same
-//! stiffness acts along the surface ([`super::friction`]). Forces on both surfaces act at the same contact point, so
-//! linear momentum is conserved to rounding and torques are consistent.
+//! Springs between surfaces. The force κ |g| a pushes out each tracer that penetrates another surface. Here g is the
+//! gap (m), a the tracer's area (m²) and κ the stiffness per area (Pa/m). With friction, a tangential spring of the
+//! same stiffness acts along the surface ([`super::friction`]). Forces on both surfaces act at the same contact point,
+//! so linear momentum is conserved to rounding and torques are consistent.
 
 use super::friction::{Friction, Overlap, Tangential};
 use super::grip::SurfaceShapeFunction;
@@ -17,24 +17,24 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_scene::space::Space;
 use std::marker::PhantomData;
 
-/// State of springs that persists between steps.
+/// Springs of all tracers, with the results of the contact search.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs<S: Space> {
-    /// Tangential springs, or their absence.
+    /// Tangential springs, if there is friction.
     pub(crate) friction: Friction<S>,
-    /// Penetrating tracers found by each subrange of pairs.
+    /// Penetrating tracers, with one list for each subrange of pairs.
     pub(crate) found: Vec<SearchResults<S>>,
     /// Number of tracers in contact since the evaluation began.
     pub(crate) touched: u64,
 }
 
 impl<S: Space> Springs<S> {
-    /// Returns the springs of a number of tracers, with friction if it `acts`.
+    /// Creates the springs of a number of tracers, with friction if it `acts`.
     pub(crate) fn new(acts: bool, tracers: usize) -> Self {
         Self { friction: Friction::new(acts, tracers), found: Vec::new(), touched: 0 }
     }
 
-    /// Starts an evaluation.
+    /// Starts a new evaluation of all contacts.
     pub(crate) const fn begin(&mut self) {
         self.friction.begin();
         self.touched = 0;
@@ -46,14 +46,14 @@ impl<S: Space> Springs<S> {
 pub(crate) struct Rules<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) friction: &'a FrictionTable,
-    /// Stiffness per area in E'/h.
+    /// Stiffness per area in units of E'/h, with E' = E/(1 − ν²) and the cell length h.
     pub(crate) penalty: f64,
     pub(crate) time_step: f64,
 }
 
 /// Outputs of the springs in a step.
 pub(crate) struct SpringOutputs<'a, S: Space, A> {
-    /// The energy budget, or its absence.
+    /// Receiver of contact energies; `AbsentEffect` if the run requests no energy budget.
     pub(crate) ledger: A,
     /// Contact points, if requested.
     pub(crate) touches: Option<&'a mut Vec<ContactPoint<S>>>,
@@ -61,7 +61,8 @@ pub(crate) struct SpringOutputs<'a, S: Space, A> {
     pub(crate) touched: &'a mut u64,
 }
 
-/// Springs of all bodies with walls and with each other in one step. Type parameters select friction and energy budget.
+/// Kernel that applies the springs of one step between bodies, and between bodies and walls. Type parameters select
+/// friction and energy budget.
 pub(crate) struct Push<'a, S: Space, B, F, A> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
@@ -125,7 +126,8 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                     if let Some(tally) = outputs.ledger.tally() {
                         let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
                         tally.walls += worked;
-                        // The wall's part at the end of the step is known already: its velocity is prescribed.
+                        // The velocity of the wall is prescribed, so its contribution with the velocity after the step
+                        // is known already.
                         tally.taken += 0.5 * (worked - S::dot(force, overlap.slip));
                     }
                 }
@@ -133,7 +135,7 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
         }
     }
 
-    /// Applies the spring at a tracer of the first body that penetrates the surface of the second.
+    /// Applies the spring at a tracer of the first body of a pair that penetrates the surface of the second body.
     #[inline(always)]
     fn between(&mut self, PenetratingPoint { pair, tracer, overlap, there, grips: [one, two] }: &PenetratingPoint<S>) {
         let Self { bodies, friction, nodes, most, told: outputs, .. } = self;
@@ -157,7 +159,7 @@ struct Place<S: Space> {
 }
 
 impl<S: Space, A: Ledger> SpringOutputs<'_, S, A> {
-    /// Returns the force (N) on a tracer, the normal force k g and friction, and records the requested outputs.
+    /// Returns the force on a tracer (N), which is the normal force k g plus friction. Records the requested outputs.
     #[inline(always)]
     fn force<F: Tangential<S>>(
         &mut self,

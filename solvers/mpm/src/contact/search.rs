@@ -1,4 +1,5 @@
-//! Search for tracers that penetrate the surface of another body, with the interpolation of both bodies there.
+//! Search for tracers that penetrate the surface of another body, with the surface shape functions of both bodies
+//! there.
 
 use super::friction::Overlap;
 use super::grip::SurfaceShapeFunction;
@@ -15,34 +16,34 @@ use std::marker::PhantomData;
 /// Largest bulge of a surface beyond the bounding box of its tracers (cells).
 const BULGE: f64 = 0.25;
 
-/// Largest depth (cells); beyond it surfaces count as having passed through each other and have no contact.
+/// Largest depth (cells). Beyond this depth, surfaces count as having passed through each other and have no contact.
 const DEEPEST: f64 = 0.8;
 
 /// A tracer of the first body of a pair that penetrates the surface of the second.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PenetratingPoint<S: Space> {
-    /// Pair of bodies; the tracer belongs to the first.
+    /// Pair of bodies. The tracer belongs to the first body.
     pub(crate) pair: Pair<S>,
     pub(crate) tracer: usize,
-    /// Spring between the bodies, with half of the stiffness because tracers of the second body add the other half.
+    /// Overlap with half of the spring stiffness, because tracers of the second body add the other half.
     pub(crate) overlap: Overlap<S>,
-    /// Contact point near the first body (m).
+    /// Contact point (m), at the position of the first body. Across a periodic boundary, the second body is in contact
+    /// through its nearest periodic image.
     pub(crate) there: S::Vector,
-    /// Interpolation of both bodies at the contact point.
+    /// Surface shape functions of both bodies at the contact point.
     pub(crate) grips: [SurfaceShapeFunction<S>; 2],
 }
 
-/// Results and scratch memory of a subrange of pairs.
+/// Results and working memory of the search in a subrange of pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct SearchResults<S: Space> {
     /// Penetrating tracers in the order of the pairs.
     pub(crate) gone: Vec<PenetratingPoint<S>>,
-    /// Chunks of the other surface near the current tracers.
+    /// Tracer chunks of the second body near the current tracers.
     near: Vec<usize>,
 }
 
 impl<S: Space> SearchResults<S> {
-    /// Returns an empty result.
     pub(crate) const fn new() -> Self {
         Self { gone: Vec::new(), near: Vec::new() }
     }
@@ -60,7 +61,8 @@ pub(crate) struct TracerSurroundings<'a, S: Space, B> {
     pub(crate) basis: PhantomData<B>,
 }
 
-/// Tests the tracers of both bodies of some pairs against the surface of the other body.
+/// Kernel of the search in some pairs of bodies. It tests the tracers of each body against the surface of its contact
+/// partner.
 pub(crate) struct Search<'a, S: Space, B> {
     pub(crate) around: TracerSurroundings<'a, S, B>,
     pub(crate) pairs: &'a [Pair<S>],
@@ -115,7 +117,8 @@ impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
         let per_area = 0.5 * rules.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
         let area = tracers.area[tracer];
         let depth = -near.gap;
-        // Outward normal of the second body: the mean of both surfaces, so that the result is symmetric.
+        // Outward normal of the second body. It is the mean of this body's normal and the reversed normal of the first
+        // body, so that exchanging the bodies does not change the result.
         let out = near.normal - tracers.normal(tracer);
         let normal = out * (1.0 / S::dot(out, out).sqrt());
         let middle = tracers.position[tracer] - pair.shift + near.normal * (0.5 * depth);
@@ -129,7 +132,7 @@ impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
     }
 }
 
-/// Returns the largest distance of a position beyond a box along any axis (m); negative inside.
+/// Returns the largest distance of a position beyond a box along any axis (m); negative inside the box.
 #[inline(always)]
 fn beyond<S: Space>(position: S::Vector, low: S::Vector, high: S::Vector) -> f64 {
     let beyond = |axis: usize| {

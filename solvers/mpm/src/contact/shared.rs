@@ -11,9 +11,9 @@ use crate::walls::RigidPlane;
 use grainbench_scene::space::Space;
 use std::ops::Range;
 
-/// Velocities of nodes: after the step, or projected from points.
+/// Velocities of nodes, either after the step or projected from points.
 pub(crate) trait Field<S: Space> {
-    /// True if reactions of walls count as forces on them.
+    /// True if impulses count as forces on walls and driven bodies.
     const COUNTS: bool;
     fn velocity(&self, slot: usize) -> S::Vector;
     /// Returns the velocity before the step.
@@ -21,7 +21,7 @@ pub(crate) trait Field<S: Space> {
     fn set(&mut self, slot: usize, velocity: S::Vector);
 }
 
-/// Velocities after the step; `change` of the nodes still holds the velocities before it.
+/// Velocities after the step. `change` of the nodes contains the velocities before the step.
 pub(crate) struct SteppedVelocities<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
 
 impl<S: Space> Field<S> for SteppedVelocities<'_, S> {
@@ -40,7 +40,7 @@ impl<S: Space> Field<S> for SteppedVelocities<'_, S> {
     }
 }
 
-/// Nodal velocities projected from points, without separate velocities before the step.
+/// Nodal velocities projected from points. There are no separate velocities before the step.
 pub(crate) struct ProjectedVelocities<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
 
 impl<S: Space> Field<S> for ProjectedVelocities<'_, S> {
@@ -59,7 +59,7 @@ impl<S: Space> Field<S> for ProjectedVelocities<'_, S> {
     }
 }
 
-/// A body at a shared node.
+/// One body at a shared node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member {
     key: u64,
@@ -68,12 +68,12 @@ pub(crate) struct Member {
     pub(crate) mass: f64,
 }
 
-/// The surface of a body near a node.
+/// Surface of a body near a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Face<S: Space> {
-    /// Outward normal, not normalised.
+    /// Outward normal of any length.
     pub(crate) normal: S::Vector,
-    /// Σ w V σ: the stress times a volume (Pa m³).
+    /// Stress times volume, Σ w V σ (Pa m³), summed over points with weight w.
     pub(crate) stress: S::Matrix,
 }
 
@@ -85,7 +85,7 @@ pub(crate) struct NodalContact<S: Space> {
     pub(crate) other: ContactPartner,
     /// Position of the node (m).
     pub(crate) position: S::Vector,
-    /// Slots of the node in the body's field and in the other body's field.
+    /// Slots of the node in the fields of the body and of its contact partner.
     pub(crate) slots: [usize; 2],
     pub(crate) masses: [f64; 2],
     /// Unit normal from the body to its contact partner.
@@ -94,10 +94,10 @@ pub(crate) struct NodalContact<S: Space> {
     pub(crate) impulse: S::Vector,
 }
 
-/// A shared node.
+/// Shared node with the bodies that share it.
 pub(crate) struct Group<S: Space> {
     pub(crate) members: Range<usize>,
-    /// Wall that contains the node.
+    /// Index of the wall that contains the node, if any.
     pub(crate) wall: Option<usize>,
     pub(crate) position: S::Vector,
 }
@@ -110,11 +110,11 @@ pub(crate) struct SharedNodes<S: Space> {
     pub(crate) faces: Vec<Face<S>>,
     pub(crate) meetings: Vec<NodalContact<S>>,
     densities: Vec<f64>,
-    /// For each body, true if it shares a node.
+    /// For each body, true if the body shares a node.
     touching: Vec<bool>,
 }
 
-/// Returns a unique number of a node.
+/// Returns a number that identifies a node of the lattice.
 fn key(node: [i32; 3]) -> u64 {
     const BIAS: i64 = 1 << 20;
     let part = |axis: usize| (i64::from(node[axis]) + BIAS) as u64 & 0x1f_ffff;
@@ -151,7 +151,7 @@ impl<S: Space> SharedNodes<S> {
         })
     }
 
-    /// Finds nodes that bodies share with each other or with a wall.
+    /// Finds the nodes that bodies share with each other or with a wall.
     pub(crate) fn find(
         &mut self,
         lattice: &Lattice,
@@ -222,7 +222,7 @@ impl<S: Space> SharedNodes<S> {
         }
     }
 
-    /// Computes surface normals from the mass gradient, and stresses, for all bodies that share nodes.
+    /// Computes surface normals from the mass gradient, and stresses at the surface, for all bodies that share nodes.
     pub(crate) fn find_faces<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.faces.clear();
         self.faces.resize(used, Face { normal: S::ORIGIN, stress: S::NO_GRADIENT });
@@ -244,8 +244,8 @@ impl<S: Space> SharedNodes<S> {
         }
     }
 
-    /// Computes surface normals of the 2000 paper: the gradient of a density at cell centres that is smoothed by a
-    /// quadratic B-spline (eq. 24).
+    /// Computes surface normals as in Bardenhagen, Brackbill & Sulsky (2000, eq. 24): the gradient of a density at cell
+    /// centres that is smoothed by a quadratic B-spline.
     pub(crate) fn smooth_normals(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.densities.clear();
         self.densities.resize(used, 0.0);
@@ -263,8 +263,8 @@ impl<S: Space> SharedNodes<S> {
                 });
             }
         }
-        // The centre of the cell above node i has the number i. Hat functions of the centres have kinks at the nodes,
-        // and the gradient is the mean over the adjacent cells.
+        // Slot i contains the density at the centre of the cell above node i. The gradient at a node follows from
+        // differences between the adjacent cells. Its length is arbitrary.
         for member in &self.members {
             let window = &bodies[member.body as usize].part.window;
             let node = window.node(member.slot - window.start);
@@ -283,7 +283,7 @@ impl<S: Space> SharedNodes<S> {
         }
     }
 
-    /// Finds the nodes around tracers that penetrate another surface or a wall, with the normals there.
+    /// Finds the nodes around tracers that penetrate another surface or a wall, and the normals at these nodes.
     pub(crate) fn find_meetings(
         &mut self,
         lattice: &Lattice,
@@ -319,7 +319,7 @@ impl<S: Space> SharedNodes<S> {
                     let near = tracers.gone_through(chunks, seen, tracers.area[at], reach, &mut closest);
                     let Some(near) = near else { continue };
                     let normal = tracers.normal(at);
-                    // The lower body index comes first, so that both passes find the same pair.
+                    // The lower body index comes first, so that the tracers of both bodies give the same pair.
                     let (out, swap) = (normal - near.normal, pair.second < pair.first);
                     let (body, other) = if swap { (pair.second, pair.first) } else { (pair.first, pair.second) };
                     let (position, shift) =
@@ -350,7 +350,7 @@ impl<S: Space> SharedNodes<S> {
         }
     }
 
-    /// Adds a contact at every node around a contact point where both bodies have mass.
+    /// Adds a contact at every node around a contact point if both bodies have mass at the node.
     fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &SurfaceContact<S>, nodes: &[Node<S>]) {
         let &SurfaceContact { body, other, position, normal, shift } = met;
         let window = bodies[body].part.window;
@@ -382,7 +382,8 @@ impl<S: Space> SharedNodes<S> {
                     ([node.slot, slot], [mass, mass_of(other as usize, slot)])
                 }
             };
-            // A node with zero weight, because the contact point is on a grid line, gets no normal from it.
+            // If the contact point is on a grid line, some nodes have zero weight. They get no normal from this contact
+            // point.
             if node.weight > 0.0 && masses[0] > 0.0 && masses[1] > 0.0 {
                 self.meetings.push(NodalContact {
                     key: key(lattice.wrapped(place)),
@@ -405,15 +406,15 @@ struct SurfaceContact<S: Space> {
     other: ContactPartner,
     /// Position (m).
     position: S::Vector,
-    /// Outward unit normal of the body.
+    /// Outward normal of the body, of any length.
     normal: S::Vector,
-    /// Translation between the body and the periodic image of its partner (m).
+    /// Translation of the partner to its periodic image nearest to the body (m).
     shift: S::Vector,
 }
 
-/// Visits the nodes that two windows share, with the second window shifted by `periods` nodes.
+/// Visits the nodes that two windows share. The second window is shifted by `periods` nodes.
 ///
-/// The arguments of `visit` are the node in the first and in the second window, and their slots.
+/// The arguments of `visit` are the node in the first and in the second window, and the slots of both.
 fn each_common(one: &Window, two: &Window, periods: [i32; 3], mut visit: impl FnMut([i32; 3], [i32; 3], usize, usize)) {
     let low = [0, 1, 2].map(|axis| one.low[axis].max(two.low[axis] + periods[axis]));
     let high =

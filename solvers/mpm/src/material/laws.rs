@@ -1,4 +1,5 @@
-//! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and its stress.
+//! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and an
+//! implementation of [`Law`].
 
 use super::{Law, State, VolumeRatio, symmetric_root};
 use crate::off::AbsentEffect;
@@ -85,20 +86,20 @@ impl Law for NeoHookean {
         self.stress::<S>(deformation, volume)
     }
 
-    /// λ (1 − ln J) + G (1 + b_nn), with the largest row sum of |b| as a bound of the largest b_nn.
+    /// Returns λ (1 − ln J) + G (1 + b_nn), with the largest row sum of |b| as an upper bound of b_nn.
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
         let stretch = finger.row_iter().map(|row| row.abs().sum()).fold(0.0, f64::max);
         self.lame * (1.0 - ln(volume_ratio)) + self.shear_modulus * (1.0 + stretch)
     }
 
-    /// W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
+    /// Returns W = λ/2 ln²J + G/2 (tr b − 3 − 2 ln J).
     fn energy(&self, state: &State) -> f64 {
         let log = ln(state.deformation.determinant());
         let stretch = state.deformation.norm_squared() - 3.0 - 2.0 * log;
         0.5 * (self.lame * log * log + self.shear_modulus * stretch)
     }
 
-    /// b = 1 + (Jσ − λ ln J 1)/G along the axes that deform, with J from det b = J² by secant steps.
+    /// Solves b = 1 + (Jσ − λ ln J 1)/G along the axes that deform. Secant steps find J from det b = J².
     fn under_stress(&self, stress: &Matrix3<f64>, dimensions: usize) -> Option<State> {
         let finger = |volume_ratio: f64| {
             let part = 1.0 - self.lame * ln(volume_ratio) / self.shear_modulus;
@@ -111,7 +112,7 @@ impl Law for NeoHookean {
         let excess = |volume_ratio: f64| finger(volume_ratio).determinant() - volume_ratio * volume_ratio;
         let sum: f64 = (0..dimensions).map(|axis| stress[(axis, axis)]).sum();
         let linear = sum / (dimensions as f64 * self.lame + 2.0 * self.shear_modulus);
-        // The linear solution, and a value next to it for the first secant.
+        // Start of the secant method: the linear solution and a value next to it.
         let (mut before, mut now) = (1.0001 * (1.0 + linear), 1.0 + linear);
         let mut old = excess(before);
         for _ in 0..50 {
@@ -128,18 +129,18 @@ impl Law for NeoHookean {
     }
 }
 
-/// Neo-Hookean law with an additional viscous stress, σ + 2η dev D + ζ tr D 1.
+/// Neo-Hookean law with an additional viscous stress: σ + 2η dev D + ζ tr D 1.
 ///
-/// D is the symmetric part of ∇v (1/s) on the configuration at the middle of a step, for which a rotation gives D = 0
-/// ([`Space::at_midpoint`]). For small strain it is the Kelvin–Voigt solid. The amplitude of a wave with wave number k
-/// decays at the rate η_L k²/2ρ, with η_L = 4η/3 + ζ for longitudinal waves and η for transverse waves.
+/// D is the symmetric part of ∇v (1/s) on the configuration at the middle of a step, so a rotation gives D = 0
+/// ([`Space::at_midpoint`]). For small strain the material is a Kelvin–Voigt solid. The amplitude of a wave with wave
+/// number k decays at the rate η_L k²/2ρ, with η_L = 4η/3 + ζ for longitudinal waves and η for transverse waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KelvinVoigt {
-    /// The elastic part.
+    /// Law of the elastic part of the stress.
     pub elastic: NeoHookean,
-    /// Shear viscosity over the time step η/Δt (Pa).
+    /// Shear viscosity divided by the time step, η/Δt (Pa).
     pub shear_viscosity: f64,
-    /// Bulk viscosity over the time step ζ/Δt (Pa).
+    /// Bulk viscosity divided by the time step, ζ/Δt (Pa).
     pub bulk_viscosity: f64,
 }
 
@@ -188,13 +189,14 @@ impl Law for KelvinVoigt {
     }
 }
 
-/// σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW, D and W the symmetric and skew parts of ∇v (1/s).
+/// Hypoelastic law: σ̂ = 2G dev D + K tr D 1 with the Jaumann rate σ̂ = σ̇ − Wσ + σW. D and W are the symmetric and
+/// skew parts of ∇v (1/s).
 ///
-/// A step is integrated by the midpoint rule (Hughes & Winget 1980): with H = Δt ∇v on the configuration at the middle
-/// of the step ([`Space::at_midpoint`]), σ ← R σ Rᵀ + 2G dev ε + K tr ε 1, ε = sym H and R = (1 − W/2)⁻¹(1 + W/2),
-/// W = skew H. For any step size, a rigid rotation gives no strain and keeps the invariants of the stress. On the
-/// configuration at the start of the step, a rotation by θ would give a compression by 1 − cos θ, and a spinning body
-/// would grow.
+/// A step is integrated by the midpoint rule (Hughes & Winget 1980): σ ← R σ Rᵀ + 2G dev ε + K tr ε 1. Here ε = sym H,
+/// W = skew H and R = (1 − W/2)⁻¹(1 + W/2), with H = Δt ∇v on the configuration at the middle of the step
+/// ([`Space::at_midpoint`]). For any step size, a rigid rotation gives no strain and keeps the invariants of the
+/// stress. On the configuration at the start of the step, a rotation by θ would give a compression by 1 − cos θ, and a
+/// spinning body would grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hypoelastic {
     /// Bulk modulus K (Pa).
@@ -236,7 +238,7 @@ impl Law for Hypoelastic {
         (self.stress::<S>(increment, stress), 0.0)
     }
 
-    /// J (K + 4G/3): the moduli belong to the Cauchy stress, and the density is ρ₀/J.
+    /// Returns J (K + 4G/3), because the moduli belong to the Cauchy stress and the density is ρ₀/J.
     fn wave_modulus(&self, volume_ratio: f64, _finger: &Matrix3<f64>) -> f64 {
         volume_ratio * (self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus)
     }
@@ -248,17 +250,18 @@ impl Law for Hypoelastic {
         density * state.deformation.determinant()
     }
 
-    /// Returns the given stress with zero deformation, because the law does not define the deformation of a stress.
+    /// Returns the given stress with F = 1, because the law does not define the deformation for a stress.
     fn under_stress(&self, stress: &Matrix3<f64>, _dimensions: usize) -> Option<State> {
         Some(State { stress: *stress, ..State::default() })
     }
 }
 
-/// Hypoelastic up to q = Y + H ε_p with q = √(3/2 s:s), s = dev σ. Beyond this limit, radial return:
-/// Δε_p = (q − Y − H ε_p)/(3G + H), s ← s (1 − 3G Δε_p/q) (Simo & Hughes 1998, box 3.2).
+/// Hypoelastic law with von Mises yielding. It is elastic up to q = Y + H ε_p with q = √(3/2 s:s), s = dev σ. Beyond
+/// this limit, the stress returns radially: Δε_p = (q − Y − H ε_p)/(3G + H), s ← s (1 − 3G Δε_p/q) (Simo & Hughes 1998,
+/// box 3.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VonMises {
-    /// The elastic part.
+    /// Law below the yield limit.
     pub elastic: Hypoelastic,
     /// Yield stress Y (Pa).
     pub yield_stress: f64,

@@ -1,5 +1,5 @@
-//! Constitutive laws with 3 × 3 tensors in both dimensions: in plane strain the out-of-plane strain is zero, but the
-//! stress is not.
+//! Constitutive laws. Tensors are 3 × 3 also in two dimensions, because in plane strain the out-of-plane strain is zero
+//! but the stress is not.
 
 mod laws;
 mod plastic_strain;
@@ -32,14 +32,14 @@ impl Default for State {
 /// Volume of a point relative to its initial volume.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeRatio {
-    /// The ratio J.
+    /// Volume divided by initial volume, J = det F.
     pub ratio: f64,
-    /// ln J, for laws that use it; it is computed for many points at once.
+    /// ln J, for laws that use it. It is computed for many points at once.
     pub logarithm: f64,
 }
 
 impl VolumeRatio {
-    /// Returns a ratio with its logarithm.
+    /// Returns the ratio `ratio` with its logarithm.
     #[inline(always)]
     #[must_use]
     pub fn new(ratio: f64) -> Self {
@@ -47,7 +47,7 @@ impl VolumeRatio {
     }
 }
 
-/// A constitutive law.
+/// Constitutive law, which gives the stress of a material point.
 pub trait Law: Copy + Send + Sync + 'static {
     /// Plastic strain that the law reads and changes: [`crate::off::AbsentEffect`] for laws without yielding.
     type PlasticStrain: PlasticStrain;
@@ -55,10 +55,10 @@ pub trait Law: Copy + Send + Sync + 'static {
     const LOGARITHM: bool = false;
     /// True if a part of the stress is viscous.
     const VISCOUS: bool = false;
-    /// Returns the stress after a step with the displacement gradient `increment` = Δt ∇v on the configuration at its
-    /// start.
+    /// Returns the stress after a step. `increment` is the displacement gradient Δt ∇v on the configuration at the
+    /// start of the step.
     ///
-    /// `stress` is the stress before the step, and `deformation` the deformation after it, with the determinant
+    /// `stress` is the stress before the step. `deformation` is the deformation after the step, with the determinant
     /// `volume`.
     fn follow<S: Space>(
         &self,
@@ -68,7 +68,8 @@ pub trait Law: Copy + Send + Sync + 'static {
         stress: S::Symmetric,
         plastic_strain: &mut Self::PlasticStrain,
     ) -> S::Symmetric;
-    /// Updates a state in three dimensions, which holds the deformation after the step and the stress before it.
+    /// Updates stress and plastic strain of a state in three dimensions. On entry, the state contains the deformation
+    /// after the step and the stress before the step.
     fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
         let stress = Solid::restrict_symmetric(state.stress);
         let own = std::slice::from_mut(&mut state.plastic_strain);
@@ -80,7 +81,7 @@ pub trait Law: Copy + Send + Sync + 'static {
     }
     /// True if the stress is computed by [`Law::trial`], for many points at once, followed by [`Law::flow`].
     const TRIES: bool = false;
-    /// Returns the trial stress after a step without plastic flow, and its 3/2 s:s, s = dev σ (Pa²).
+    /// Returns the trial stress after a step without plastic flow, and 3/2 s:s of this stress with s = dev σ (Pa²).
     ///
     /// The second value is read only for laws with yielding.
     #[inline(always)]
@@ -101,7 +102,7 @@ pub trait Law: Copy + Send + Sync + 'static {
     fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
         0.0
     }
-    /// Returns the work of the viscous stress of a state on a strain, per volume (J/m³); zero without viscosity.
+    /// Returns the work per volume of a state's viscous stress on a strain (J/m³); zero without viscosity.
     #[inline(always)]
     fn viscous_work<S: Space>(
         &self,
@@ -112,12 +113,12 @@ pub trait Law: Copy + Send + Sync + 'static {
     ) -> f64 {
         0.0
     }
-    /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, with ρ₀ the initial density and c the spatial wave speed
+    /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, with the initial density ρ₀ and the spatial wave speed c
     /// (m/s).
     ///
-    /// The state is given by the volume ratio and the left Cauchy–Green tensor b = F Fᵀ. The result is an upper bound
-    /// if b has shear. For a wave along n it is the second derivative by ε of the elastic energy of (1 + ε n ⊗ n) F per
-    /// initial volume.
+    /// The state is given by the volume ratio and the left Cauchy–Green tensor b = F Fᵀ. If b has shear components, the
+    /// result is an upper bound. For a wave along n, ρ₀c² is the second derivative with respect to ε of the elastic
+    /// energy per initial volume of (1 + ε n ⊗ n) F.
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64;
     /// Returns the elastic energy per initial volume (J/m³).
     fn energy(&self, state: &State) -> f64;
@@ -139,7 +140,7 @@ fn symmetric_root(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         inverse = (inverse + root.try_inverse()?) * 0.5;
         let way = (next - root).norm();
         root = next;
-        // Convergence is quadratic: a further step would change only the last digits.
+        // Convergence is quadratic, so a further step would change only the last digits.
         if way <= 1e-13 * root.norm() {
             let is_root = (root * root - matrix).norm() <= 1e-12 * matrix.norm() && root.determinant() > 0.0;
             return is_root.then_some(root);

@@ -1,4 +1,4 @@
-//! Scenes and helpers of the tests.
+//! Scenes and helper functions of the tests.
 #![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use grainbench_mpm::options::Setting;
