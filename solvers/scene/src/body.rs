@@ -14,7 +14,7 @@ pub enum BlockShape {
         /// Upper corner (m).
         high: Vector3<f64>,
     },
-    /// Ring, in the plane.
+    /// Ring, in two dimensions.
     Annulus {
         /// Centre (m).
         centre: Vector3<f64>,
@@ -38,7 +38,7 @@ impl BlockShape {
         }
     }
 
-    /// Returns the volume (m³; m² in the plane).
+    /// Returns the volume (m³; m² in two dimensions).
     #[must_use]
     pub fn volume(&self, dimensions: usize) -> f64 {
         match self {
@@ -56,7 +56,7 @@ impl BlockShape {
         }
     }
 
-    /// Returns the distance of a position outside the shape (m); zero or negative inside. For a box, it is the largest
+    /// Returns the distance of a position (m) outside the shape; zero or negative inside. For a box, it is the largest
     /// distance along one axis.
     #[must_use]
     pub fn outside(&self, at: Vector3<f64>, dimensions: usize) -> f64 {
@@ -82,7 +82,7 @@ impl BlockShape {
     }
 }
 
-/// Boundary conditions on the sides of a box: for each axis, the lower and the upper side.
+/// Boundary conditions on the sides of a box. For each axis, the lower side comes first, then the upper side.
 pub type Sides = [[Hold; 2]; 3];
 
 /// Boundary condition on a side of a box.
@@ -97,8 +97,8 @@ pub enum Hold {
     Fixed,
 }
 
-/// Initial velocity along x of v₀ sin(β (x − x_low)) with β = (2n − 1)π/2L: mode n of a bar that is fixed at its lower
-/// end.
+/// Initial velocity v₀ sin(β (x − x_low)) along x with β = (2n − 1)π/2L. It is mode n of a bar of length L that is
+/// fixed at x_low, its end of smallest x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// Amplitude v₀ (m/s).
@@ -107,10 +107,10 @@ pub struct Wave {
     pub wave_number: f64,
 }
 
-/// Initial Cauchy stress, linear in the position (Pa, tension positive).
+/// Initial Cauchy stress (Pa, tension positive), which is a linear function of the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InitialStress {
-    /// Stress at the centre of the shape (Pa). In the plane, σ_zz = ν (σ_xx + σ_yy), as in plane strain.
+    /// Stress at the centre of the shape (Pa). In two dimensions, σ_zz = ν (σ_xx + σ_yy), as in plane strain.
     pub centre: Matrix3<f64>,
     /// Gradient of the stress along each axis (Pa/m).
     pub gradient: [Matrix3<f64>; 3],
@@ -135,17 +135,17 @@ pub struct Block {
     pub density: f64,
     /// Shape at the start.
     pub shape: BlockShape,
-    /// Velocity (m/s).
+    /// Initial velocity of the centre of the shape (m/s).
     pub velocity: Vector3<f64>,
-    /// Angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity.
+    /// Initial angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity at x.
     pub spin: Vector3<f64>,
-    /// Stretch rates a along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to the velocity.
+    /// Initial stretch rates aᵢ along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to component i of the velocity at x.
     pub stretch: Vector3<f64>,
-    /// Initial stress; zero if absent.
+    /// Initial stress; `None` for zero stress or for the stress that [`Start::initial_pressure`] gives.
     pub stress: Option<InitialStress>,
     /// Boundary conditions on the sides.
     pub sides: Sides,
-    /// Further initial velocity that varies along x.
+    /// Further initial velocity in the form of a wave along x.
     pub wave: Option<Wave>,
 }
 
@@ -164,8 +164,8 @@ impl Block {
     }
 }
 
-/// Damped relaxation before t = 0. Bodies at rest come to equilibrium, then receive their velocities and spins and are
-/// released.
+/// Damped relaxation before t = 0. Bodies start at rest and come to equilibrium. At t = 0, they receive their initial
+/// velocities and spins, and gravity and damping take the values of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
     /// Duration (s).
@@ -180,11 +180,11 @@ pub struct Settle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InitialPressure {
-    /// Stress of a fluid at rest: ∇p = ρ g, with p = 0 at the highest point of each body.
+    /// Pressure p of a fluid at rest: ∇p = ρ g, with p = 0 at the highest point of each body.
     Hydrostatic,
 }
 
-/// Initial conditions of deformable bodies, and driving forces other than gravity and contacts.
+/// Initial conditions of deformable bodies, and their body force other than gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Damped relaxation before t = 0.
@@ -196,7 +196,8 @@ pub struct Start {
 }
 
 impl Start {
-    /// Names a requested feature that only solvers for deformable bodies support; `None` if there is none.
+    /// Returns a description of a requested feature that only solvers for deformable bodies support; `None` if there is
+    /// none.
     #[must_use]
     pub fn needs_deformable(&self) -> Option<&'static str> {
         if self.settle.is_some() {

@@ -1,4 +1,4 @@
-//! Summary of a snapshot, for runs that do not need its rows.
+//! Summary of a snapshot, for runs that do not need the rows of grains and contacts.
 
 use crate::record::{GrainState, Snapshot, StepState};
 use serde::{Deserialize, Serialize};
@@ -23,8 +23,8 @@ pub struct Brief {
 }
 
 impl Brief {
-    /// Summarises grains at a step and its time (s). `touching` holds the number of contacts and the number of slipping
-    /// contacts, if they are known.
+    /// Returns the summary of grains at a step and its time (s). `touching` is the number of contacts and the number of
+    /// slipping contacts, if known.
     #[must_use]
     pub fn of_grains(
         (step, time): (u64, f64),
@@ -41,14 +41,14 @@ impl Brief {
         })
     }
 
-    /// Summarises the state of a simulation at one step.
+    /// Returns the summary of the state of a simulation at one step.
     #[must_use]
     pub fn of_look(look: &StepState) -> Self {
         let Snapshot { step, time, grains, .. } = &look.snapshot;
         Self::of_grains((*step, *time), grains.iter().cloned(), look.touching)
     }
 
-    /// Summarises a snapshot.
+    /// Returns the summary of a snapshot.
     #[must_use]
     pub fn from_snapshot(snapshot: &Snapshot) -> Self {
         let Snapshot { step, time, grains, .. } = snapshot;

@@ -1,4 +1,4 @@
-//! Energy budget of a run. Each entry is computed where the energy changes form.
+//! Energy budget of a run.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Energy budget of a run (J; J/m for discs): the energy stored now, and the energy supplied and dissipated since the
 /// start.
 ///
-/// Methods update velocities and positions half a step apart. Kinetic energy and momentum refer to the time at which
-/// the method sums them: the time of the positions in DEM, half a step before it for material points.
+/// Methods update velocities and positions half a step apart. In DEM, kinetic energy and momentum refer to the time of
+/// the positions; for material points, to half a step before this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Budget {
     /// Kinetic energy of grains or material points, spin included.
@@ -26,11 +26,11 @@ pub struct Budget {
     pub friction: f64,
     /// Work against dashpots, viscosity and global damping.
     pub damping: f64,
-    /// Numerical loss between material points and nodes: kinetic energy that nodes gain but points do not, and work
-    /// that stresses take from nodes but do not do on points.
+    /// Numerical loss between material points and nodes. It is the kinetic energy that nodes gain but points do not,
+    /// plus the work that stresses take from nodes but do not do on points.
     pub transfer: f64,
-    /// Numerical loss at contacts: energy that contacts take from the motion but neither store nor dissipate by
-    /// friction.
+    /// Numerical loss at contacts. It is the energy that contacts take from the motion but neither store nor dissipate
+    /// by friction.
     pub contact: f64,
     /// Momentum (kg m/s).
     pub momentum: Vector3<f64>,
@@ -39,8 +39,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Returns the stored and dissipated energy less the supplied energy (J). It keeps its initial value as long as
-    /// every entry is right.
+    /// Returns the stored and dissipated energy less the supplied energy (J). This difference keeps its initial value
+    /// if every entry is right.
     #[must_use]
     pub fn unbalanced(&self) -> f64 {
         let stored = self.kinetic + self.elastic + self.springs + self.gravitational;

@@ -1,4 +1,4 @@
-//! Checks of single values. Each failure is an error that names the key.
+//! Checks of single values of a scene. Each error states the key.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SpinSpec;
@@ -7,7 +7,7 @@ use crate::shape;
 use crate::source::SceneSource;
 use nalgebra::{Matrix3, Vector3};
 
-/// Checker for the values of one scene, which names the key in each error.
+/// Checker for the values of one scene.
 pub(crate) struct Checker<'a> {
     pub(crate) source: &'a SceneSource,
     pub(crate) dimension: Dimension,
@@ -126,7 +126,7 @@ impl Checker<'_> {
     }
 }
 
-/// Returns `, finite` for the error message if the value is not finite.
+/// Returns `, finite` if the value is not finite, for the error message; otherwise an empty string.
 fn and_finite(value: f64) -> &'static str {
     if value.is_finite() { "" } else { ", finite" }
 }

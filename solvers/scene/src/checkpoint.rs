@@ -1,7 +1,7 @@
-//! State of a run between two steps, from which the run continues bit for bit.
+//! Checkpoints: states of a run between two steps, from which the run continues bit for bit.
 //!
-//! A file holds the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in
-//! postcard's format. This format keeps every bit of a number.
+//! A file contains the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in
+//! postcard's format, which keeps every bit of a number.
 
 use crate::scene::Scene;
 use crate::sealed::{self, SealError};
@@ -13,25 +13,25 @@ use thiserror::Error;
 
 /// First bytes of a checkpoint, before the format number.
 const MAGIC: &[u8] = b"grainbench checkpoint ";
-/// Format that this program writes. It must be raised whenever stored data change their meaning or their position.
+/// Format that this program writes. It must be increased whenever the meaning or the position of stored data changes.
 const FORMAT: u32 = 10;
 
-/// Reason that a run cannot continue from a checkpoint, or that a checkpoint cannot be stored.
+/// Reason why a run cannot continue from a checkpoint, or why a checkpoint cannot be stored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
-    /// Another kind of file.
+    /// File of another kind.
     #[error("expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file")]
     Foreign,
-    /// Written by an earlier version.
+    /// Checkpoint of an earlier version of the program.
     #[error(
-        "expected a checkpoint of format {FORMAT}, found format {found}: an older version of the program wrote it, and it \
-         continues only there"
+        "expected a checkpoint of format {FORMAT}, found format {found}: an older version of the program wrote it, and \
+         only that version can continue it"
     )]
     Older {
         /// Format version of the checkpoint.
         found: u32,
     },
-    /// Written by a later version.
+    /// Checkpoint of a later version of the program.
     #[error(
         "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program wrote it"
     )]
@@ -39,19 +39,19 @@ pub enum CheckpointError {
         /// Format version of the checkpoint.
         found: u32,
     },
-    /// Truncated, or longer than expected.
-    #[error("expected {expected} bytes after the first line, found {found}: the checkpoint is not whole")]
+    /// File that is truncated, or longer than expected.
+    #[error("expected {expected} bytes after the first line, found {found}: the checkpoint is incomplete")]
     Length {
         /// Expected number of bytes.
         expected: u64,
         /// Number of bytes found.
         found: u64,
     },
-    /// The bytes differ from those that were written.
+    /// File with bytes that differ from those that were written.
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
     /// Checkpoint of another run.
-    #[error("the checkpoint is of another run: expected {what} {expected}, found {}", tamed(found, |_| false))]
+    #[error("the checkpoint belongs to another run: expected {what} {expected}, found {}", tamed(found, |_| false))]
     OtherRun {
         /// Property that differs.
         what: &'static str,
@@ -72,28 +72,28 @@ pub struct RunIdentity {
     pub solver: String,
     /// Title of the scene.
     pub scene: String,
-    /// Hash of everything in the scene.
+    /// Hash of all data of the scene.
     pub fingerprint: String,
     /// Time step (s).
     pub time_step: f64,
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub steps: u64,
-    /// Layout of the solver's state, as text that changes with the layout.
+    /// Text that identifies the layout of the solver's state.
     pub layout: String,
 }
 
-/// Properties of a run from which the identity in its checkpoints is computed.
+/// Properties of a run that determine the identity in its checkpoints.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
     /// Solver and options, as text.
     pub solver: String,
-    /// The scene.
+    /// Scene of the run.
     pub scene: &'a Scene,
     /// Time step (s).
     pub time_step: f64,
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub steps: u64,
-    /// Layout of the solver's state, as text that changes with the layout.
+    /// Text that identifies the layout of the solver's state.
     pub layout: &'static str,
 }
 
@@ -140,8 +140,8 @@ impl RunIdentity {
     }
 }
 
-/// Returns the hash of everything in a scene. Grains and contact history may be large, so their bits are hashed. The
-/// rest is hashed as debug output, which shows every bit of a number.
+/// Returns the hash of all data of a scene. Grains and contact history may be large, so their bytes are hashed. All
+/// other data are hashed as debug output, which shows all digits of a number.
 #[must_use]
 pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     struct HashWriter(blake3::Hasher);
@@ -163,7 +163,7 @@ pub fn fingerprint(scene: &Scene) -> blake3::Hash {
     hashed.0.finalize()
 }
 
-/// The state of a run between two steps.
+/// State of a run between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     identity: RunIdentity,
@@ -174,7 +174,7 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Stores a state.
+    /// Creates a checkpoint with a state after `step` steps.
     ///
     /// # Errors
     /// When a part of the state cannot be serialised.
@@ -217,7 +217,7 @@ impl Checkpoint {
         Ok(sealed::seal(MAGIC, FORMAT, &written(self)?))
     }
 
-    /// Returns true if a file begins like a checkpoint of any format.
+    /// Returns true if a file begins as a checkpoint of any format does.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -238,7 +238,7 @@ impl Checkpoint {
             SealError::Older(found) => CheckpointError::Older { found },
             SealError::Newer(found) => CheckpointError::Newer { found },
             SealError::Length(expected, found) => CheckpointError::Length { expected, found },
-            SealError::Changed => CheckpointError::Damaged("its bytes are not those that were written".to_owned()),
+            SealError::Changed => CheckpointError::Damaged("its bytes differ from the written bytes".to_owned()),
         })?;
         postcard::from_bytes(body).map_err(|error| CheckpointError::Damaged(error.to_string()))
     }

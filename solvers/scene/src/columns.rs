@@ -1,4 +1,4 @@
-//! Optional columns of snapshots, and the number of digits kept.
+//! Optional columns of snapshots, and the number of digits in snapshots.
 
 use crate::record::{GrainState, Snapshot};
 use crate::virial;
@@ -10,15 +10,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Chosen {
-    /// Spin of every grain; in the plane also its angle.
+    /// Angular velocity of every grain; in two dimensions also its angle.
     Spin,
-    /// Sum of forces and of torques on every grain.
+    /// Sum of the forces (without gravity) and sum of the torques on every grain.
     Force,
-    /// Every contact.
+    /// All contacts.
     Contacts,
-    /// V σ of every grain at the time of the snapshot (see [`crate::virial`]).
+    /// Product V σ of volume and mean stress of every grain (J) at the time of the snapshot.
     Virial,
-    /// V σ of every grain, averaged over the time since the previous snapshot.
+    /// Product V σ of every grain (J), averaged over the time since the previous snapshot.
     MeanVirial,
 }
 
@@ -49,8 +49,8 @@ impl Columns {
         self.chosen.contains(&column)
     }
 
-    /// Reduces a snapshot to the chosen columns, adds virials computed from its contacts, and rounds its numbers.
-    /// Omitted columns are absent, or NaN if they cannot be absent.
+    /// Reduces a snapshot to the chosen columns, adds virials computed from its contacts, and rounds its numbers. An
+    /// omitted spin is NaN, and other omitted columns are absent.
     pub fn keep(&self, snapshot: &mut Snapshot) {
         if *self == Self::default() {
             return;
@@ -97,8 +97,8 @@ fn round_grain(grain: &mut GrainState, bits: u32) {
     numbers.for_each(|number| *number = rounded(*number, bits));
 }
 
-/// Returns the number of bits after the leading bit that `digits` significant digits need. The relative rounding error
-/// is then at most 10⁻ᵈ/2.
+/// Returns the number of bits after the leading bit that d = `digits` significant digits need. With this number of
+/// bits, the relative rounding error is at most 10⁻ᵈ/2.
 fn bits(digits: u8) -> u32 {
     (f64::from(digits) * std::f64::consts::LOG2_10).ceil() as u32
 }

@@ -1,7 +1,7 @@
-//! Contact law between two materials: the keys of a scene file, and the numbers that act.
+//! Contact law between two materials: keys in the scene file, and the resolved law.
 //!
-//! A new law is a variant of [`Springs`] with its name, its parameters from the scene, and its stiffness. Input decks
-//! and programs that were not written for the new law reject it by its kind.
+//! A new law needs a variant of [`Springs`], with its name, its parameters from the scene, and its stiffness. Input
+//! decks and external programs that do not support the new law reject it by its kind.
 
 use crate::check::Checker;
 use crate::error::SceneError;
@@ -12,78 +12,84 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Force law along the normal, and the tangential spring that goes with it.
+/// Kind of contact law: normal force and tangential spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LawKind {
-    /// Linear springs of given stiffness.
+    /// Linear normal and tangential springs of given stiffness.
     #[default]
     Linear,
-    /// Hertz along the normal, Mindlin's spring along the tangent, from E and ν of both materials; spheres only.
+    /// Hertz's law along the normal and Mindlin's spring along the tangent. The stiffness follows from E and ν of both
+    /// materials. Spheres only.
     Hertz,
-    /// Coulomb friction without a spring, for bodies that deform themselves or are rigid.
+    /// Coulomb friction without springs, for solvers with deformable or rigid bodies.
     Coulomb,
 }
 
-/// Contact law between two materials: a spring and dashpot along the normal, an incremental spring and dashpot along
-/// the tangent, and rolling resistance. Coulomb friction with cohesion limits the tangential force: |F_s| ≤ F_n tan φ +
-/// c.
+/// Contact law between two materials. It has a spring and a dashpot along the normal, an incremental spring and a
+/// dashpot along the tangent, and rolling resistance. Coulomb friction with cohesion c limits the tangential force F_s:
+/// |F_s| ≤ F_n tan φ + c, with the normal force F_n.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
-    /// The two materials.
+    /// Names of the two materials, as in `materials`.
     pub between: [String; 2],
-    /// `linear` (the default), `hertz` or `coulomb`. All laws of a scene are of one kind.
+    /// Kind of the law: `linear` (the default), `hertz` or `coulomb`. All laws of a scene must be of one kind.
     #[serde(default)]
     pub law: LawKind,
     /// Normal stiffness k_n (N/m; N/m per metre of depth for discs). Required for linear laws.
     #[serde(default)]
     pub normal_stiffness: Option<f64>,
-    /// Tangential stiffness k_s (N/m). Required for linear laws with friction or cohesion.
+    /// Tangential stiffness k_s (N/m; N/m per metre of depth for discs). Required for linear laws with friction or
+    /// cohesion. Default 0.
     #[serde(default)]
     pub tangential_stiffness: f64,
-    /// Coefficient of friction μ = tan φ. Give this or `friction_angle_deg`; frictionless when both are absent.
+    /// Coefficient of friction μ = tan φ. Give at most one of `friction` and `friction_angle_deg`. Default 0.
     #[serde(default)]
     pub friction: Option<f64>,
-    /// Angle of friction φ (degrees).
+    /// Angle of friction φ (degrees), from 0 to below 90. Default 0.
     #[serde(default)]
     pub friction_angle_deg: Option<f64>,
-    /// Cohesion c (N): the shear strength at zero normal force.
+    /// Cohesion c (N): the largest tangential force at zero normal force. Default 0.
     #[serde(default)]
     pub cohesion: f64,
-    /// Stiffness-proportional contact damping β (s): dashpots c_n = β k_n and c_s = β k_s (Cundall & Strack 1979).
+    /// Stiffness-proportional contact damping β (s), with the normal and tangential dashpots c_n = β k_n and c_s = β
+    /// k_s (Cundall & Strack 1979). Not for Hertz contacts. Default 0.
     #[serde(default)]
     pub stiffness_damping: f64,
-    /// Mass-proportional normal damping γ_n (1/s): dashpot c_n = γ_n m_eff, with m_eff = m₁m₂/(m₁+m₂), m at a wall.
+    /// Mass-proportional normal damping γ_n (1/s), with the dashpot c_n = γ_n m_eff. The effective mass m_eff is
+    /// m₁m₂/(m₁+m₂) between grains, and m at a wall. Default 0.
     #[serde(default)]
     pub normal_damping: f64,
-    /// Mass-proportional tangential damping γ_t (1/s): dashpot c_s = γ_t m_eff.
+    /// Mass-proportional tangential damping γ_t (1/s), with the dashpot c_s = γ_t m_eff. Default 0.
     #[serde(default)]
     pub tangential_damping: f64,
-    /// Coefficient of restitution e, above 0 and at most 1. It sets a normal dashpot: c_n = 2ζ√(k_n m_eff) in linear
-    /// contacts, and 2√(5/6) ζ√(S m_eff) with S = dF/dδ in Hertz contacts. If a contact ends when its force returns to
-    /// zero, as in `dem`, e = exp(−2ζ acos ζ/√(1 − ζ²)). If it ends with the overlap, as in the other conventions,
-    /// e = exp(−πζ/√(1 − ζ²)). The dashpot lags by half a step and the contact begins within a step, so e has an error
-    /// of first order in the time step. Dashpots add up: with a further dashpot, grains rebound more slowly.
+    /// Coefficient of restitution e, above 0 and at most 1. It sets the damping ratio ζ of a normal dashpot: c_n =
+    /// 2ζ√(k_n m_eff) in linear contacts, and c_n = 2√(5/6) ζ√(S m_eff) with S = dF/dδ in Hertz contacts. In `dem`, a
+    /// contact ends when its force returns to zero, so that e = exp(−2ζ acos ζ/√(1 − ζ²)). In `dem:1979`, `dem:lammps`
+    /// and `dem:liggghts`, a contact ends when its overlap returns to zero, so that e = exp(−πζ/√(1 − ζ²)). The
+    /// simulated e has an error of first order in the time step, because the dashpot lags by half a step and the
+    /// contact begins within a step. All dashpots of a contact act together: with a further dashpot, grains rebound
+    /// more slowly. Default 1, without this dashpot.
     #[serde(default)]
     pub restitution: Option<f64>,
-    /// Coefficient of rolling resistance μ_r. The moment against rolling is at most μ_r R_eff F_n, with
-    /// R_eff = R₁R₂/(R₁+R₂), or R at a wall. It comes from an elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r²
-    /// R_eff² (Ai et al. 2011, model C).
+    /// Coefficient of rolling resistance μ_r. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² exerts
+    /// the moment against rolling (Ai et al. 2011, model C). The moment is at most μ_r R_eff F_n. The effective radius
+    /// R_eff is R₁R₂/(R₁+R₂) between grains, and R at a wall. Default 0.
     #[serde(default)]
     pub rolling_friction: f64,
-    /// Damping ratio η_r of the rolling spring. Until the spring yields, its moment is −2η_r√(I_r k_r) times the
-    /// rolling velocity.
+    /// Damping ratio η_r of the rolling spring. Until the spring yields, the damping moment is −2η_r√(I_r k_r) times
+    /// the rolling velocity (rad/s), with the moment of inertia I_r of the pair about the contact point. Default 0.
     #[serde(default)]
     pub rolling_damping: f64,
 }
 
-/// Contact law between two materials; see [`ContactSpec`] for the meaning of each number.
+/// Resolved contact law between two materials. [`ContactSpec`] explains each number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactLaw {
     /// Normal and tangential springs.
     pub springs: Springs,
-    /// Friction tan φ.
+    /// Coefficient of friction tan φ.
     pub friction: f64,
     /// Cohesion c (N).
     pub cohesion: f64,
@@ -93,7 +99,7 @@ pub struct ContactLaw {
     pub normal_damping: f64,
     /// Mass-proportional tangential damping γ_t (1/s).
     pub tangential_damping: f64,
-    /// Damping ratio ζ for the coefficient of restitution of a contact that ends with the overlap.
+    /// Damping ratio ζ that gives the coefficient of restitution if the contact ends when its overlap returns to zero.
     pub damping_ratio: f64,
     /// Coefficient of rolling resistance μ_r.
     pub rolling_friction: f64,
@@ -101,20 +107,20 @@ pub struct ContactLaw {
     pub rolling_damping: f64,
 }
 
-/// Kind of the springs of a law, named as in manifests and resolved scenes.
+/// Kind of the springs of a law, with the names used in manifests and resolved scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpringsKind {
-    /// Coulomb friction without a spring.
+    /// Coulomb friction without springs.
     Coulomb,
     /// Linear springs.
     Linear,
-    /// Hertz along the normal, Mindlin's spring along the tangent.
+    /// Hertz's law along the normal and Mindlin's spring along the tangent.
     HertzMindlin,
 }
 
 impl SpringsKind {
-    /// Returns the name.
+    /// Returns the name used in manifests and resolved scenes.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -125,15 +131,15 @@ impl SpringsKind {
     }
 }
 
-/// Springs of a contact law, serialised in the form that external solvers read.
+/// Springs of a contact law. They are serialised in the form that external solvers read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "law")]
 pub enum Springs {
-    /// Friction without a spring, for bodies that deform themselves or are rigid.
+    /// Friction without springs, for solvers with deformable or rigid bodies.
     #[default]
     #[serde(rename = "coulomb")]
     Absent,
-    /// F_n = k_n δ, with k_s along the tangent.
+    /// Linear springs: normal force F_n = k_n δ at the overlap δ, and tangential stiffness k_s.
     #[serde(rename = "linear")]
     Linear {
         /// Normal stiffness k_n (N/m; N/m per metre of depth for discs).
@@ -143,12 +149,13 @@ pub enum Springs {
         #[serde(rename = "tangential_stiffness")]
         tangential: f64,
     },
-    /// F_n = (4/3) E* √R* δ^{3/2}, and Mindlin's k_s = 8 G* √(R* δ) along the tangent.
+    /// Hertz's normal force F_n = (4/3) E* √R* δ^{3/2} at the overlap δ, with R* = R₁R₂/(R₁+R₂), and Mindlin's
+    /// tangential stiffness k_s = 8 G* √(R* δ).
     #[serde(rename = "hertz-mindlin")]
     Hertz {
-        /// 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂ (Pa).
+        /// Effective modulus E* (Pa): 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂.
         effective_modulus: f64,
-        /// 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ (Pa).
+        /// Effective shear modulus G* (Pa): 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂.
         effective_shear_modulus: f64,
     },
 }
@@ -189,8 +196,8 @@ impl Springs {
         }
     }
 
-    /// Returns the largest gap at which the springs act (m). It is zero, because bodies that do not overlap exert no
-    /// force.
+    /// Returns the largest gap at which the springs act (m). It is zero for all present laws: bodies without overlap
+    /// exert no force.
     #[must_use]
     pub const fn range(&self) -> f64 {
         match self {
@@ -198,8 +205,8 @@ impl Springs {
         }
     }
 
-    /// Returns the normal and tangential stiffness dF/dδ (N/m) at an overlap (m), for an effective radius
-    /// R* = R₁R₂/(R₁+R₂) (m). They are k_n and k_s for linear laws, and S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and
+    /// Returns the normal and tangential stiffness dF/dδ (N/m) at an overlap δ (m), for an effective radius R* =
+    /// R₁R₂/(R₁+R₂) (m). The stiffnesses are k_n and k_s for linear laws, and S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and
     /// Mindlin.
     #[must_use]
     pub fn stiffness(&self, overlap: f64, effective_radius: f64) -> (f64, f64) {
@@ -226,7 +233,7 @@ impl Springs {
 }
 
 impl ContactLaw {
-    /// Returns the coefficient of restitution e = exp(−πζ/√(1 − ζ²)) of the damping ratio.
+    /// Returns the coefficient of restitution e = exp(−πζ/√(1 − ζ²)) that follows from the damping ratio ζ.
     #[must_use]
     pub fn restitution(&self) -> f64 {
         libm::exp(-PI * self.damping_ratio / (1.0 - self.damping_ratio * self.damping_ratio).sqrt())
@@ -257,7 +264,7 @@ impl ContactLaw {
         matches!(self.springs, Springs::Hertz { .. })
     }
 
-    /// Returns true if the law has springs. Without springs, it only limits the tangential force.
+    /// Returns true if the law has springs. A law without springs only limits the tangential force.
     #[must_use]
     pub const fn has_stiffness(&self) -> bool {
         !matches!(self.springs, Springs::Absent)
@@ -275,13 +282,13 @@ impl ContactLaw {
         if let Springs::Linear { tangential, .. } = self.springs { tangential } else { 0.0 }
     }
 
-    /// Returns Hertz's E* (Pa); zero in other laws.
+    /// Returns Hertz's effective modulus E* (Pa); zero in other laws.
     #[must_use]
     pub const fn effective_modulus(&self) -> f64 {
         if let Springs::Hertz { effective_modulus, .. } = self.springs { effective_modulus } else { 0.0 }
     }
 
-    /// Returns Mindlin's G* (Pa); zero in other laws.
+    /// Returns Mindlin's effective shear modulus G* (Pa); zero in other laws.
     #[must_use]
     pub const fn effective_shear_modulus(&self) -> f64 {
         if let Springs::Hertz { effective_shear_modulus, .. } = self.springs { effective_shear_modulus } else { 0.0 }
@@ -297,8 +304,8 @@ impl ContactLaw {
         self.springs = self.springs.scaled([1.0, by]);
     }
 
-    /// Returns text that identifies the law in fingerprints: every number with all its digits. Stored results are found
-    /// by this text, so the order of the numbers must not change.
+    /// Returns text that identifies the law in fingerprints: every number with all its digits. The order of the numbers
+    /// must not change, because stored results are found by this text.
     #[must_use]
     pub fn identity(&self) -> String {
         let moduli = [self.effective_modulus(), self.effective_shear_modulus()];
@@ -356,7 +363,7 @@ impl ContactSpec {
             LawKind::Hertz => self.hertz(name, around)?,
             LawKind::Coulomb if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 => {
                 let key = key("normal_stiffness");
-                return Err(check.error(&key, "no stiffness: a `coulomb` contact has no spring", "one"));
+                return Err(check.error(&key, "no stiffness, because a `coulomb` contact has no spring", "one"));
             }
             LawKind::Coulomb => Springs::Absent,
         };
@@ -372,7 +379,7 @@ impl ContactSpec {
         };
         let normal = check.positive(&key("normal_stiffness"), stiffness, "stiffness (N/m)")?;
         let tangential = if has_friction {
-            let what = "stiffness (N/m), since there is friction";
+            let what = "stiffness (N/m), because there is friction";
             check.positive(&key("tangential_stiffness"), self.tangential_stiffness, what)?
         } else {
             check.not_negative(&key("tangential_stiffness"), self.tangential_stiffness, "stiffness (N/m)")?
@@ -385,14 +392,18 @@ impl ContactSpec {
         let check = around.check;
         let key = |part: &str| format!("contacts.{name}.{part}");
         if around.grain_shape == GrainShape::Disc {
-            return Err(check.error(&key("law"), "`linear` between discs: Hertz's law is for spheres", "`hertz`"));
+            return Err(check.error(
+                &key("law"),
+                "`linear` between discs, because Hertz's law is for spheres",
+                "`hertz`",
+            ));
         }
         if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 {
-            let expected = "no stiffness: a Hertz contact takes it from E and ν of the materials";
+            let expected = "no stiffness, because a Hertz contact computes it from E and ν of the materials";
             return Err(check.error(&key("normal_stiffness"), expected, "one"));
         }
         if self.stiffness_damping != 0.0 {
-            let expected = "`normal_damping` or `restitution` in a Hertz contact, which has no one stiffness";
+            let expected = "`normal_damping` or `restitution`, because the stiffness of a Hertz contact varies";
             return Err(check.error(&key("stiffness_damping"), expected, &self.stiffness_damping.to_string()));
         }
         let (mut compliance, mut shear_compliance) = (0.0, 0.0);
@@ -403,7 +414,8 @@ impl ContactSpec {
                 continue;
             }
             let (Some(young), Some(poisson)) = (properties.young_modulus, properties.poisson_ratio) else {
-                let expected = "`young_modulus` and `poisson_ratio` (or `rigid = true`), since it has Hertz contacts";
+                let expected = "`young_modulus` and `poisson_ratio` (or `rigid = true`), because the material has \
+                                Hertz contacts";
                 return Err(check.error(&format!("materials.{material}"), expected, "not both"));
             };
             check.positive(&key_of("young_modulus"), young, "modulus (Pa)")?;
@@ -415,7 +427,7 @@ impl ContactSpec {
             shear_compliance += 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
         }
         if compliance == 0.0 {
-            return Err(check.error(&key("between"), "at least one material that is not rigid", "two rigid ones"));
+            return Err(check.error(&key("between"), "at least one material that is not rigid", "two rigid materials"));
         }
         Ok(Springs::Hertz { effective_modulus: 1.0 / compliance, effective_shear_modulus: 1.0 / shear_compliance })
     }

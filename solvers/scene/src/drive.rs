@@ -1,5 +1,5 @@
-//! Main loop of a run, shared by all solvers. It records the output that is due, notifies the observer and stores
-//! checkpoints. It also measures the wall-clock time from the first step of any kind, relaxation included, to the last.
+//! Main loop of a run, shared by all solvers. It advances the simulation, records output, and passes progress,
+//! snapshots and checkpoints to the observer. It also measures the wall-clock time, relaxation included.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// State that can be advanced in time.
 pub trait Stepper {
-    /// Runs the phase before t = 0, such as relaxation. The steps of this phase count as cost.
+    /// Runs the phase before t = 0, such as a relaxation. The cost of the run includes the steps of this phase.
     ///
     /// # Errors
     /// When the simulation breaks.
@@ -20,7 +20,7 @@ pub trait Stepper {
         Ok(())
     }
 
-    /// Returns the number of particles that take every step; by default the number of grains.
+    /// Returns the number of particles that each step advances. By default, this is the number of grains.
     fn particles(&self, scene: &Scene) -> u64 {
         scene.grains.len() as u64
     }
@@ -34,26 +34,28 @@ pub trait Stepper {
     /// When the simulation breaks.
     fn advance(&mut self, steps: u64) -> Result<(), RunError>;
 
-    /// Returns the state after the last step, with all snapshot data if `snapshot` is true. This function is called at
-    /// most once per step, because a second call may return no contacts.
+    /// Returns the state after the last step, with all snapshot data if `snapshot` is true. A second call at the same
+    /// step may return no contacts.
     fn look(&mut self, snapshot: bool) -> StepState;
 
-    /// Returns the number of rows of grains, contacts and points that a snapshot would have now.
+    /// Returns the number of rows (grains, contacts and material points) that a snapshot would now have. By default,
+    /// this is the number of particles.
     fn rows(&self, scene: &Scene) -> u64 {
         self.particles(scene)
     }
 
-    /// Returns true if a snapshot would have at most `most_rows` rows now.
+    /// Returns true if a snapshot would now have at most `most_rows` rows.
     fn shows(&self, scene: &Scene, most_rows: u64) -> bool {
         self.rows(scene) <= most_rows
     }
 
-    /// Summarises the state after the last step, for steps whose snapshot is not wanted.
+    /// Returns a summary of the state after the last step. The observer receives this summary instead of a snapshot
+    /// with too many rows.
     fn brief(&mut self) -> Brief {
         Brief::of_look(&self.look(false))
     }
 
-    /// Returns the work counters so far, such as steps, contact evaluations and neighbour builds.
+    /// Returns the work counters since the start, such as steps, contact evaluations and neighbour builds.
     fn counts(&self) -> Counts;
 
     /// Returns the state after the last step, as the initial state of another scene; `None` if the solver does not
@@ -71,21 +73,21 @@ pub trait Stepper {
     }
 }
 
-/// Scene, time step and number of steps for the main loop.
+/// Inputs of the main loop.
 pub struct Course<'a> {
-    /// The scene.
+    /// Scene of the run.
     pub scene: &'a Scene,
     /// Time step (s).
     pub time_step: f64,
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub steps: u64,
-    /// Record of a continued run; `None` for a new run.
+    /// Record so far of a continued run; `None` for a new run.
     pub resumed: Option<Recorder>,
     /// Largest number of steps between two progress reports.
     pub between_progress: u64,
 }
 
-/// Results of the main loop.
+/// Time series, snapshots and cost that [`Course::drive`] returns.
 pub struct LoopOutput {
     /// Time series.
     pub series: Series,
@@ -99,8 +101,8 @@ impl Course<'_> {
     /// Advances a state to the end of the run.
     ///
     /// # Errors
-    /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The watcher
-    /// receives the partial results of a run that broke or was interrupted.
+    /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The observer
+    /// receives the partial output of a run that broke or was interrupted.
     pub fn drive(mut self, stepper: &mut dyn Stepper, observer: &mut dyn Observer) -> Result<LoopOutput, RunError> {
         let particles = stepper.particles(self.scene);
         observer.begin(RunOutline { time_step: self.time_step, steps: self.steps, particles });
@@ -112,7 +114,7 @@ impl Course<'_> {
             None => begun,
             Some(resumed) if resumed.is_of(&begun) && stepper.step() <= self.steps => resumed,
             Some(_) => {
-                let reason = "its steps or samples are not those of the run that it says it is of";
+                let reason = "its steps or samples differ from those of the run that it names";
                 return Err(CheckpointError::Damaged(reason.to_owned()).into());
             }
         };
@@ -126,7 +128,7 @@ impl Course<'_> {
                     }
                     Some(look.snapshot)
                 }
-                // The contacts of the last look belong to an earlier step.
+                // The stored contacts belong to an earlier step.
                 RunError::Broken(_) | RunError::NotFinite { .. } => {
                     Some(Snapshot { contacts: None, ..stepper.look(true).snapshot })
                 }

@@ -1,6 +1,6 @@
-//! List of physical effects. Each effect has a name, a scene key that turns it on, and a function that switches it off.
-//! Most effects have a neutral value, which turns them on without changing results. The effects of a scene are always
-//! derived from this list.
+//! List of physical effects. Each effect has a name, a scene key that switches it on, and a function that switches it
+//! off. Most effects have a neutral value, which switches them on without changing results. The effects of a scene are
+//! always determined from this list.
 
 use crate::contact_law::{ContactLaw, Springs};
 use crate::material::Deformable;
@@ -16,12 +16,12 @@ pub enum Effect {
     Friction,
     /// Tangential strength of a contact at zero normal force.
     Cohesion,
-    /// Hertz contacts instead of linear springs. This is another law, so it cannot be switched off.
+    /// Hertz contacts instead of linear springs. They cannot be switched off, because that would need another law.
     Hertz,
     /// Contact dashpots, including those of a coefficient of restitution.
     ContactDamping,
-    /// Normal dashpots that set a coefficient of restitution. They are part of contact damping and switched off with
-    /// it.
+    /// Normal dashpots that set a coefficient of restitution. They belong to the contact dashpots: without contact
+    /// damping, they are off too.
     Restitution,
     /// Moments against rolling.
     RollingResistance,
@@ -80,7 +80,7 @@ impl Effect {
         }
     }
 
-    /// Returns the name in files.
+    /// Returns the name of the effect in files.
     #[must_use]
     pub const fn key_word(self) -> &'static str {
         match self {
@@ -112,13 +112,13 @@ impl Effect {
             Self::GlobalDamping => "without global damping",
             Self::Gravity => "without gravity",
             Self::PeriodicAxes => "without periodic axes",
-            Self::MovingWalls => "with walls that stand still",
+            Self::MovingWalls => "with walls at rest",
             Self::Plasticity => "without plasticity",
             Self::Viscosity => "without viscosity",
         }
     }
 
-    /// Returns the scene key that turns the effect on, with its value; `None` if the effect is off.
+    /// Returns the scene key that switches the effect on, with its value; `None` if the effect is off.
     #[must_use]
     pub fn key(self, scene: &Scene) -> Option<String> {
         match self {
@@ -161,14 +161,16 @@ impl Effect {
         }
     }
 
-    /// Returns true if the effect applies to a method: only deformable bodies yield and have a viscosity.
+    /// Returns true if the effect exists in a method. Plasticity and viscosity exist only in deformable bodies on a
+    /// grid.
     #[must_use]
     pub fn concerns(self, method: Method) -> bool {
         !matches!(self, Self::Plasticity | Self::Viscosity) || method == Method::Grid
     }
 
-    /// Returns the methods whose loops omit the effect when it is off. These methods are also tested with a neutral
-    /// value. On a grid, gravity and damping cost one product and one sum per node, so they are never omitted.
+    /// Returns the methods whose loops omit the effect when it is off. These methods are also tested with the neutral
+    /// value. Methods on a grid never omit gravity and damping, because both cost only one product and one sum per
+    /// node.
     #[must_use]
     pub const fn left_out_by(self) -> &'static [Method] {
         match self {
@@ -184,7 +186,7 @@ impl Effect {
         self.key(scene).is_some()
     }
 
-    /// Switches the effect off.
+    /// Switches the effect off. Without friction, cohesion and rolling resistance are off too.
     pub fn switch_off(self, scene: &mut Scene) {
         match self {
             Self::Friction => scene.change_laws(|law| {
@@ -229,9 +231,10 @@ impl Effect {
         }
     }
 
-    /// Switches the effect on with a neutral value, and returns false if there is none. Neutral values are a law of a
-    /// material that no grain has, a rate lost in rounding, or a motion after the end. Gravity is so small that a step
-    /// below 0.5 s rounds it to zero.
+    /// Switches the effect on with a neutral value; returns false if it has none. Neutral values are a contact law of
+    /// an unused material, a global damping or viscosity that is lost in rounding, a yield stress that is never
+    /// reached, and a wall motion after the end of the run. The neutral gravity is so small that its product with a
+    /// time step below 0.5 s is zero.
     #[must_use]
     pub fn switch_on_idly(self, scene: &mut Scene) -> bool {
         match self {
@@ -259,7 +262,7 @@ impl Effect {
             }
             Self::MovingWalls => match scene.walls.first_mut() {
                 Some(wall) => {
-                    // The wall would move long after the run.
+                    // The motion begins long after the end of the run.
                     let velocity = Vector3::new(1.0, 0.0, 0.0);
                     let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
                     wall.motion.phases.push(Phase { velocity, spin: Vector3::zeros(), start, stop });
@@ -280,16 +283,17 @@ impl Effect {
                 };
                 scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
             }
-            // A periodic domain of any size changes the positions of grains, and another law changes the results.
+            // A periodic domain of any size changes the positions of grains. Hertz contacts and restitution change the
+            // results.
             Self::PeriodicAxes | Self::Hertz | Self::Restitution => false,
         }
     }
 }
 
-/// Smallest positive number (m/s² for gravity): its product with a step below 0.5 s is zero.
+/// Smallest positive floating-point number, used as gravity (m/s²). Its product with a time step below 0.5 s is zero.
 const SMALLEST: f64 = f64::from_bits(1);
 
-/// Returns the key of the first law in which a value is not zero.
+/// Returns the key with its value for the first law in which the value is not zero; `None` if there is none.
 fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Option<String> {
     let count = scene.materials.len();
     scene.laws.iter().enumerate().find_map(|(at, law)| {
@@ -299,19 +303,20 @@ fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Optio
     })
 }
 
-/// Returns the coefficient of restitution given in the scene, rounded to twelve digits; 0 without its dashpot.
+/// Returns the coefficient of restitution given in the scene, rounded to twelve decimal places; 0 if the law has no
+/// such dashpot.
 fn restitution(law: &ContactLaw) -> f64 {
     if law.damping_ratio == 0.0 { 0.0 } else { (1e12 * law.restitution()).round() / 1e12 }
 }
 
-/// Gives linear springs a tangential stiffness equal to the normal one.
+/// Sets the tangential stiffness of linear springs to the normal stiffness.
 const fn bear_shear(law: &mut ContactLaw) {
     if let Springs::Linear { normal, tangential } = &mut law.springs {
         *tangential = *normal;
     }
 }
 
-/// Adds a material that no grain has, with its own law. Returns false if the scene has no law.
+/// Adds an unused material with a changed copy of the first law of the scene. Returns false if the scene has no law.
 fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
     let Some(mut law) = scene.laws.iter().flatten().next().copied() else { return false };
     change(&mut law);
@@ -335,7 +340,7 @@ fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-    /// The scene gives a coefficient of restitution, not a damping ratio.
+    /// The key of the effect shows the coefficient of restitution of the scene, not the damping ratio.
     #[test]
     fn restitution_is_told_as_the_scene_has_it() {
         let mut law = ContactLaw::default();
@@ -351,7 +356,7 @@ mod tests {
     use crate::source::SceneSource;
     use std::path::Path;
 
-    /// A neutral value must turn its effect on; otherwise the kernel without the effect would be tested.
+    /// A neutral value must switch the effect on. Otherwise, tests would run the kernel without the effect.
     #[test]
     fn what_is_switched_on_idly_is_on() {
         let text = "title = 'two discs'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 1.0\n\

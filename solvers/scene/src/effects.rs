@@ -1,4 +1,4 @@
-//! Effects that a scene uses, as flags by which solvers select kernels. They are derived from the list of effects.
+//! Effects that a scene uses, as flags. Solvers select their kernels from these flags.
 
 use crate::effect::Effect;
 use crate::scene::Scene;
@@ -7,7 +7,7 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
     /// Tangential forces or rolling moments at contacts: at least one law has friction, cohesion or rolling resistance.
-    /// Without them no torque acts, and no grain carries contact history or spin.
+    /// Without this effect, no torque acts, and solvers need no contact history and no spin.
     pub friction: bool,
     /// Dashpots at contacts: at least one law has a damping coefficient or a restitution below 1.
     pub contact_damping: bool,

@@ -1,9 +1,9 @@
-//! Final state of a run, from which another scene can begin. It contains grains with their velocities and spins, and
-//! contact history. Unlike a data file, it keeps the contact springs, whose friction supports a heap.
+//! Final state of a run, from which another scene can start. It contains the grains with their velocities and spins,
+//! and the contact history. A LAMMPS data file does not contain this history, although a heap is stable only with its
+//! friction springs.
 //!
-//! A file holds the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
-//! [`EndState`] in postcard's format. This format keeps every bit of a number. The smaller form is described in
-//! `rounded_state`.
+//! A file contains the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
+//! [`EndState`] in postcard's format, which keeps every bit of a number. `rounded_state` describes a smaller form.
 
 use crate::rounded_state::{self, PackedState};
 use crate::sealed::{self, SealError};
@@ -25,7 +25,7 @@ const MOST: u64 = 1 << 32;
 /// Final state of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndState {
-    /// Title of the scene, and solver.
+    /// Title of the scene, and name of the solver.
     pub of: [String; 2],
     /// Number of dimensions.
     pub dimension: usize,
@@ -33,7 +33,7 @@ pub struct EndState {
     pub time: f64,
     /// Names of the materials of grains.
     pub materials: Vec<String>,
-    /// The grains, in order of id.
+    /// Grains, in order of id.
     pub grains: Vec<StateGrain>,
     /// Contact history.
     pub springs: Springs,
@@ -57,16 +57,17 @@ pub struct StateGrain {
 /// Contact history in the layout of a solver.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Springs {
-    /// Layout, as text that changes with the layout.
+    /// Text that identifies the layout of the history values of a contact.
     pub layout: String,
-    /// Contacts between grains: the indices of both grains, and the history values as seen from the first grain.
+    /// Contacts between grains: the indices of the two grains, and the history values with the sign for the first
+    /// grain.
     pub pairs: Vec<(u32, u32, Vec<f64>)>,
     /// Contacts with walls: the index of the grain, the name of the wall, and the history values.
     pub walls: Vec<(u32, String, Vec<f64>)>,
 }
 
 impl Springs {
-    /// Returns every bit of the history, contact by contact.
+    /// Returns all data of the history as bytes, contact by contact.
     #[must_use]
     pub fn bits(&self) -> Vec<u8> {
         let Self { layout, pairs, walls } = self;
@@ -97,7 +98,7 @@ impl Springs {
 }
 
 impl EndState {
-    /// Returns the bytes of the file.
+    /// Returns the bytes of a file that keeps every bit of the state.
     ///
     /// # Errors
     /// When a part of the state cannot be serialised; the error is a message.
@@ -105,7 +106,8 @@ impl EndState {
         sealed_body(self, MAGIC, FORMAT)
     }
 
-    /// Returns the bytes of a file of about half the size. Positions, velocities, spins and springs are rounded.
+    /// Returns the bytes of a file about half as large as that of [`Self::to_bytes`]. Positions, velocities, spins and
+    /// springs are rounded.
     ///
     /// # Errors
     /// When a part of the state cannot be rounded; the error is a message.
@@ -113,8 +115,9 @@ impl EndState {
         sealed_body(&PackedState::new(self, rounded_state::ROUNDING)?, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
-    /// Returns the bytes of a file of about a quarter of that size, for a bed at rest. Positions are rounded more
-    /// coarsely; velocities, spins and springs are omitted.
+    /// Returns the bytes of a file for a bed at rest. A sphere takes about 12 B, compared with about 70 B in a file of
+    /// [`Self::to_rounded_bytes`] with springs. Positions are rounded more coarsely. Velocities, spins and springs are
+    /// omitted.
     ///
     /// # Errors
     /// When a part of the state cannot be rounded; the error is a message.
@@ -132,10 +135,10 @@ impl EndState {
         sealed_body(&packed, rounded_state::MAGIC, rounded_state::FORMAT)
     }
 
-    /// Reads a state from the bytes of a file in either form.
+    /// Reads a state from the bytes of an exact or a rounded file.
     ///
     /// # Errors
-    /// When the bytes are not a valid state; the error names what was found.
+    /// When the bytes are not a valid state. The error is a description of the found data.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let state: Self = if bytes.starts_with(rounded_state::MAGIC) {
             body_of::<PackedState>(bytes, rounded_state::MAGIC, rounded_state::FORMAT)?.state()?
@@ -155,7 +158,7 @@ impl EndState {
         match (of_grains, finite) {
             (true, true) => Ok(state),
             (true, false) => Err("a number that is not finite".to_owned()),
-            (false, _) => Err("springs or materials of grains that it does not have".to_owned()),
+            (false, _) => Err("springs or materials of grains that the file does not contain".to_owned()),
         }
     }
 }
@@ -164,7 +167,7 @@ fn is_finite(vector: &Vector3<f64>) -> bool {
     vector.iter().all(|number| number.is_finite())
 }
 
-/// Serialises a value as a sealed file of one kind.
+/// Returns the bytes of a sealed file with a compressed value.
 fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u8>, String> {
     let body = postcard::to_allocvec(body).map_err(|error| error.to_string())?;
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -172,16 +175,16 @@ fn sealed_body(body: &impl Serialize, magic: &[u8], format: u32) -> Result<Vec<u
     Ok(sealed::seal(magic, format, &packed))
 }
 
-/// Reads the value in a sealed file of one kind.
+/// Reads the compressed value in a sealed file.
 fn body_of<T: DeserializeOwned>(bytes: &[u8], magic: &[u8], format: u32) -> Result<T, String> {
     let packed = sealed::open(magic, format, bytes).map_err(|broken| match broken {
         SealError::Foreign => "another kind of file".to_owned(),
         SealError::Older(found) => format!("format {found}, which an older version of the program wrote"),
         SealError::Newer(found) => format!("format {found}, which a newer version of the program wrote"),
         SealError::Length(expected, found) => {
-            format!("{found} bytes where it says {expected}: it is cut off or changed")
+            format!("{found} bytes instead of the stated {expected}; the file is truncated or changed")
         }
-        SealError::Changed => "bytes that are not those that were written".to_owned(),
+        SealError::Changed => "bytes that differ from the written bytes".to_owned(),
     })?;
     let mut body = Vec::new();
     let unpacked = ZlibDecoder::new(packed).take(MOST).read_to_end(&mut body);
@@ -213,7 +216,7 @@ mod tests {
         EndState { of: origin, dimension: 3, time: 1.5, materials, grains: vec![grain(0.1), grain(0.2)], springs }
     }
 
-    /// Positions move by at most half a rounding step, which is 2⁻²⁰ · 2⁻¹ m.
+    /// Positions move by at most half a rounding step. The step is 2⁻²⁰ · 2⁻¹ m, because the smallest radius is 2⁻¹ m.
     #[test]
     fn a_bed_at_rest_keeps_its_places_and_nothing_else() {
         let bytes = state().to_bytes_at_rest().unwrap();
@@ -247,7 +250,8 @@ mod tests {
     #[test]
     fn a_state_is_rounded_once_and_by_as_much_as_is_said() {
         let mut exact = state();
-        // Two sizes, named walls, and contacts with either grain first.
+        // The state has two sizes of grains, two walls, and contacts in which the first index is the smaller or the
+        // larger one.
         let third =
             StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
         exact.grains.push(third);

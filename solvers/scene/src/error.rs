@@ -1,4 +1,4 @@
-//! Errors in a scene, worded so that its author can correct them.
+//! Errors in a scene, with messages that help its author to correct them.
 
 use crate::text::tamed;
 use thiserror::Error;
@@ -19,7 +19,7 @@ pub struct SceneError {
     pub help: Option<String>,
 }
 
-/// Returns the error as one sentence, with the text of the file unchanged.
+/// Returns the error message, in which control characters from the scene file are not yet escaped.
 fn message(error: &SceneError) -> String {
     let SceneError { place, key, expected, found, help } = error;
     format!("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))
@@ -36,7 +36,7 @@ fn help_suffix(help: Option<&str>) -> String {
 /// Returns `did you mean …?` for a mistyped word if a known word is close to it.
 #[must_use]
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    // One missing, extra, changed or swapped letter counts as closer than any similarity.
+    // One missing, extra, changed or swapped letter counts as closer than any other difference.
     let likeness = |candidate: &str| match strsim::osa_distance(word, candidate) {
         1 if candidate.len() > 2 => 1.0,
         _ => strsim::jaro_winkler(word, candidate),
@@ -62,7 +62,7 @@ mod tests {
         assert_eq!(did_you_mean("quux", known), None);
     }
 
-    /// Text of the file appears in the message, but its control characters are escaped.
+    /// The message is one line: control characters in text from the scene file are escaped.
     #[test]
     fn is_one_line_whatever_stood_there() {
         let error = SceneError {

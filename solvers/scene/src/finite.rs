@@ -1,4 +1,4 @@
-//! Finds numbers that are not finite in a state of any type.
+//! Search for numbers that are not finite in a value of any serialisable type.
 
 use serde::ser::{
     self, Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
@@ -12,10 +12,10 @@ pub fn is_finite(value: &impl Serialize) -> bool {
     value.serialize(Search).is_ok()
 }
 
-/// Walks through a value and stops at a number that is not finite.
+/// Serialiser that visits all parts of a value and returns an error at the first number that is not finite.
 struct Search;
 
-/// A number that is not finite.
+/// Error: the value contains a number that is not finite.
 #[derive(Debug)]
 struct NonFiniteNumber;
 
@@ -35,14 +35,14 @@ impl ser::Error for NonFiniteNumber {
 
 type FiniteResult = Result<(), NonFiniteNumber>;
 
-/// Methods for values without a floating-point number.
+/// Serialiser methods for values without floating-point numbers.
 macro_rules! passed_over {
     ($($method:ident($($kind:ty),*);)*) => {
         $(fn $method(self, $(_: $kind),*) -> FiniteResult { Ok(()) })*
     };
 }
 
-/// Traits of values that consist of several parts.
+/// Implementations of serialiser traits for values with several parts.
 macro_rules! parts {
     ($($part:ident: $($method:ident),*;)*) => {
         $(impl $part for Search {
@@ -54,7 +54,7 @@ macro_rules! parts {
     };
 }
 
-/// The same for parts with names.
+/// Implementations of serialiser traits for values with named parts.
 macro_rules! named_parts {
     ($($part:ident),*) => {
         $(impl $part for Search {

@@ -13,7 +13,7 @@ pub struct Function {
     pub stop: f64,
 }
 
-/// Functions of the time τ since their start (s).
+/// Kind of function of the time τ since the start (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FunctionKind {
     /// Oscillation A (sin(2πfτ + φ) − sin φ), which starts at zero displacement.
@@ -25,7 +25,8 @@ pub enum FunctionKind {
         /// Phase φ (rad).
         phase: f64,
     },
-    /// Velocity V reached at a constant rate over a time T: V τ²/2T, and V (τ − T/2) from T on.
+    /// Ramp: the velocity rises from zero to V at a constant rate over a time T. The displacement is V τ²/2T until τ =
+    /// T, and V (τ − T/2) afterwards.
     Ramp {
         /// Velocity V (m/s).
         velocity: Vector3<f64>,

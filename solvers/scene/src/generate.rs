@@ -23,9 +23,9 @@ pub fn lattice(origin: Vector3<f64>, spacing: Vector3<f64>, count: [u32; 3]) -> 
     centres
 }
 
-/// Returns the centres of a close-packed lattice (m). Rows lie along x, and every second row is shifted by half a
-/// spacing. In three dimensions, the rows of each layer lie over the hollows of the layer below. The fourth layer lies
-/// above the first (face-centred cubic).
+/// Returns the centres of a close-packed lattice (m). Rows lie along x, and every second row is shifted by half the
+/// spacing. In three dimensions, the grains of each layer lie above the hollows of the layer below. The fourth layer
+/// lies exactly above the first (face-centred cubic).
 #[must_use]
 pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<Vector3<f64>> {
     let row = spacing * 0.75_f64.sqrt();
@@ -40,7 +40,7 @@ pub fn close_packed(origin: Vector3<f64>, spacing: f64, count: [u32; 3]) -> Vec<
     centres
 }
 
-/// Moves each position by up to `most` (m) in a random direction, uniformly over the ball or disc.
+/// Displaces each position by a random vector from a disc or ball of radius `most` (m), with uniform probability.
 pub fn perturb(places: &mut [Vector3<f64>], most: f64, seed: u64, dimension: Dimension) {
     let mut generator = Pcg64::seed_from_u64(seed);
     for place in places {
@@ -61,15 +61,15 @@ pub struct PlacedGrain {
     pub velocity: Vector3<f64>,
 }
 
-/// Number of visits of spheres and cells before the search for room ends; about a minute.
+/// Number of visits of spheres and cells after which the search for room ends. These visits take about a minute.
 const VISITS: u64 = 20_000_000_000;
 
-/// Reason that grains could not be placed at random.
+/// Reason why grains could not be placed at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoRoom {
     /// Fraction of the domain that all grains would fill.
     pub share: f64,
-    /// True if the search needs too much work; false if tries found no room for a grain.
+    /// True if the search needs too much work; false if 10,000 tries found no room for a grain.
     pub is_costly: bool,
 }
 
@@ -107,7 +107,7 @@ fn random_within(
     for &radius in &sizes {
         let position = (0..TRIES).take_while(|_| taken.visits.get() < most).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
-            // Most positions are taken, so images are made only if the position itself is free.
+            // Most positions are not free, so periodic images are tested only if the position itself is free.
             let is_free = taken.is_free(centre, radius)
                 && images(centre, domain, cell)[1..].iter().all(|&image| taken.is_free(image, radius));
             is_free.then_some(centre)
@@ -145,7 +145,7 @@ fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
     }
 }
 
-/// Returns the centre and its periodic images within one cell of the domain.
+/// Returns the centre, and its periodic images that lie less than one cell width outside the domain.
 fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![centre];
     for axis in 0..3 {
@@ -165,8 +165,8 @@ fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>>
     images
 }
 
-/// Spheres placed so far, hashed by cell. A cell is as wide as the largest diameter. Distant cells may share a bucket;
-/// this costs extra distance tests, but no sphere is missed.
+/// Spheres placed so far, in a hash table of cells. A cell is as wide as the largest diameter. Distant cells may share
+/// a bucket. This costs additional distance tests, but no overlap is missed.
 struct PlacedSpheres {
     /// Edge of a cell (m).
     cell: f64,
@@ -217,7 +217,7 @@ impl PlacedSpheres {
 
     /// Returns true if a sphere overlaps one of the spheres in the bucket of a cell.
     fn overlaps_in(&self, cell: [i64; 3], centre: Vector3<f64>, radius: f64) -> bool {
-        // Most spheres are farther apart than rounding, and need no square root.
+        // The first comparison excludes most spheres without a square root.
         const ROUNDING: f64 = 1.0 + 1e-12;
         let spheres = &self.buckets[self.bucket(cell)];
         self.visits.update(|visits| visits + 1 + spheres.len() as u64);
@@ -232,7 +232,7 @@ impl PlacedSpheres {
 mod tests {
     use super::*;
 
-    /// The work of grains that find room late is bounded, and the error distinguishes it from a lack of room.
+    /// The work of a search is bounded. The error distinguishes too much work from a lack of room.
     #[test]
     fn a_costly_search_ends() {
         let high = Vector3::new(1.0, 1.0, 0.5);
@@ -264,7 +264,7 @@ mod tests {
         perturb(&mut moved, 0.1, 3, Dimension::Two);
         let distances: Vec<f64> = whole.iter().zip(&moved).map(|(a, b)| (a - b).norm()).collect();
         assert!(distances.iter().all(|distance| (0.0..=0.1).contains(distance)));
-        // Uniformly over a disc: the mean distance is two thirds of its radius.
+        // For a uniform distribution over a disc, the mean distance is two thirds of the radius.
         let mean = distances.iter().sum::<f64>() / 100.0;
         assert!((mean - 0.0667).abs() < 0.006, "{mean}");
         assert!(moved.iter().all(|centre| centre.z == 0.0));

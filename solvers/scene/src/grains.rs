@@ -1,16 +1,16 @@
-//! Grains of a scene. All copies share them until one copy changes.
+//! List of the grains of a scene, shared by all copies until one of them changes.
 
 use crate::scene::Grain;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// Grains of a scene. Copies share the grains. A copy that changes gets its own grains.
+/// List of the grains of a scene. Copies share the same list. A copy that changes gets its own list.
 #[derive(Clone, Default, PartialEq)]
 pub struct Grains(Arc<Vec<Grain>>);
 
 impl Grains {
-    /// Returns every bit of the grains, one grain after the other.
+    /// Returns all data of the grains as bytes, one grain after the other.
     #[must_use]
     pub fn bits(&self) -> Vec<u8> {
         let mut bits = Vec::with_capacity(self.len() * size_of::<Grain>());

@@ -1,5 +1,5 @@
-//! Stored records of finished runs, which only this program reads. A file holds the line `grainbench record <format>`,
-//! length and hash (see `sealed`), a name, and a [`Record`] in postcard's format. This format keeps every bit of a
+//! Stored records of finished runs, which only this program reads. A file contains the line `grainbench record
+//! <format>`, length and hash (see `sealed`), a name, and a [`Record`] in postcard's format, which keeps every bit of a
 //! number.
 
 use crate::record::Record;
@@ -7,7 +7,7 @@ use crate::sealed;
 use serde::{Deserialize, Serialize};
 
 const MAGIC: &[u8] = b"grainbench record ";
-/// Format that this program writes. It must be raised whenever stored data change their meaning or their position.
+/// Format that this program writes. It must be increased whenever the meaning or the position of stored data changes.
 const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
@@ -22,7 +22,7 @@ struct OwnedRecord {
     record: Record,
 }
 
-/// Returns the bytes of a record with its name.
+/// Returns the bytes of a file with a record and its name.
 ///
 /// # Errors
 /// When the record cannot be serialised. Records of solvers always can.
@@ -30,7 +30,8 @@ pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
     Ok(sealed::seal(MAGIC, FORMAT, &body(name, record)?))
 }
 
-/// Returns the bytes without header and hash. Two records of one name are equal bit for bit if these bytes are.
+/// Returns the bytes of the file without header and hash. Two records of the same name are equal bit for bit if these
+/// bytes are equal.
 ///
 /// # Errors
 /// When the record cannot be serialised.
@@ -38,7 +39,7 @@ pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
     postcard::to_allocvec(&BorrowedRecord { name, record }).map_err(|error| error.to_string())
 }
 
-/// Reads the record stored under this name; `None` if the bytes are damaged, of another format or of another name.
+/// Reads the record from the bytes of a file; `None` if the bytes are damaged, or have another format or another name.
 #[must_use]
 pub fn from_bytes(name: &str, bytes: &[u8]) -> Option<Record> {
     let body = sealed::open(MAGIC, FORMAT, bytes).ok()?;

@@ -1,7 +1,7 @@
-//! Scenes of grains with their contents and physics, and the output of solvers.
+//! Scenes (grains, bodies, walls, contact laws) and the records that solvers return.
 //!
-//! A scene names no solver. It is read from a file ([`source::SceneSource`]), resolved ([`scene::Scene`]), and passed
-//! to a [`solver::Solver`], which returns a [`record::Record`].
+//! A scene does not depend on a solver. [`source::SceneSource`] reads it from a file and resolves it to a
+//! [`scene::Scene`]. A [`solver::Solver`] runs the scene and returns a [`record::Record`].
 
 pub mod body;
 pub mod brief;
@@ -50,7 +50,7 @@ pub mod terms;
 pub mod text;
 pub mod virial;
 
-/// Vectors of scenes and records, for authors of solvers.
+/// Vector and matrix types of scenes and records, re-exported for authors of solvers.
 pub use nalgebra;
 
 /// Returns the JSON schema of scene files.

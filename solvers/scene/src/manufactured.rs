@@ -1,22 +1,24 @@
-//! Manufactured solutions, which are chosen motions with the body forces that make them exact in a neo-Hookean
-//! material.
+//! Manufactured solutions: chosen motions, and the body forces that make them exact in a neo-Hookean material.
 
 use libm::{cos, log, sin, sincos};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 
-/// Chosen motion. Both motions are exact for τ = λ ln J + G (b − 1) (Kamojjala, Brannon, Sadeghirad & Guilkey 2015).
+/// Chosen motion of a manufactured solution. The body forces hold for the Kirchhoff stress τ = λ (ln J) 1 + G (b − 1).
+/// J = det F and b = F Fᵀ belong to the deformation gradient F, and 1 is the unit tensor (Kamojjala, Brannon,
+/// Sadeghirad & Guilkey 2015).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Manufactured {
-    /// u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ₀), in a periodic box of length L along x.
+    /// Displacement u_x = A sin(2πX/L) sin(cπt/L) in a periodic box of length L along x. X is the initial position, t
+    /// the time, and c = √(E/ρ₀) the bar wave speed.
     AxisAligned {
         /// Amplitude A (m), below L/2π.
         amplitude: f64,
         /// Length L of the box (m).
         length: f64,
     },
-    /// Rotation of each circle of radius R about the origin by α = A sin(Bπt) h(R). For .75 m < R < 1.25 m, h = (1 − 16
-    /// (R − 1)²)²; elsewhere h = 0.
+    /// Rotation of each circle of radius R about the origin by the angle α = A sin(Bπt) h(R) at time t. For .75 m < R <
+    /// 1.25 m, h = (1 − 16 (R − 1)²)². For other radii, h = 0.
     Vortex {
         /// Largest angle A (rad).
         amplitude: f64,
@@ -37,7 +39,7 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// Returns the bar wave speed √(E/ρ₀), E = G (3λ + 2G)/(λ + G) (m/s).
+    /// Returns the bar wave speed √(E/ρ₀) (m/s), with Young's modulus E = G (3λ + 2G)/(λ + G).
     fn bar_speed(&self) -> f64 {
         let (lame, shear) = (self.lame, self.shear_modulus);
         (shear * (3.0 * lame + 2.0 * shear) / (lame + shear) / self.density).sqrt()
@@ -80,8 +82,9 @@ impl Manufactured {
 
     /// Returns the body force per unit mass (m/s²) at `time` (s) on the material point that started at `at` (m).
     ///
-    /// Axis-aligned, with F = 1 + ∂u/∂X: b = (π²u/ρ₀L²)[4G − c²ρ₀ − 4(λ(ln F − 1) − G)/F²]. Vortex, radial and
-    /// tangential components at the present angle: ρb_r = −ρRα_t² + GRα'², ρb_θ = ρRα_tt − G(3α' + Rα'').
+    /// For the axis-aligned motion, with F = 1 + ∂u/∂X, it is b = (π²u/ρ₀L²)[4G − c²ρ₀ − 4(λ(ln F − 1) − G)/F²]. For
+    /// the vortex, the radial and tangential components at the present angle satisfy ρb_r = −ρRα_t² + GRα'² and ρb_θ =
+    /// ρRα_tt − G(3α' + Rα''). A prime is a derivative with respect to R, and an index t one with respect to time.
     #[must_use]
     pub fn body_force(&self, medium: &Medium, at: Vector3<f64>, time: f64) -> Vector3<f64> {
         let &Medium { density, lame, shear_modulus: shear } = medium;
@@ -154,7 +157,8 @@ mod tests {
         kirchhoff * gradient.try_inverse().unwrap_or(one).transpose()
     }
 
-    /// The momentum balance ρ₀ a = Div P + ρ₀ b holds, with derivatives by finite differences.
+    /// The momentum balance ρ₀ a = Div P + ρ₀ b holds for the first Piola–Kirchhoff stress P, with derivatives by
+    /// finite differences.
     #[test]
     fn body_force_balances_the_motion() {
         let motions = [

@@ -1,34 +1,37 @@
-//! Materials of grains, bodies and walls: the keys of a scene file, and the moduli and constitutive laws that act.
+//! Materials of grains, bodies and walls: keys in the scene file, and the resolved moduli and constitutive laws.
 //!
-//! A new constitutive law is a variant of [`Constitutive`] with its name and its keys here. Its stress is computed in
-//! `solvers/mpm/src/material/laws.rs`.
+//! A new constitutive law needs a variant of [`Constitutive`], a name and keys in this module.
+//! `solvers/mpm/src/material/laws.rs` computes the stress.
 
 use crate::check::Checker;
 use crate::error::SceneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A material.
+/// Material: density, elastic moduli and constitutive law.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
-    /// Density ρ (kg/m³). Not required for materials of walls, or if a data file gives it.
+    /// Density ρ (kg/m³). Required, except for materials that only walls have, and for grains with masses from a state
+    /// or data file.
     #[serde(default)]
     pub density: Option<f64>,
-    /// Young's modulus E (Pa). Required for Hertz contacts unless `rigid`. With Poisson's ratio, it makes bodies
-    /// deformable for solvers that resolve deformation.
+    /// Young's modulus E (Pa). Required for Hertz contacts unless `rigid` is true. With `poisson_ratio`, it also gives
+    /// the elastic moduli for solvers with deformable bodies.
     #[serde(default)]
     pub young_modulus: Option<f64>,
-    /// Poisson's ratio ν, from −1 to 1/2. Required for Hertz contacts unless `rigid`.
+    /// Poisson's ratio ν, above −1 and at most 1/2; below 1/2 for deformable bodies. Required for Hertz contacts unless
+    /// `rigid` is true.
     #[serde(default)]
     pub poisson_ratio: Option<f64>,
-    /// Rigid material: in a Hertz contact, only the other material deforms.
+    /// If true, the material is rigid: in a Hertz contact, only the other material deforms. Default false.
     #[serde(default)]
     pub rigid: bool,
-    /// Bulk modulus K (Pa). With `shear_modulus`, it replaces Young's modulus and Poisson's ratio.
+    /// Bulk modulus K (Pa) of deformable bodies. Give `bulk_modulus` and `shear_modulus`, or `young_modulus` and
+    /// `poisson_ratio`.
     #[serde(default)]
     pub bulk_modulus: Option<f64>,
-    /// Shear modulus G (Pa).
+    /// Shear modulus G (Pa) of deformable bodies. Required with `bulk_modulus`.
     #[serde(default)]
     pub shear_modulus: Option<f64>,
     /// Constitutive law of a deformable material: `neo-hookean` (the default), `kelvin-voigt`, `hypoelastic` or
@@ -50,10 +53,10 @@ pub struct MaterialSpec {
 }
 
 impl MaterialSpec {
-    /// Returns the moduli and the constitutive law if the file gives them; `name` is the name of the material.
+    /// Returns the moduli and the constitutive law of the material `name`; `None` if the file does not give them.
     ///
     /// # Errors
-    /// When a number is out of range, or only a part of the moduli is given.
+    /// When a number is out of range, or the moduli are incomplete.
     pub(crate) fn deformable(&self, name: &str, check: &Checker<'_>) -> Result<Option<Deformable>, SceneError> {
         let key = |part: &str| format!("materials.{name}.{part}");
         let asked = self.constitutive.is_some() || self.bulk_modulus.is_some() || self.shear_modulus.is_some();
@@ -68,7 +71,8 @@ impl MaterialSpec {
                     if !(young > 0.0 && young.is_finite() && poisson > -1.0 && poisson < 0.5) {
                         let expected = "a positive `young_modulus` and a `poisson_ratio` above −1 and below 1/2";
                         let found = format!("{young} and {poisson}");
-                        // Without deformable bodies, contact laws check these numbers themselves.
+                        // If no key of a deformable body is given, only contact laws use these numbers, and the contact
+                        // laws check them.
                         return if asked {
                             Err(check.error(&key("young_modulus"), expected, &found))
                         } else {
@@ -79,7 +83,7 @@ impl MaterialSpec {
                 }
                 _ if asked => {
                     let expected = "`young_modulus` and `poisson_ratio`, or `bulk_modulus` and `shear_modulus`";
-                    return Err(check.error(&format!("materials.{name}"), expected, "another choice of them"));
+                    return Err(check.error(&format!("materials.{name}"), expected, "another combination"));
                 }
                 _ => return Ok(None),
             };
@@ -139,13 +143,14 @@ impl MaterialSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConstitutiveKind {
-    /// The Jaumann rate of the stress is linear in the rate of deformation.
+    /// Hypoelastic law: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
     Hypoelastic,
-    /// Compressible: τ = λ ln J + G (b − 1).
+    /// Compressible neo-Hookean law: Kirchhoff stress τ = λ (ln J) 1 + G (b − 1), with J = det F, b = F Fᵀ, the
+    /// deformation gradient F and the unit tensor 1.
     NeoHookean,
-    /// Neo-Hookean stress σ plus a viscous stress: σ + 2η dev D + ζ tr D.
+    /// Neo-Hookean stress plus a viscous stress 2η dev D + ζ (tr D) 1, with the rate of deformation D (1/s).
     KelvinVoigt,
-    /// Hypoelastic up to a yield stress, with linear isotropic hardening.
+    /// Hypoelastic law up to the von Mises yield stress, then plastic flow with linear isotropic hardening.
     VonMises,
 }
 
@@ -165,18 +170,19 @@ impl std::fmt::Display for ConstitutiveKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "constitutive", rename_all = "kebab-case")]
 pub enum Constitutive {
-    /// Hypoelastic: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
+    /// Hypoelastic law: the Jaumann rate of the Cauchy stress is linear in the rate of deformation.
     Hypoelastic,
-    /// Compressible neo-Hookean: τ = λ ln J + G (b − 1), λ = K − 2G/3.
+    /// Compressible neo-Hookean law: Kirchhoff stress τ = λ (ln J) 1 + G (b − 1), with λ = K − 2G/3, J = det F, b = F
+    /// Fᵀ, the deformation gradient F and the unit tensor 1.
     NeoHookean,
-    /// Neo-Hookean stress plus a viscous stress 2η dev D + ζ tr D 1, with the rate of deformation D (1/s).
+    /// Neo-Hookean stress plus a viscous stress 2η dev D + ζ (tr D) 1, with the rate of deformation D (1/s).
     KelvinVoigt {
         /// Shear viscosity η (Pa s).
         viscosity: f64,
         /// Bulk viscosity ζ (Pa s).
         bulk_viscosity: f64,
     },
-    /// Hypoelastic up to the von Mises yield stress, with linear isotropic hardening.
+    /// Hypoelastic law up to the von Mises yield stress, then plastic flow with linear isotropic hardening.
     VonMises {
         /// Yield stress Y (Pa).
         yield_stress: f64,
@@ -206,7 +212,7 @@ impl Constitutive {
         }
     }
 
-    /// Returns the law without yielding.
+    /// Returns the law without plasticity.
     #[must_use]
     pub const fn elastic(self) -> Self {
         match self {
@@ -255,7 +261,7 @@ impl Constitutive {
     }
 }
 
-/// A deformable material.
+/// Elastic moduli and constitutive law of a deformable material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deformable {
     /// Bulk modulus K (Pa).
@@ -273,13 +279,13 @@ impl Deformable {
         self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
     }
 
-    /// Returns the modulus of longitudinal waves M = K + 4G/3 (Pa). Their speed is √(M/ρ).
+    /// Returns the modulus M = K + 4G/3 of longitudinal waves (Pa). The wave speed is √(M/ρ).
     #[must_use]
     pub fn longitudinal_modulus(&self) -> f64 {
         self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
     }
 
-    /// Returns the viscosity of longitudinal waves 4η/3 + ζ (Pa s).
+    /// Returns the viscosity 4η/3 + ζ of longitudinal waves (Pa s).
     #[must_use]
     pub fn longitudinal_viscosity(&self) -> f64 {
         self.constitutive.viscosities().map_or(0.0, |[shear, bulk]| 4.0 / 3.0 * shear + bulk)
@@ -292,7 +298,7 @@ impl Deformable {
         (3.0 * bulk_modulus - 2.0 * shear_modulus) / (6.0 * bulk_modulus + 2.0 * shear_modulus)
     }
 
-    /// Returns Young's modulus of plane strain E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3) (Pa).
+    /// Returns Young's modulus in plane strain (Pa), E' = E/(1 − ν²) = 4G (K + G/3)/(K + 4G/3).
     #[must_use]
     pub fn plane_modulus(&self) -> f64 {
         4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()

@@ -1,19 +1,19 @@
-//! Memory available to a run. It is checked before anything is allocated, because a failed allocation ends the program.
+//! Memory available to a run. It is checked before large allocations, because a failed allocation ends the program.
 
 use std::fs;
 
-/// Memory that is assumed if the machine does not report any (B).
+/// Memory that is assumed if the machine reports none (B).
 const UNTOLD: u64 = 8 << 30;
 
-/// Returns the memory that a run may use (B): `MemAvailable` of `/proc/meminfo`, or 8 GiB without that file. A smaller
-/// limit of this process (`ulimit -v`, as set by batch queues) applies.
+/// Returns the memory that a run may use (B): `MemAvailable` of `/proc/meminfo`, or 8 GiB without this file. The result
+/// is at most the unused part of the address-space limit of this process (`ulimit -v`, as set by batch queues).
 #[must_use]
 pub fn available() -> u64 {
     let meminfo = fs::read_to_string("/proc/meminfo").ok();
     meminfo.as_deref().and_then(told_by).unwrap_or(UNTOLD).min(allowed().unwrap_or(u64::MAX))
 }
 
-/// Returns the rest of this process's address-space limit (B); `None` without a limit.
+/// Returns the part of the address-space limit that this process does not use yet (B); `None` without a limit.
 fn allowed() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let limit = limit_of(&limits)?;
@@ -37,17 +37,18 @@ fn in_kilobytes(words: &str) -> Option<u64> {
     words.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// Describes a request of `count` items of `bytes_each` bytes that exceeds the available memory; `None` if they fit.
+/// Returns a description of a request of `count` items of `bytes_each` (B) that exceeds the available memory; `None` if
+/// the items fit.
 #[must_use]
 pub fn beyond(count: f64, what: &str, bytes_each: f64) -> Option<String> {
     let (wanted, available) = (count * bytes_each, available() as f64);
-    // NaN does not fit either.
+    // This comparison is false for NaN, so NaN does not fit.
     if wanted <= available {
         return None;
     }
     let gigabytes = |bytes: f64| bytes / 1e9;
     Some(format!(
-        "{count:.3e} {what}, about {:.3e} GB where {:.1} GB are left",
+        "{count:.3e} {what}, about {:.3e} GB, with only {:.1} GB available",
         gigabytes(wanted),
         gigabytes(available)
     ))

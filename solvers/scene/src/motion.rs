@@ -1,22 +1,23 @@
-//! Prescribed motion of walls. Positions are exact at any time, so a ramp ends at the right position for any time step.
+//! Prescribed motion of walls and grains. Positions are exact functions of time, so a motion ends at the same position
+//! for any time step.
 
 use crate::function::Function;
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Moment in seconds or in calculation cycles.
+/// Time in seconds or in calculation cycles (time steps).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Moment {
     /// Time (s).
     Seconds(f64),
     /// Calculation cycle.
     Cycle(u64),
-    /// Not within the run.
+    /// Never during the run.
     Never,
 }
 
 impl Moment {
-    /// Returns the moment (s) for cycles of `time_step` (s).
+    /// Returns the time (s) for cycles of `time_step` (s); infinite for never.
     #[must_use]
     pub fn seconds(self, time_step: f64) -> f64 {
         match self {
@@ -27,16 +28,16 @@ impl Moment {
     }
 }
 
-/// Phase of constant velocity and spin between two moments.
+/// Phase of constant velocity and spin between two times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Velocity (m/s).
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s) about [`Motion::centre`].
     pub spin: Vector3<f64>,
-    /// Moment at which the phase begins.
+    /// Start of the phase.
     pub start: Moment,
-    /// Moment at which the phase ends.
+    /// End of the phase.
     pub stop: Moment,
 }
 
@@ -46,9 +47,9 @@ pub struct Phase {
 pub struct Motion {
     /// Initial centre of rotation (m). It moves with the wall.
     pub centre: Vector3<f64>,
-    /// Phases with constant velocity; overlapping phases add up.
+    /// Phases of constant velocity. The displacements of all phases are added.
     pub phases: Vec<Phase>,
-    /// Further functions of time.
+    /// Oscillations and ramps. Their displacements are added too.
     pub functions: Vec<Function>,
 }
 
@@ -81,7 +82,7 @@ impl Motion {
             || self.functions.iter().any(|function| function.fastest() > 0.0)
     }
 
-    /// Returns true if there is no phase and no function, not even one at rest.
+    /// Returns true if there are no phases and no functions. A phase of zero velocity counts as a phase.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.phases.is_empty() && self.functions.is_empty()
@@ -100,7 +101,7 @@ impl Motion {
         self.functions.clear();
     }
 
-    /// Returns the displacement since the start at `time` (s), with cycles of `time_step` (s).
+    /// Returns the displacement from the initial position at `time` (s), for cycles of `time_step` (s).
     #[must_use]
     pub fn displacement(&self, time: f64, time_step: f64) -> Displacement {
         let mut result = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
@@ -122,7 +123,7 @@ impl Motion {
         self.centre + displacement.translation + self.turned(point - self.centre, displacement)
     }
 
-    /// Returns a direction of the wall after a displacement.
+    /// Returns a direction that rotates with the wall, after a displacement.
     #[must_use]
     pub fn turned(&self, direction: Vector3<f64>, displacement: &Displacement) -> Vector3<f64> {
         match Unit::try_new_and_get(displacement.rotation, 0.0) {

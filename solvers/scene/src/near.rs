@@ -1,4 +1,4 @@
-//! Pairs of spheres near each other, found in a time proportional to their number, for any sizes.
+//! Search for pairs of nearby spheres of any sizes, in a time almost proportional to the number of spheres.
 
 use crate::scene::Domain;
 use nalgebra::Vector3;
@@ -8,13 +8,13 @@ use std::ops::{ControlFlow, Range};
 /// Bound of the cell indices, so that the indices of adjacent cells are valid integers.
 const FARTHEST: f64 = 1e18;
 
-/// Calls `visit` at least once for each pair (a, b), a ≠ b, of spheres with a gap below `skin` (m). Gaps are those of
-/// nearest images along the periodic axes of `domain`. Some pairs with larger gaps are visited too. The search ends
-/// when `visit` breaks.
+/// Calls `visit` at least once for each pair (a, b), a ≠ b, of spheres with a gap below `skin` (m). Some pairs with
+/// larger gaps are visited too. Along the periodic axes of `domain`, the gap is that of the nearest images. The search
+/// ends when `visit` returns `Break`.
 ///
-/// Spheres are sorted into classes of radii within a factor of two. The cells of a class are as wide as the interaction
-/// range of two of its spheres. A sphere searches its own class and the classes of larger spheres, in the cells around
-/// it.
+/// Spheres are sorted into classes of radii within a factor of two. The cells of a class are as wide as the largest
+/// diameter in the class plus `skin`. Each sphere is compared with the spheres of its own class and of the classes of
+/// larger spheres, in the cells around it.
 pub(crate) fn near_pairs(
     centres: &[Vector3<f64>],
     radii: &[f64],
@@ -34,7 +34,7 @@ pub(crate) fn near_pairs(
         let cells = Cells::new(&places, larger, 2.0 * largest + skin);
         for (class, (_, smaller)) in classes[..=at].iter().enumerate() {
             for &a in smaller {
-                // The image of a sphere lies at most one cell width beyond a periodic face.
+                // Only images at most one cell width beyond a periodic face can be near another sphere.
                 for image in images(places[a as usize], domain, cells.width) {
                     for row in cells.rows_around(image) {
                         for &(_, b) in &cells.sorted[row] {
@@ -54,9 +54,9 @@ pub(crate) fn near_pairs(
 struct Cells {
     /// Edge of a cell (m).
     width: f64,
-    /// Cell along x within its row, and index of each sphere.
+    /// Cell index along x and index of each sphere, sorted by row and then by cell.
     sorted: Vec<(i64, u32)>,
-    /// Range of each row in `sorted`, by its cells along y and z.
+    /// Range in `sorted` of each row of cells. The keys are the cell indices of the row along y and z.
     rows: HashMap<[i64; 2], Range<usize>>,
 }
 
@@ -80,7 +80,7 @@ impl Cells {
         Self { width, sorted: keyed.into_iter().map(|([_, _, x], number)| (x, number)).collect(), rows }
     }
 
-    /// Returns the cells around a position, as ranges of rows.
+    /// Returns the spheres in the cells around a position, as one range of `sorted` per row of cells.
     fn rows_around(&self, place: Vector3<f64>) -> impl Iterator<Item = Range<usize>> {
         let [x, y, z] = cell(place, self.width);
         let around = (-1..=1).flat_map(move |k| (-1..=1).map(move |j| [y + j, z + k]));
@@ -107,7 +107,7 @@ fn wrapped(mut place: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     place
 }
 
-/// Returns a position in the domain, and its images within `reach` (m) of the periodic faces.
+/// Returns a position in the domain, and its periodic images at most `reach` (m) outside the periodic faces.
 fn images(place: Vector3<f64>, domain: Option<&Domain>, reach: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![place];
     if let Some(domain) = domain {
@@ -134,7 +134,7 @@ mod tests {
     use rand_pcg::Pcg64;
     use std::collections::BTreeSet;
 
-    /// Returns spheres with radii over three octaves in a box, some of them periods away from it.
+    /// Returns random centres in a cube with edges of `spread` (m), and random radii from 0.05 m to 0.4 m.
     fn scatter(count: usize, spread: f64) -> (Vec<Vector3<f64>>, Vec<f64>) {
         let mut lot = Pcg64::seed_from_u64(7);
         let radii = (0..count).map(|_| 0.05 * 8.0_f64.powf(lot.random::<f64>())).collect();
@@ -180,8 +180,8 @@ mod tests {
         }
     }
 
-    /// The number of visits grows linearly with the number of spheres, even with one distant sphere and one very large
-    /// sphere.
+    /// The number of visited pairs grows linearly with the number of spheres, even with one distant sphere and one very
+    /// large sphere.
     #[test]
     fn visits_are_as_many_as_spheres() {
         let visits = |count: usize| {

@@ -1,5 +1,5 @@
-//! Detection of grains that overlap at the start, so that a mistyped position is an error. Without it, the run would
-//! explode.
+//! Detection of grains that overlap at the start. A mistyped position is thus an error. Without this check, the contact
+//! springs would eject the grains.
 
 use crate::near::near_pairs;
 use crate::scene::{Domain, Grain, Wall, WallShape, across};
@@ -9,9 +9,9 @@ use std::ops::ControlFlow;
 /// Deepest overlap of a scene, relative to the smaller radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DeepestOverlap {
-    /// Two grains, by index.
+    /// Two grains, by index, and the overlap divided by the smaller radius.
     Grains(usize, usize, f64),
-    /// Grain and wall, by index.
+    /// Grain and wall, by index, and the overlap divided by the radius.
     GrainWall(usize, usize, f64),
 }
 
@@ -24,7 +24,8 @@ impl DeepestOverlap {
         }
     }
 
-    /// Translates an overlap found in a subset of grains; `places` holds their indices in the scene.
+    /// Converts the grain indices from a subset of the grains to the scene. `places` holds the index in the scene for
+    /// each grain of the subset.
     pub(crate) fn among(self, places: &[usize]) -> Self {
         match self {
             Self::Grains(a, b, ratio) => Self::Grains(places[a], places[b], ratio),
@@ -32,7 +33,7 @@ impl DeepestOverlap {
         }
     }
 
-    /// Describes the overlapping bodies and the depth of the overlap.
+    /// Returns a description of the overlapping bodies and of the depth of the overlap.
     #[must_use]
     pub fn words(&self, walls: &[Wall]) -> String {
         let pair = match self {
@@ -44,8 +45,8 @@ impl DeepestOverlap {
 }
 
 /// Returns the deepest overlap among grains, and between grains and walls; `None` if nothing overlaps. The search among
-/// grains ends at the first overlap above `enough`, because many grains at one position would require a comparison of
-/// all pairs. The time is proportional to the number of grains.
+/// grains ends at the first overlap ratio above `enough`. Without this limit, many grains at one position would require
+/// a comparison of all pairs. The time is almost proportional to the number of grains.
 #[must_use]
 pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough: f64) -> Option<DeepestOverlap> {
     let pairs = grain_pairs(grains, domain, enough);
@@ -57,7 +58,7 @@ pub fn deepest(grains: &[Grain], walls: &[Wall], domain: Option<&Domain>, enough
     pairs.into_iter().chain(contacts).filter(|found| found.ratio() > 0.0).max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-/// Returns the deepest overlap among grains; the first one of equal depth.
+/// Returns the deepest overlap among grains. Of overlaps with equal depth, it is the one with the lowest grain indices.
 fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option<DeepestOverlap> {
     let centres: Vec<Vector3<f64>> = grains.iter().map(|grain| grain.position).collect();
     let radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
@@ -65,7 +66,7 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
     // The search ends early at an overlap that is deep enough, because deeper overlaps are not reported.
     let _ = near_pairs(&centres, &radii, 0.0, domain, |a, b| {
         let (between, reach) = (nearest_image(centres[b] - centres[a], domain), radii[a] + radii[b]);
-        // Most pairs are apart and need no square root.
+        // Most pairs do not overlap, and this test needs no square root.
         if between.norm_squared() >= reach * reach {
             return ControlFlow::Continue(());
         }
@@ -80,7 +81,7 @@ fn grain_pairs(grains: &[Grain], domain: Option<&Domain>, enough: f64) -> Option
     (ratio > 0.0).then_some(DeepestOverlap::Grains(first, second, ratio))
 }
 
-/// Returns the shortest vector between two positions in a periodic domain (m).
+/// Returns the shortest vector (m) between the periodic images of two positions. `between` is their difference (m).
 #[must_use]
 pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
     if let Some(domain) = domain {
@@ -96,7 +97,7 @@ pub fn nearest_image(mut between: Vector3<f64>, domain: Option<&Domain>) -> Vect
     between
 }
 
-/// Returns the distance from a point to a wall at its initial position (m); negative in the solid behind a plane.
+/// Returns the distance (m) from a point to a wall shape; negative in the solid half-space of a plane.
 #[must_use]
 pub fn distance(point: Vector3<f64>, shape: &WallShape) -> f64 {
     match shape {
@@ -123,9 +124,9 @@ pub fn nearest_on_rectangle(point: Vector3<f64>, corner: &Vector3<f64>, edges: &
         .fold(*corner, |at, edge| at + edge * ((point - corner).dot(edge) / edge.norm_squared()).clamp(0.0, 1.0))
 }
 
-/// Returns the point of a cylinder's or cone's lateral surface nearest to `point`. It lies in the half-plane through
-/// `point` bounded by the axis, where the surface is a segment. For a point on the axis, it is one of many nearest
-/// points.
+/// Returns the point of the lateral surface of a cylinder or cone nearest to `point`. It lies in the half-plane that
+/// contains `point` and is bounded by the axis. In this half-plane, the surface is a segment. For a point on the axis,
+/// the result is one of many nearest points.
 #[must_use]
 pub fn nearest_on_round(point: Vector3<f64>, axis: &[Vector3<f64>; 2], radii: &[f64; 2]) -> Vector3<f64> {
     let line = axis[1] - axis[0];
@@ -146,7 +147,8 @@ pub fn nearest_on_round(point: Vector3<f64>, axis: &[Vector3<f64>; 2], radii: &[
 mod tests {
     use super::*;
 
-    /// Two grains are .15 m apart in the domain, although one starts a thousand periods away.
+    /// In the domain, the centres of two grains of radius .1 m are .15 m apart, although one grain starts a thousand
+    /// periods away. They overlap by half a radius.
     #[test]
     fn grains_far_from_a_periodic_domain_meet_those_within() {
         let grain = |x: f64| Grain {
@@ -163,7 +165,7 @@ mod tests {
         assert!(matches!(found, DeepestOverlap::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
     }
 
-    /// No sampled point of the cone is nearer than the result, and the result lies on the cone.
+    /// Compares the result with sampled points of the cone: none of them is nearer. The result lies on the cone.
     #[test]
     fn the_nearest_point_of_a_cone_is_nearest() {
         let axis = [Vector3::new(0.3, -0.2, 0.1), Vector3::new(1.3, 0.8, 2.1)];
@@ -190,7 +192,7 @@ mod tests {
                 let away = (found - axis[0] - line * (height / length)).norm();
                 assert!((away - radii[0] - (radii[1] - radii[0]) * height / length).abs() < 1e-12);
             }
-            // On the axis, all directions are equivalent.
+            // On the axis, all directions are equivalent, so the result is only required to be finite.
             let middle = nearest_on_round(axis[0] + line * 0.5, &axis, &radii);
             assert!(middle.iter().all(|number| number.is_finite()));
         }

@@ -1,9 +1,10 @@
-//! Dense packings without overlap, from a seed. Grains of given sizes grow in a box while overlaps are pushed apart.
+//! Dense packings without overlap, from a seed. Grains of given sizes grow in a box, and overlapping grains are moved
+//! apart.
 //!
-//! Grains start at random positions at half their size and grow in small stages. After each stage, overlapping pairs
-//! are moved apart along their line of centres, one pair after the other, until no pair overlaps. The displacements are
-//! inversely proportional to the squared radii. The algorithm has no friction and no time, so packings can be denser
-//! than the final state of settled grains with friction.
+//! Grains start at random positions with half their size and grow in small stages. After each stage, overlapping pairs
+//! are moved apart along their line of centres, one pair after the other. The displacements are inversely proportional
+//! to the squared radii. The algorithm has no friction, so packings can be denser than packings of grains that come to
+//! rest with friction.
 
 use crate::near::near_pairs;
 use crate::scene::{Dimension, Domain};
@@ -21,37 +22,40 @@ pub const MOST: u32 = 20_000;
 const SMALL: f64 = 0.5;
 const STAGES: u32 = 60;
 const SWEEPS_PER_STAGE: u32 = 20;
-/// Number of sweeps at full size before a packing counts as impossible.
+/// Number of sweeps at full size after which a packing counts as impossible.
 const SWEEPS: u32 = 40_000;
-/// Number of visits of pairs and cells before a packing counts as impossible; about a minute.
+/// Number of visits of pairs and cells after which a packing counts as impossible. They take about a minute.
 const VISITS: u64 = 10_000_000_000;
-/// Visits that count for one grain when pairs are listed: the cells around it for each class of radii.
+/// Number of visits counted per grain and class of radii when pairs are listed. It accounts for the visits of the cells
+/// around the grain.
 const VISITS_OF_A_GRAIN: u64 = 100;
-/// Relative oversize of grains while the last overlaps are removed, so that the result has gaps.
+/// Relative increase of the radii while the last overlaps are removed, so that the result has gaps.
 const MARGIN: f64 = 1e-4;
 
-/// Returns the centres (m) of grains of the given radii (m), in their order, in `domain`. Grains touch their images
-/// across periodic faces; other faces are smooth walls. `None` means that overlaps remain, because the grains are too
-/// many for the box or need too much work. The same seed gives the same packing on every machine.
+/// Returns the centres (m) of grains of the given radii (m), in the same order, in `domain`. Grains do not overlap
+/// images across periodic faces. Other faces are smooth walls. The result is `None` if overlaps remain, because the
+/// grains do not fit or need too much work. The same seed gives the same packing on every machine.
 #[must_use]
 pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, false)
 }
 
-/// Returns a packing whose non-periodic faces bound the centres, so that these faces cut grains.
+/// Returns a packing as [`pack`] does, but only the centres must lie within the non-periodic faces, so that grains may
+/// cross these faces.
 #[must_use]
 pub fn pack_cut(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
     packed(radii, seed, domain, dimension, true)
 }
 
-/// Inputs of a packing, bit for bit.
+/// Inputs of a packing as bits: radii, seed, domain, periodic axes, number of dimensions and `cut`.
 type Recipe = (Vec<u64>, u64, [u64; 6], [bool; 3], usize, bool);
-/// Packing, computed by the first thread that needs it.
+/// Packing in the cache. The first thread that needs it computes it.
 type Place = Arc<OnceLock<Option<Vec<Vector3<f64>>>>>;
-/// Number of packings in the cache. The largest packing takes half a megabyte.
+/// Largest number of packings in the cache. A packing takes at most half a megabyte.
 const REMEMBERED: usize = 32;
 
-/// Returns a packing from the cache or computes it. Variants and controls of a scene start from the same packing.
+/// Returns a packing from the cache, or computes it. The cache saves time because variants and controls of a scene
+/// start from the same packing.
 fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
     static MADE: Mutex<VecDeque<(Recipe, Place)>> = Mutex::new(VecDeque::new());
     let bits = |at: usize| if at < 3 { domain.low[at] } else { domain.high[at - 3] }.to_bits();
@@ -82,19 +86,20 @@ fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: 
 #[must_use]
 pub fn filled(radii: impl Iterator<Item = f64>, domain: &Domain, dimension: Dimension) -> f64 {
     let axes = dimension.count();
-    // Products of absurd lengths overflow, but their ratios do not.
+    // Products of extreme lengths would overflow, but products of ratios do not.
     let part = |radius: f64| (0..axes).map(|axis| radius / (domain.high[axis] - domain.low[axis])).product::<f64>();
     let ball = if axes == 2 { PI } else { 4.0 / 3.0 * PI };
     ball * radii.map(part).sum::<f64>()
 }
 
-/// Returns a large fraction of the domain that these grains can fill without overlap after scaling them down together,
-/// by bisection. The fraction is rounded to a hundredth; fractions below one half are not tried. The search uses less
-/// work than a packing.
+/// Returns a fraction of the domain that these grains can fill without overlap if all radii are reduced by the same
+/// factor. A bisection in steps of a hundredth searches for a large fraction. The result is `None` if it would be below
+/// one half. Each trial packing of the search may use a twentieth of the work of [`pack`].
 #[must_use]
 pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<f64> {
     let asked = filled(radii.iter().copied(), domain, dimension);
-    // No packing of equal discs or spheres is denser (Thue, Hales). Packings of several sizes may be slightly denser.
+    // Upper limit in percent. No packing of equal discs or spheres is denser (Thue, Hales). Packings of several sizes
+    // may be slightly denser.
     let most: u32 = if dimension == Dimension::Two { 90 } else { 74 };
     if !asked.is_finite() {
         return None;
@@ -105,7 +110,8 @@ pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension
         let shrunk: Vec<f64> = radii.iter().map(|radius| radius * scale).collect();
         made(&shrunk, seed, domain, dimension, cut, SWEEPS / 20, VISITS / 20).is_some()
     };
-    // `low` was packed, and `high` is too dense.
+    // Grains can be packed at `low` percent, or `low` is the initial value 49. The packing at `high` percent is too
+    // dense.
     let (mut low, mut high) =
         (49, (50..=most).find(|percent| f64::from(*percent) / 100.0 >= asked).unwrap_or(most + 1));
     while high - low > 1 {
@@ -125,7 +131,8 @@ fn made(
     visits: u64,
 ) -> Option<Vec<Vector3<f64>>> {
     let axes = dimension.count();
-    // Grains that fill more than the box, or have no size in numbers, are not tried; all their pairs would be listed.
+    // No packing is tried if the filled fraction exceeds 1 or is not a number, because nearly all pairs would be
+    // listed.
     if !(0.0..=1.0).contains(&filled(radii.iter().copied(), domain, dimension)) {
         return None;
     }
@@ -172,7 +179,7 @@ fn made(
     (is_done && packing.visits > 0).then_some(packing.centres)
 }
 
-/// Returns the number of classes of radii within a factor of two.
+/// Returns the number of classes of radii. The radii of a class lie within a factor of two.
 fn classes(radii: &[f64]) -> u64 {
     radii.iter().map(|radius| libm::ilogb(*radius)).collect::<BTreeSet<_>>().len() as u64
 }
@@ -184,22 +191,22 @@ struct Packing<'a> {
     centres: Vec<Vector3<f64>>,
     domain: &'a Domain,
     axes: usize,
-    /// True if non-periodic faces bound the centres.
+    /// True if only the centres must lie within the non-periodic faces.
     cut: bool,
-    /// Pairs whose gap was below the skin when they were listed.
+    /// Pairs whose gap was below `skin` when they were listed.
     pairs: Vec<(u32, u32)>,
-    /// Centres when the pairs were listed.
+    /// Centres (m) at the time when the pairs were listed.
     listed: Vec<Vector3<f64>>,
-    /// Skin (m).
+    /// Largest gap of listed pairs (m).
     skin: f64,
     /// Number of classes of radii.
     classes: u64,
-    /// Visits of pairs and cells that are left.
+    /// Remaining number of visits of pairs and cells.
     visits: u64,
 }
 
 impl Packing<'_> {
-    /// Returns the shortest vector from b to a.
+    /// Returns the vector (m) from the centre of b, or its nearest periodic image, to the centre of a.
     fn between(&self, a: usize, b: usize) -> Vector3<f64> {
         let mut apart = self.centres[a] - self.centres[b];
         for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
@@ -209,7 +216,7 @@ impl Packing<'_> {
         apart
     }
 
-    /// Lists the pairs whose gap is below the skin.
+    /// Lists the pairs whose gap is below `skin`.
     fn list(&mut self) {
         let radii: Vec<f64> = self.radii.iter().map(|radius| radius * self.scale).collect();
         let (mut pairs, mut seen) = (Vec::new(), 0);
@@ -237,7 +244,7 @@ impl Packing<'_> {
         })
     }
 
-    /// Moves every overlapping pair apart and grains off the walls. Returns the largest overlap found (m).
+    /// Moves overlapping grains apart, and moves grains into the domain. Returns the largest overlap found (m).
     fn sweep(&mut self) -> f64 {
         let mut worst: f64 = 0.0;
         self.visits = self.visits.saturating_sub((self.pairs.len() + self.radii.len()) as u64);
@@ -298,7 +305,7 @@ mod tests {
         (0..count).map(|number| 1.0 + f64::from(number % 7) / 3.0).collect()
     }
 
-    /// Returns the edge of a square in which the grains fill a fraction.
+    /// Returns the edge (m) of a square in which discs of the given radii (m) fill the given fraction.
     fn edge(radii: &[f64], fraction: f64) -> f64 {
         (PI * radii.iter().map(|radius| radius * radius).sum::<f64>() / fraction).sqrt()
     }
@@ -336,7 +343,8 @@ mod tests {
         }
     }
 
-    /// Radii and boxes of any size are refused, and grains of many sizes end the search after its visits.
+    /// Extreme radii and boxes are rejected. The search for a packing of grains of many sizes ends after its number of
+    /// visits.
     #[test]
     fn absurd_grains_end_the_search() {
         let far = domain(1e200, false);
@@ -347,7 +355,7 @@ mod tests {
         assert_eq!(made(&many, 1, &domain(edge, false), Dimension::Two, false, SWEEPS, 20_000_000), None);
     }
 
-    /// A fraction reported as reachable is reached, and it is a dense packing.
+    /// Grains can be packed at the fraction that `reachable` returns, and this packing is dense.
     #[test]
     fn what_is_reachable_can_be_packed() {
         for asked in [0.9, 100.0] {

@@ -1,5 +1,5 @@
 //! Poured grains, which are inserted one after the other at a given rate. Their positions in a box are random numbers
-//! from a seed, so every solver gets the same grains.
+//! from a seed, so that every solver inserts the same grains.
 
 use crate::scene::{Dimension, Domain};
 use nalgebra::Vector3;
@@ -28,18 +28,18 @@ pub struct Pour {
     pub start: f64,
 }
 
-/// Reason that grains cannot be poured.
+/// Reason why grains cannot be poured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PouringError {
     /// No room was found for a grain in 10,000 tries.
     NoRoom,
-    /// More than 20,000 grains are still near the box, because they do not fall out of it or because the box spans the
+    /// More than 20,000 grains remain near the box, because they do not fall out of the box or because it spans the
     /// domain.
     Crowd,
 }
 
-/// Returns the time (s) and the centre (m) of each insertion. A grain does not overlap earlier grains as long as these
-/// fall freely. Other obstacles are not considered.
+/// Returns the time (s) and the centre (m) of each insertion. A grain does not overlap earlier grains if these fall
+/// freely. Other obstacles are not considered.
 ///
 /// # Errors
 /// When there is no room for all grains, or too many grains remain near the box.
@@ -137,7 +137,7 @@ mod tests {
     fn a_rate_that_leaves_no_room_is_told() {
         let with = |pour: Pour| poured(&pour, None, Dimension::Three);
         assert_eq!(with(Pour { rate: 4000.0, ..pour() }), Err(PouringError::NoRoom));
-        // An insertion time that is infinite, and grains that do not fall.
+        // The first pour has an infinite insertion time, and the grains of the second pour do not fall.
         assert_eq!(with(Pour { rate: 1e-320, ..pour() }), Err(PouringError::NoRoom));
         let (still, corners) = (Vector3::zeros(), [Vector3::zeros(), Vector3::repeat(1e4)]);
         let resting = Pour { count: 1_000_000, velocity: still, gravity: still, corners, ..pour() };

@@ -1,4 +1,4 @@
-//! Time series of a scene's probes.
+//! Time series of the probes of a scene.
 
 use crate::budget::Budget;
 use crate::record::{BodyState, Column, ContactState, GrainState, Partner, Series, Snapshot, StepState};
@@ -31,7 +31,7 @@ const ENERGIES: [Entry; 11] = [
 /// Components of the stress, in the order of [`crate::record::PointState::stress`].
 const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
-/// Returns the number of stress components: four in plane strain.
+/// Returns the number of stress components: four in two dimensions (plane strain), six in three.
 const fn stresses(dimension: Dimension) -> usize {
     match dimension {
         Dimension::Two => 4,
@@ -72,7 +72,7 @@ impl Probe {
     }
 }
 
-/// Returns the components of the mean stress of grains.
+/// Returns the recorded components of the mean stress of grains, as pairs of axes.
 const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
     match dimension {
         Dimension::Two => &[(0, 0), (1, 1), (0, 1)],
@@ -259,9 +259,9 @@ fn values(probe: &Probe, scene: &Scene, look: &StepState) -> Vec<f64> {
     }
 }
 
-/// Returns overlap, normal force, shear force and slipping of one contact. They are zero without contact, and NaN if
-/// contacts are not reported. In the plane, the shear force on the first grain is positive along `t = (e₂, −e₁)`,
-/// clockwise from the normal `e` to the partner.
+/// Returns overlap (m), normal force (N), shear force (N) and slipping (0 or 1) of one contact. They are zero without
+/// contact, and NaN if the solver does not report contacts. In two dimensions, the shear force on the first grain is
+/// positive along `t = (e₂, −e₁)`, which is the normal `e` to the partner, rotated clockwise by 90°.
 fn contact_values(look: &StepState, grain: usize, partner: Partner, flat: bool) -> Vec<f64> {
     let id = grain as u32 + 1;
     let Some(contacts) = &look.snapshot.contacts else { return vec![f64::NAN; 4] };
@@ -278,8 +278,8 @@ fn contact_values(look: &StepState, grain: usize, partner: Partner, flat: bool) 
     )
 }
 
-/// Returns the shear force. In the plane, its sign does not depend on the order of the grains, because force and normal
-/// both change sign.
+/// Returns the shear force (N). In two dimensions, its sign does not depend on the order of the grains, because force
+/// and normal both change sign.
 fn shear(contact: &ContactState, flat: bool) -> f64 {
     let force = contact.shear_force;
     if flat { force.x * contact.normal.y - force.y * contact.normal.x } else { force.norm() }

@@ -1,4 +1,4 @@
-//! Size distributions, sampled from a generator. They give the same numbers on every machine.
+//! Distributions of radii, sampled with a random number generator. The samples are the same on every machine.
 
 use rand::{Rng, RngExt};
 use std::f64::consts::TAU;
@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 pub enum Radii {
     /// Uniform distribution between two radii (m).
     Uniform([f64; 2]),
-    /// Log-normal distribution: R = median · exp(deviation · n) with n normally distributed. Values outside a range (m)
-    /// are redrawn.
+    /// Log-normal distribution: R = median · exp(deviation · n) with a standard normal variable n. Radii outside a
+    /// range (m) are drawn again.
     LogNormal {
         /// Median of R (m).
         median: f64,
@@ -18,26 +18,27 @@ pub enum Radii {
         /// Smallest and largest R (m).
         range: [f64; 2],
     },
-    /// Parts of a sieve curve.
+    /// Sieve curve, as a list of parts.
     ByMass(Vec<Part>),
 }
 
-/// Grains with radii between two sieves. Their mass is spread uniformly over the radii.
+/// Part of a sieve curve: grains with radii between two sieves. The mass is distributed uniformly over the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     /// Smallest and largest R (m).
     pub range: [f64; 2],
-    /// Fraction of the number of grains up to the end of this part.
+    /// Fraction of all grains, by number, whose radii are at most the largest R of this part.
     pub up_to: f64,
-    /// Power p of R to which the mass is proportional: 3 for spheres, 2 for discs.
+    /// Power p in mass ∝ Rᵖ: 3 for spheres, 2 for discs.
     pub power: i32,
 }
 
 impl Radii {
-    /// Returns the distribution of a sieve curve: radii (m), each with the mass fraction of grains that are no larger.
-    /// Both rise, and the fraction rises from 0 to 1. With the mass uniform over a part, the number density is
-    /// proportional to R⁻ᵖ. A mass fraction w between a and b thus contains w/(b − a) ∫ R⁻ᵖ dR grains, in units of the
-    /// inverse mass of a grain with R = 1.
+    /// Returns the distribution of a sieve curve: pairs of a radius (m) and the mass fraction of the grains up to this
+    /// radius. Radii and fractions must not decrease. The first fraction must be 0, and the last 1. The mass is
+    /// distributed uniformly over the radii of a part, so the number density is proportional to R⁻ᵖ. A mass fraction w
+    /// between the radii a and b thus contains w/(b − a) ∫ R⁻ᵖ dR grains, in units of the inverse mass of a grain with
+    /// R = 1 m.
     #[must_use]
     pub fn by_mass(curve: &[(f64, f64)], power: i32) -> Self {
         let number = |a: f64, b: f64, share: f64| {
@@ -91,7 +92,7 @@ impl Radii {
     }
 }
 
-/// Returns the antiderivative of R⁻ᵖ.
+/// Returns the antiderivative of R⁻ᵖ at a radius R.
 fn antiderivative(radius: f64, power: i32) -> f64 {
     -radius.powi(1 - power) / f64::from(power - 1)
 }
@@ -113,7 +114,8 @@ mod tests {
         (0..100_000).map(|_| radii.draw(&mut generator)).collect()
     }
 
-    /// Median and standard deviation of ln R. The standard error of the mean of 10⁵ draws is 0.003 of the deviation.
+    /// Checks the mean and the standard deviation of ln R. The standard error of the mean of 10⁵ draws is 0.003 times
+    /// the deviation.
     #[test]
     fn logarithms_are_normal() {
         let all = drawn(&Radii::LogNormal { median: 2.0, deviation: 0.3, range: [0.1, 40.0] });
@@ -123,7 +125,8 @@ mod tests {
         assert!((mean - 2.0_f64.ln()).abs() < 4e-3 && (square.sqrt() - 0.3).abs() < 3e-3, "{mean} {}", square.sqrt());
     }
 
-    /// The masses reproduce the sieve curve: a third from 1 to 2, rising to .8 at 4, with a step to 1 at 4.
+    /// The masses of drawn grains reproduce a sieve curve. The mass fraction rises to 1/3 at the radius 2 and to .8 at
+    /// the radius 4, with a step to 1 at the radius 4.
     #[test]
     fn masses_follow_the_sieve_curve() {
         let curve = [(1.0, 0.0), (2.0, 1.0 / 3.0), (4.0, 0.8), (4.0, 1.0)];

@@ -23,7 +23,7 @@ pub struct Series {
     pub step: Vec<u64>,
     /// Time of every sample (s).
     pub time: Vec<f64>,
-    /// The columns.
+    /// Name and unit of every column.
     pub columns: Vec<Column>,
     /// `values[c][k]` is column `c` at sample `k`.
     pub values: Vec<Vec<f64>>,
@@ -65,11 +65,13 @@ pub struct GrainState {
     /// Equivalent plastic strain, averaged over the mass; zero for a grain that does not yield.
     #[serde(default)]
     pub plastic_strain: f64,
-    /// Instantaneous V σ, if requested: xx, yy, zz, xy, yz, zx (J; J/m for discs); see [`crate::virial`]. It is boxed
-    /// because few runs request it and large runs have a million grains.
+    /// Product V σ of volume and mean stress at the time of the snapshot, if requested: xx, yy, zz, xy, yz, zx (J; J/m
+    /// for discs); see [`crate::virial`]. It is boxed to save memory, because few runs request it and large runs have a
+    /// million grains.
     #[serde(default)]
     pub virial: Option<Box<[f64; 6]>>,
-    /// Average of V σ over the time since the previous snapshot, if requested; absent in the first snapshot.
+    /// Average of V σ (J; J/m for discs) over the time since the previous snapshot, if requested; absent in the first
+    /// snapshot.
     #[serde(default)]
     pub mean_virial: Option<Box<[f64; 6]>>,
 }
@@ -141,8 +143,8 @@ pub struct PointState {
     pub stress: [f64; 6],
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
-    /// Rotation R of the deformation F = R U about z (rad), with the number of turns nearest to its body's rotation;
-    /// zero in three dimensions.
+    /// Angle about z (rad) of the rotation R in the deformation gradient F = R U. Full turns are added so that the
+    /// angle is nearest to the rotation of the body. The angle is zero in three dimensions.
     #[serde(default)]
     pub rotation: f64,
     /// Volume (m³; m² in the plane).
@@ -205,14 +207,14 @@ pub struct Snapshot {
     pub step: u64,
     /// Time (s).
     pub time: f64,
-    /// Corners of the domain (m), for figures and dump headers.
+    /// Lower and upper corner (m) of the domain or, without a domain, of the bounding box of the grains.
     pub bounds: (Vector3<f64>, Vector3<f64>),
     /// True for each periodic axis.
     pub periodic: [bool; 3],
     /// Grains, sorted by id.
     pub grains: Vec<GrainState>,
-    /// All contacts, sorted by grain id; absent if the solver does not report contacts, which differs from an empty
-    /// list.
+    /// All contacts, sorted by grain id. The list is absent if the solver does not report contacts, and empty if there
+    /// are no contacts.
     pub contacts: Option<Vec<ContactState>>,
     /// Walls in the order of the scene.
     pub walls: Vec<WallState>,
@@ -225,14 +227,15 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Returns the reported contacts; empty if none were reported. Figures use this function. Evaluations read
-    /// `contacts` to distinguish the two cases.
+    /// Returns the contacts; an empty list if the solver does not report contacts. Figures use this function.
+    /// Evaluations read `contacts`, because the field distinguishes missing contacts from no contacts.
     #[must_use]
     pub fn told_contacts(&self) -> &[ContactState] {
         self.contacts.as_deref().unwrap_or_default()
     }
 
-    /// Returns the number of contacts and the number of slipping contacts; `None` if contacts are not reported.
+    /// Returns the number of contacts and the number of slipping contacts; `None` if the solver does not report
+    /// contacts.
     #[must_use]
     pub fn touching(&self) -> Option<[usize; 2]> {
         let contacts = self.contacts.as_ref()?;
@@ -256,7 +259,8 @@ impl Snapshot {
         self.place_of(id).map(|place| &self.grains[place])
     }
 
-    /// Returns a snapshot with grains and moved walls, without contacts and without forces on the walls.
+    /// Returns a snapshot with the given grains and with the walls at their positions at `time` (s). It contains no
+    /// contacts and no forces on walls.
     #[must_use]
     pub fn of_grains(scene: &Scene, step: u64, time: f64, grains: Vec<GrainState>) -> Self {
         let time_step = if step == 0 { 0.0 } else { time / step as f64 };
@@ -305,20 +309,23 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
     (low, high)
 }
 
-/// State of a simulation at one step, with the data that probes need in addition to the snapshot.
+/// State of a simulation at one step: a snapshot, and further data for probes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepState {
     /// Grains sorted by id, contacts and walls.
     pub snapshot: Snapshot,
-    /// Number of contacts and number of slipping contacts, if known. They may be known without a list of contacts.
+    /// Number of contacts and number of slipping contacts, if known. They may be known although the snapshot has no
+    /// list of contacts.
     pub touching: Option<[usize; 2]>,
     /// Elastic energy of contact springs and deformed material (J).
     pub elastic_energy: f64,
     /// Kinetic energy in excess of the rigid motion of grains and bodies (J).
     pub inner_kinetic_energy: f64,
-    /// Rotational energy ½ ω·Iω with inertia tensors I, less ½ I ω² with the scalar moments I of grains and bodies (J).
+    /// Difference in rotational energy (J): ½ ω·Iω with inertia tensors I, less ½ I ω² with the scalar moments of
+    /// inertia I of grains and bodies.
     pub uneven_rotational_energy: f64,
-    /// Angular momentum Iω with inertia tensors I, less Iω with the scalar moments I of grains and bodies (kg m²/s).
+    /// Difference in angular momentum (kg m²/s): Iω with inertia tensors I, less Iω with the scalar moments of inertia
+    /// I of grains and bodies.
     pub uneven_angular_momentum: Vector3<f64>,
     /// Material at the positions of point probes, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
@@ -347,7 +354,7 @@ impl StepState {
     }
 }
 
-/// Counts of one of our solvers so far. They do not depend on the machine.
+/// Work counters of one of our solvers since the start of the run. They do not depend on the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Steps taken.
@@ -388,7 +395,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Returns the cost of one of our solvers.
+    /// Returns the cost of a run of one of our solvers.
     #[must_use]
     pub const fn new(counts: Counts, wall_seconds: f64) -> Self {
         Self {
@@ -409,7 +416,7 @@ impl Cost {
         self.particle_steps + self.contact_evaluations.unwrap_or_default()
     }
 
-    /// Returns the cost of an external program that reports no counts: `grains` grains that took `steps` steps.
+    /// Returns the cost of a run of an external program that reports no counts, with `grains` grains and `steps` steps.
     #[must_use]
     pub fn of_program(steps: u64, grains: usize, wall_seconds: f64) -> Self {
         Self { steps, particle_steps: steps * grains as u64, wall_seconds, ..Self::default() }
@@ -457,9 +464,9 @@ impl Provenance {
 pub struct PartialOutput {
     /// Time series up to the last sample.
     pub series: Series,
-    /// Snapshots so far, without those that the watcher took over.
+    /// Snapshots so far, without those that the observer did not return.
     pub snapshots: Vec<Snapshot>,
-    /// State in which the run broke or was interrupted. If the run broke, contacts are absent.
+    /// Last state of the run. If the run broke, contacts are absent.
     pub end: Snapshot,
 }
 
@@ -476,7 +483,8 @@ pub struct Record {
     pub cost: Cost,
 }
 
-/// Vector that is NaN if it was not reported, and absent in files, because JSON has no NaN.
+/// Serialisation of a vector that is NaN if the solver does not report it. The vector is then absent in files, because
+/// JSON has no NaN.
 mod untold {
     use nalgebra::Vector3;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

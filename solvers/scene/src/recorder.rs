@@ -1,4 +1,4 @@
-//! Recorder of a run. It knows the steps at which output is due, and records it.
+//! Recorder of the time series and snapshots of a run, and of the steps at which they are due.
 
 use crate::memory;
 use crate::probe;
@@ -23,7 +23,7 @@ impl Recorder {
     #[must_use]
     pub fn new(scene: &Scene, time_step: f64, steps: u64) -> Self {
         let interval = interval(scene, time_step, steps);
-        // There is at most one snapshot per step, whatever number was requested.
+        // There is at most one snapshot per step, even if the scene requests more.
         let parts = (u128::from(scene.snapshots) + 1).min(u128::from(steps.max(1)));
         let mut snapshot_steps: Vec<u64> = (0..=parts).map(|part| (u128::from(steps) * part / parts) as u64).collect();
         let nearest = |time: &f64| ((time / time_step).round() as u64).min(steps);
@@ -34,14 +34,14 @@ impl Recorder {
         Self { interval, snapshot_steps, steps, series, snapshots: Vec::new() }
     }
 
-    /// Returns true if all samples are finite, as in every run that continues.
+    /// Returns true if all samples are finite. A run ends at the first sample that is not finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.series.time.iter().chain(self.series.values.iter().flatten()).all(|value| value.is_finite())
     }
 
-    /// Returns true if this record belongs to the same run as `begun`: both record the same quantities at the same
-    /// steps, and each column has one value per sample.
+    /// Returns true if this recorder belongs to the same run as `begun`. Both must record the same quantities at the
+    /// same steps, and each column of this recorder must have one value per sample.
     #[must_use]
     pub fn is_of(&self, begun: &Self) -> bool {
         let Series { step, time, columns, values } = &self.series;
@@ -61,7 +61,7 @@ impl Recorder {
         self.interval
     }
 
-    /// Returns true if probes are sampled at a step: at every interval, and at the end.
+    /// Returns true if a sample of the probes is due at a step: at the start, after every interval, and at the end.
     #[must_use]
     pub fn is_sample(&self, step: u64) -> bool {
         step.is_multiple_of(self.interval) || step == self.steps
@@ -109,7 +109,8 @@ impl Recorder {
         }
     }
 
-    /// Records the sample at the step of `look`, if one is due, and returns the snapshot, if one is due.
+    /// Records the sample at the step of `look`, if one is due. Returns the snapshot with the columns of the scene, if
+    /// one is due.
     pub fn take(&mut self, scene: &Scene, look: StepState) -> Option<Snapshot> {
         self.sample(scene, &look);
         self.is_snapshot(look.snapshot.step).then(|| {
@@ -125,7 +126,7 @@ impl Recorder {
         self.series.step.last().copied()
     }
 
-    /// Adds a snapshot to the record.
+    /// Adds a snapshot to the recorder.
     pub fn keep(&mut self, snapshot: Snapshot) {
         self.snapshots.push(snapshot);
     }
@@ -146,9 +147,9 @@ impl Recorder {
     }
 }
 
-/// Memory of a snapshot in the list of due steps and in the index of the stored snapshots (B).
+/// Memory of one snapshot in the list of due steps and in the index of stored snapshots (B).
 const BYTES_OF_A_SNAPSHOT: f64 = 200.0;
-/// Memory of a value in a time series (B). A growing list holds up to twice its values.
+/// Memory of a value in a time series (B). A growing list reserves up to twice the memory of its values.
 const BYTES_OF_A_VALUE: f64 = 16.0;
 
 /// Returns the number of steps between samples.
@@ -161,15 +162,15 @@ fn interval(scene: &Scene, time_step: f64, steps: u64) -> u64 {
     interval.max(1)
 }
 
-/// Describes the output of a run that does not fit into memory, with its key; `None` if it fits. The rows of snapshots
-/// do not count, because they can be written to the disk one snapshot after the other.
+/// Returns an error message, with the key of the scene, for output that does not fit into memory; `None` if it fits.
+/// The rows of snapshots do not count, because they can be written to the disk one snapshot after the other.
 pub(crate) fn beyond_memory(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
     let samples = steps / interval(scene, time_step, steps as u64) as f64;
     let key = match scene.sampling {
         Sampling::Cycles(_) => "output.every_cycles",
         Sampling::Seconds(_) | Sampling::Count(_) => "output.every",
     };
-    // Each sample has a step and a time too.
+    // Each sample also has a step and a time.
     let values = samples * (probe::empty_series(scene).columns.len() + 2) as f64;
     let of_samples = (key, "values of samples", values, BYTES_OF_A_VALUE);
     let snapshots = f64::from(scene.snapshots).min(steps);

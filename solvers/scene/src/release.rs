@@ -2,19 +2,20 @@
 
 use std::f64::consts::PI;
 
-/// Returns the damping ratio ζ of a contact that ends at F_n = 0. It has the same coefficient of restitution as a
-/// contact with the ratio `pulling` that ends with the overlap, e = exp(−π ζ/√(1 − ζ²)).
+/// Returns the damping ratio ζ of a contact that ends when F_n = 0. The argument `pulling` is the damping ratio of a
+/// contact that has the same coefficient of restitution e but ends when the overlap is zero. For that contact, e =
+/// exp(−π ζ/√(1 − ζ²)) with ζ = `pulling`.
 ///
-/// The damped oscillation x'' + 2ζ x' + x = 0 starts from x = 0, x' = 1. Its force vanishes where x'' = 0, at
-/// t = 2φ/√(1 − ζ²) with cos φ = ζ. There, x' = −e with
+/// In the contact that ends when F_n = 0, the damped oscillation x'' + 2ζ x' + x = 0 starts from x = 0, x' = 1. Its
+/// force vanishes when x'' = 0, at t = 2φ/√(1 − ζ²) with cos φ = ζ. At this time, x' = −e with
 ///
 /// ```text
 /// e = exp(−2ζ acos ζ/√(1 − ζ²))   below critical damping, e⁻² at it, exp(−2ζ acosh ζ/√(ζ² − 1)) above it.
 /// ```
 ///
-/// Hertz contacts with the dashpot of Tsuji, Tanaka & Ishida (1992) have the same e(ζ) for either release. With
-/// y = δ^{5/4} instead of δ, their motion v dv/dy is that of a linear oscillator (Antypov & Elliott, EPL 94 (2011)
-/// 50004). Both forces vanish at the same point.
+/// Hertz contacts with the dashpot of Tsuji, Tanaka & Ishida (1992) have the same function e(ζ) in both cases. With y =
+/// δ^{5/4} instead of δ, their motion v dv/dy is that of a linear oscillator (Antypov & Elliott, EPL 94 (2011) 50004).
+/// The forces of the contact and of the oscillator vanish at the same point.
 #[must_use]
 pub fn no_tension_ratio(pulling: f64) -> f64 {
     if pulling <= 0.0 {
@@ -32,7 +33,7 @@ pub fn no_tension_ratio(pulling: f64) -> f64 {
     }
 }
 
-/// Returns −ln e of a contact with a damping ratio that ends at F_n = 0.
+/// Returns −ln e for a damping ratio ζ = `ratio` if the contact ends when F_n = 0.
 fn log_of_restitution(ratio: f64) -> f64 {
     let beside = 1.0 - ratio;
     let arc = if beside.abs() < 1e-4 {
@@ -50,7 +51,8 @@ fn log_of_restitution(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Largest rebound speed, by the fourth-order Runge-Kutta method, for damping below and above the critical one.
+    /// The largest rebound speed after an impact with speed 1 equals e, for damping below, at and above the critical
+    /// one. The fourth-order Runge-Kutta method integrates the oscillation.
     #[test]
     fn the_rebound_is_fastest_where_the_force_vanishes() {
         for ratio in [0.05, 0.2, 0.7, 0.99999, 1.0, 1.00001, 1.5, 4.0] {

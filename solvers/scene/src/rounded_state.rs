@@ -1,7 +1,8 @@
-//! Compact form of a final state, about half as large. A scene of a hundred thousand grains can start from such a file,
-//! and the file is small enough for a source repository.
+//! Rounded form of a final state, about half as large as the exact form. For a scene of a hundred thousand grains, the
+//! file is small enough for a source repository.
 //!
-//! Values are rounded once, when the file is written, so that every solver starts from the same numbers:
+//! Values are rounded once, when the file is written, so that every solver starts from the same numbers. The roundings
+//! are:
 //!
 //! ```text
 //! positions                    to whole multiples of s = 2⁻³⁶ of the power of two at or below the smallest radius
@@ -10,17 +11,17 @@
 //! ```
 //!
 //! A centre moves by at most s/2 along each axis. The force of a contact of stiffness k thus changes by less than √3 k
-//! s. For spheres of diameter d with k = 2·10⁵ mg/d, this is 3·10⁻⁶ of a grain's weight. Overlaps in a heap are of the
-//! order of 10⁻⁴ d, or 10⁷ s. The heap comes to rest again within a few contact times. Its contact springs, which
-//! support it, keep their values within a relative error of 6·10⁻⁸.
+//! s. For spheres of diameter d and weight mg with k = 2·10⁵ mg/d, this change is 3·10⁻⁶ mg. Overlaps in a heap are of
+//! the order of 10⁻⁴ d, which is 10⁷ rounding steps. The heap comes to rest again within a few contact times. The
+//! contact springs, which support the heap, keep their values within a relative error of 6·10⁻⁸.
 //!
-//! A bed at rest stored without its springs needs even less space: positions are multiples of 2⁻²⁰ of that power of
-//! two, and velocities and spins are omitted. For spheres M1 of 1 mm with E = 1 GPa, this step is 9·10⁻¹⁰ m. The weight
-//! of a single grain causes an overlap of 3.5·10⁻⁸ m.
+//! The file of a bed at rest without springs is even smaller: the rounding step is 2⁻²⁰ of the same power of two, and
+//! velocities and spins are omitted. For spheres of radius 1 mm with E = 1 GPa (material M1), this step is 9·10⁻¹⁰ m.
+//! For comparison, the weight of a single grain causes an overlap of 3.5·10⁻⁸ m.
 //!
-//! A file holds the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a
-//! [`PackedState`] in postcard's format. Each column stores the lowest bytes of all its numbers first, then the next bytes,
-//! and so on. The high bytes hardly differ, so they compress well.
+//! A file contains the line `grainbench rounded state <format>`, length and hash (see `sealed`), and a zlib stream of a
+//! [`PackedState`] in postcard's format. Each column stores the lowest bytes of all numbers first, then the next bytes,
+//! and so on. The high bytes of different numbers hardly differ, so they compress well.
 
 use crate::end_state::{EndState, Springs, StateGrain};
 use nalgebra::Vector3;
@@ -38,7 +39,7 @@ pub(crate) const ROUNDING_AT_REST: f64 = 1.0 / (1_u64 << 20) as f64;
 /// Largest multiple of the rounding step that a position may be, so that multiples are exact.
 const FARTHEST: f64 = (1_u64 << 53) as f64;
 
-/// Packed data of a state.
+/// Rounded state with its data in columns.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct PackedState {
     of: [String; 2],
@@ -56,13 +57,13 @@ pub(crate) struct PackedState {
     names: Vec<String>,
     /// Columns of the grains: index in `kinds`, position as multiples of the step along three axes, velocity and spin.
     grains: [Vec<u8>; 10],
-    /// Contacts between grains: the difference of the first index to that of the previous contact, and of the second to
-    /// the first.
+    /// Columns of the contacts between grains. The first column is the first grain index, less that of the previous
+    /// contact. The second column is the second grain index, less the first index.
     pairs: [Vec<u8>; 2],
-    /// Contacts with walls: the difference of the grain index to that of the previous contact, and the index of the
-    /// wall name.
+    /// Columns of the contacts with walls. The first column is the grain index, less that of the previous contact. The
+    /// second column is the index of the wall in `names`.
     walls: [Vec<u8>; 2],
-    /// History of the contacts between grains, then of those with walls: one column per value.
+    /// History values, one column per value: first of the contacts between grains, then of the contacts with walls.
     springs: Vec<Vec<u8>>,
 }
 
@@ -71,16 +72,16 @@ fn power_of_two(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & f64::INFINITY.to_bits())
 }
 
-/// Stores numbers byte by byte, all lowest bytes first.
+/// Returns the column of numbers: the lowest bytes of all numbers, then the next bytes, and so on.
 fn column<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
     let all: Vec<[u8; N]> = numbers.collect();
     (0..N).flat_map(|byte| all.iter().map(move |number| number[byte])).collect()
 }
 
-/// Reads the numbers of a column.
+/// Returns the numbers of a column, each as its bytes from lowest to highest.
 fn numbers<const N: usize>(column: &[u8]) -> Result<Vec<[u8; N]>, String> {
     if !column.len().is_multiple_of(N) {
-        return Err(format!("a column of {} bytes, where each number has {N}", column.len()));
+        return Err(format!("a column of {} bytes, although each number has {N}", column.len()));
     }
     let count = column.len() / N;
     Ok((0..count).map(|at| std::array::from_fn(|byte| column[byte * count + at])).collect())
@@ -94,7 +95,7 @@ fn read_singles(column: &[u8]) -> Result<Vec<f64>, String> {
     Ok(numbers(column)?.into_iter().map(|bytes| f64::from(f32::from_le_bytes(bytes))).collect())
 }
 
-/// Stores indices, each as the difference to `from`.
+/// Returns the column of the differences between two indices: the first of each pair less the second.
 fn places(values: impl Iterator<Item = (u32, u32)>) -> Vec<u8> {
     column(values.map(|(place, from)| place.wrapping_sub(from).to_le_bytes()))
 }
@@ -103,7 +104,7 @@ fn read_places(column: &[u8]) -> Result<Vec<u32>, String> {
     Ok(numbers(column)?.into_iter().map(u32::from_le_bytes).collect())
 }
 
-/// Sums differences to indices.
+/// Returns the cumulative sums of differences, which are indices.
 fn following(steps: &[u32]) -> Vec<u32> {
     let mut place = 0_u32;
     let next = |step: &u32| {
@@ -113,13 +114,14 @@ fn following(steps: &[u32]) -> Vec<u32> {
     steps.iter().map(next).collect()
 }
 
-/// Pairs each index with the previous one; the first with 0.
+/// Returns each index with the previous index; 0 precedes the first index.
 fn after(places: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
     places.iter().copied().zip(std::iter::once(0).chain(places.iter().copied()))
 }
 
 impl PackedState {
-    /// Rounds a state. Positions are rounded to `rounding` times the power of two at or below the smallest radius.
+    /// Creates the rounded form of a state. The rounding step of positions is `rounding` times the largest power of two
+    /// at or below the smallest radius (m).
     pub(crate) fn new(state: &EndState, rounding: f64) -> Result<Self, String> {
         let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
         let step = if smallest.is_finite() { power_of_two(smallest) * rounding } else { 1.0 };
@@ -146,7 +148,7 @@ impl PackedState {
         let memories = || pairs.iter().map(|pair| &pair.2).chain(walls.iter().map(|wall| &wall.2));
         let count = memories().next().map_or(0, Vec::len);
         if memories().any(|memory| memory.len() != count) {
-            return Err("contacts that remember different amounts of numbers".to_owned());
+            return Err("contacts with different amounts of history".to_owned());
         }
         let mut names: Vec<String> = walls.iter().map(|wall| wall.1.clone()).collect();
         names.sort();
@@ -182,7 +184,7 @@ impl PackedState {
         })
     }
 
-    /// Returns the rounded state.
+    /// Returns the state with the rounded values.
     pub(crate) fn state(&self) -> Result<EndState, String> {
         let kinds = read_places(&self.grains[0])?;
         let positions = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));
@@ -206,7 +208,7 @@ impl PackedState {
             && springs.len() == self.numbers as usize
             && springs.iter().all(|singles_of| singles_of.len() == contacts);
         if !fits {
-            return Err("columns that do not fit one another".to_owned());
+            return Err("columns of different lengths".to_owned());
         }
         let vector = |component: &dyn Fn(usize) -> f64| Vector3::new(component(0), component(1), component(2));
         let grain = |(at, &kind): (usize, &u32)| {

@@ -1,4 +1,5 @@
-//! Resolved scene with every grain, wall and law in SI units. All values are checked. Solvers read only this scene.
+//! Resolved scene, with every grain, wall and contact law in SI units. All values are checked. Solvers read only this
+//! scene, not the scene file.
 
 pub use crate::body::Block;
 use crate::body::Start;
@@ -18,9 +19,9 @@ use std::sync::Arc;
 /// Number of dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// Plane (x, y).
+    /// Two dimensions (x, y).
     Two,
-    /// Spheres in three dimensions.
+    /// Three dimensions (x, y, z).
     Three,
 }
 
@@ -36,7 +37,8 @@ impl Dimension {
 }
 
 impl GrainShape {
-    /// Returns the mass of a grain of this shape: kg/m for discs (per metre of depth), kg for spheres.
+    /// Returns the mass of a grain of this shape, of a radius (m) and a density (kg/m³): kg/m for discs (per metre of
+    /// depth), kg for spheres.
     #[must_use]
     pub fn mass(self, radius: f64, density: f64) -> f64 {
         match self {
@@ -84,26 +86,26 @@ pub enum WallShape {
         /// Unit vector out of the solid.
         normal: Vector3<f64>,
     },
-    /// Segment between two points (m), in the plane.
+    /// Segment between two points (m), in two dimensions.
     Segment {
         /// Ends of the segment (m).
         ends: [Vector3<f64>; 2],
     },
-    /// Rectangle in space.
+    /// Rectangle, in three dimensions.
     Rectangle {
         /// Corner (m).
         corner: Vector3<f64>,
         /// Perpendicular edges from the corner (m).
         edges: [Vector3<f64>; 2],
     },
-    /// Lateral surface of a cylinder or a truncated cone, in space.
+    /// Lateral surface of a cylinder or a truncated cone, in three dimensions.
     Round {
         /// Ends of the axis (m).
         axis: [Vector3<f64>; 2],
         /// Radius at each end (m).
         radii: [f64; 2],
     },
-    /// Surface of triangles, in space.
+    /// Surface of triangles, in three dimensions.
     Mesh(Mesh),
 }
 
@@ -138,7 +140,8 @@ impl WallShape {
     }
 }
 
-/// Returns a unit vector perpendicular to a direction. If the direction is along one axis, the result is along another.
+/// Returns a unit vector perpendicular to a direction. If the direction is parallel to an axis, the result is parallel
+/// to another axis.
 pub(crate) fn across(direction: Vector3<f64>) -> Vector3<f64> {
     let least = (0..3).min_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs())).unwrap_or(0);
     let axis = Vector3::ith(least, 1.0);
@@ -156,26 +159,26 @@ pub struct Wall {
     pub shape: WallShape,
     /// Prescribed motion.
     pub motion: Motion,
-    /// Load on a pressed wall.
+    /// Piston that presses the wall; `None` if the wall has no piston.
     pub piston: Option<Piston>,
-    /// Time of its removal (s).
+    /// Time at which the wall is removed (s); `None` if it is never removed.
     pub until: Option<f64>,
 }
 
-/// Piston that presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on
-/// it.
+/// Piston that presses a plane against grains. Its velocity v along the normal of the plane satisfies M dv/dt = F − F_n
+/// − M c v, where F_n is the normal force of the grains on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piston {
-    /// Force F along the normal (N).
+    /// Force F along the normal (N; N/m in two dimensions).
     pub force: f64,
-    /// Mass M (kg).
+    /// Mass M (kg; kg/m in two dimensions).
     pub mass: f64,
     /// Damping c (1/s).
     pub damping: f64,
 }
 
-/// Grains with prescribed motion, which forces do not change. It consists of a constant velocity and spin, and of a
-/// further motion.
+/// Group of grains with prescribed motion, which forces do not change. The motion is the sum of a constant velocity, a
+/// constant spin and a further motion.
 #[derive(Clone, PartialEq)]
 pub struct Driven {
     /// Name in the file.
@@ -188,11 +191,11 @@ pub struct Driven {
     pub span: [f64; 2],
     /// Angular velocity of each grain about its own centre (rad/s).
     pub spin: Vector3<f64>,
-    /// Further motion without rotation.
+    /// Further motion, without rotation, in addition to `velocity`.
     pub motion: Motion,
 }
 
-/// Prints spin and motion only if there are any, as [`Motion`] does with its functions.
+/// Prints spin and motion only if they are not zero, so that fingerprints of scenes without them stay the same.
 impl std::fmt::Debug for Driven {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut shown = formatter.debug_struct("Driven");
@@ -212,16 +215,15 @@ impl Driven {
     /// Time span of the whole run (s).
     pub const ALWAYS: [f64; 2] = [0.0, f64::INFINITY];
 
-    /// Returns true if the motion is prescribed over the step that begins at a time (s). A moment that is a whole
-    /// number of steps, apart from rounding, belongs to that step.
+    /// Returns true if the motion is prescribed over the step that begins at a time (s). Apart from rounding, a step
+    /// that begins at the start of the motion is included, and a step that begins at its end is not.
     #[must_use]
     pub fn is_moved_at(&self, time: f64) -> bool {
         let [start, stop] = self.span.map(|moment| moment * (1.0 - 1e-9));
         (start..stop).contains(&time)
     }
 
-    /// Returns the velocity (m/s) over the step that begins at a time (s): the displacement in the step divided by its
-    /// length.
+    /// Returns the mean velocity (m/s) over the step that begins at a time (s): displacement divided by time step (s).
     #[must_use]
     pub fn velocity_over(&self, time: f64, time_step: f64) -> Vector3<f64> {
         if self.motion.is_empty() {
@@ -231,7 +233,7 @@ impl Driven {
         self.velocity + (at(time + time_step) - at(time)) / time_step
     }
 
-    /// Returns the velocity (m/s) at a time (s): the mean over the steps that end and begin then.
+    /// Returns the velocity (m/s) at a time (s): the mean of the velocities over the steps before and after this time.
     #[must_use]
     pub fn velocity_at(&self, time: f64, time_step: f64) -> Vector3<f64> {
         if self.motion.is_empty() {
@@ -282,7 +284,7 @@ pub enum Sampling {
     Count(u64),
 }
 
-/// Grain, wall, contact or sum whose quantities a probe records.
+/// Object whose quantities a probe records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProbeTarget {
     /// Grain, by index in [`Scene::grains`].
@@ -291,13 +293,13 @@ pub enum ProbeTarget {
     Body(usize),
     /// Material at a position, by index in [`Scene::spots`].
     Point(usize),
-    /// Contact between two grains.
+    /// Contact between two grains, by index in [`Scene::grains`].
     Pair(usize, usize),
-    /// Contact between a grain and a wall, by index in [`Scene::walls`].
+    /// Contact between a grain and a wall, by index in [`Scene::grains`] and in [`Scene::walls`].
     GrainWall(usize, usize),
     /// Wall, by index in [`Scene::walls`].
     Wall(usize),
-    /// Displacement of a pressed wall.
+    /// Displacement of a wall with a piston, by index in [`Scene::walls`].
     Piston(usize),
     /// Group of grains with prescribed motion, by index in [`Scene::driven`].
     Driven(usize),
@@ -311,7 +313,7 @@ pub enum ProbeTarget {
     System,
 }
 
-/// Position in the material of a body.
+/// Position in the material of a grain or other body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
     /// Body that contains the position.
@@ -329,12 +331,12 @@ pub enum BodyName {
     Body(usize),
 }
 
-/// A named time series.
+/// Probe: a named time series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// Name. Columns are called `name.quantity`.
     pub name: String,
-    /// Recorded object of the scene.
+    /// Object whose quantities are recorded.
     pub target: ProbeTarget,
 }
 
@@ -349,7 +351,7 @@ pub struct Domain {
     pub periodic: [bool; 3],
 }
 
-/// Scene, checked and complete.
+/// Resolved scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Title, for reports.
@@ -368,7 +370,7 @@ pub struct Scene {
     pub duration: Duration,
     /// Names of the materials.
     pub materials: Vec<String>,
-    /// Table of contact laws for all pairs of materials; [`Scene::law`] reads it.
+    /// Table of contact laws for all pairs of materials, row by row; [`Scene::law`] reads it.
     pub laws: Vec<Option<ContactLaw>>,
     /// Properties of deformable materials, in the order of `materials`; `None` if the scene gives none.
     pub deformable: Vec<Option<Deformable>>,
@@ -382,7 +384,7 @@ pub struct Scene {
     pub bodies: Vec<Block>,
     /// Initial conditions of deformable bodies.
     pub start: Start,
-    /// Reference length of the cells of a grid (m).
+    /// Reference length (m) for the cell size of solvers with a grid.
     pub reference_length: f64,
     /// Walls in the order of the scene file.
     pub walls: Vec<Wall>,
@@ -394,7 +396,7 @@ pub struct Scene {
     pub snapshots: u32,
     /// Times of further snapshots (s).
     pub snapshot_times: Vec<f64>,
-    /// True if snapshots of external solvers also hold the contacts between grains.
+    /// True if external solvers also write the contacts between grains to snapshots.
     pub snapshot_contacts: bool,
     /// Contents of snapshots.
     pub columns: Columns,
@@ -405,14 +407,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the stable time step on a grid of cells of length h (m): the smallest one of all deformable materials
-    /// (s); infinite if nothing deforms.
+    /// Returns the largest stable time step (s) on a grid with cells of length h = `cell` (m). It is the smallest one
+    /// of the materials of all grains and bodies, and infinite if no material is deformable.
     ///
     /// Without viscosity, it is the time h/c in which a longitudinal wave crosses a cell, with c = √(M/ρ) and M = K +
-    /// 4G/3. A viscosity η_L = 4η/3 + ζ that acts on the velocities of the previous step shortens it. Central
-    /// differences of ẍ + 2ξωẋ + ω²x = 0 with a lagging second term are bounded up to (2/ω)(√(1 + ξ²) − ξ) (Belytschko,
-    /// Liu & Moran, *Nonlinear Finite Elements*, 2000, section 6.2). The shortest wave of a grid has ω = 2c/h and
-    /// ξ = η_L/(ρ c h).
+    /// 4G/3. A viscosity η_L = 4η/3 + ζ reduces it, because viscous forces depend on the velocities of the previous
+    /// step. Central differences of ẍ + 2ξωẋ + ω²x = 0, with the second term from the previous step, are stable up to
+    /// the time step (2/ω)(√(1 + ξ²) − ξ) (Belytschko, Liu & Moran, *Nonlinear Finite Elements*, 2000, section 6.2).
+    /// The shortest wave of a grid has ω = 2c/h and ξ = η_L/(ρ c h).
     #[must_use]
     pub fn crossing_time(&self, cell: f64) -> f64 {
         let material_time = |material: u16, density: f64| {
@@ -429,7 +431,7 @@ impl Scene {
         grains.chain(bodies).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns, for each grain, its group in [`Scene::driven`]; `None` for grains that move freely.
+    /// Returns, for each grain, the index of its group in [`Scene::driven`]; `None` for grains that always move freely.
     #[must_use]
     pub fn driven_group_of_grains(&self) -> Vec<Option<u16>> {
         let mut group_of = vec![None; self.grains.len()];
@@ -451,54 +453,57 @@ impl Scene {
         self.laws[usize::from(a) * self.materials.len() + usize::from(b)].as_ref()
     }
 
-    /// Names a feature that lasts for only a part of the run; `None` if there is none. Not every solver can insert or
-    /// remove grains, remove walls, or start with contact history.
+    /// Returns a description of a feature that not every solver supports; `None` if the scene has none. These features
+    /// are insertion and removal of grains, pistons, motion of grains that is prescribed for only a part of the run,
+    /// initial contact history, and removal of walls.
     #[must_use]
     pub fn passing(&self) -> Option<&'static str> {
         if !self.stays.entries.is_empty() {
             return Some("grains that are poured");
         }
         if self.stays.removal.is_some() {
-            return Some("grains that are taken out");
+            return Some("grains that are removed");
         }
         if self.walls.iter().any(|wall| wall.piston.is_some()) {
-            return Some("a wall that is pressed");
+            return Some("a piston");
         }
         if self.driven.iter().any(Driven::is_for_a_while) {
-            return Some("grains that are driven for a while (`driven.….start`, `stop`)");
+            return Some("grains that are driven for a part of the run (`driven.….start`, `stop`)");
         }
         if self.springs.is_some() {
-            return Some("contacts that remember at the start (`springs = false` beside the state leaves that out)");
+            return Some("contacts with springs at the start (`springs = false` next to the state omits them)");
         }
-        self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are taken away")
+        self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are removed")
     }
 
-    /// Names a snapshot quantity that is computed during the run; `None` if there is none. Not every solver computes
-    /// it.
+    /// Returns a description of a snapshot quantity that is an average over time; `None` if the scene requests none.
+    /// Not every solver computes it.
     #[must_use]
     pub fn gathered(&self) -> Option<&'static str> {
         self.columns.has(Chosen::MeanVirial).then_some("a mean over time in its snapshots (`mean-virial`)")
     }
 
-    /// Names a round wall; `None` if there is none. Not every solver has round walls.
+    /// Returns a description of the first cylindrical or conical wall; `None` if there is none. Not every solver
+    /// supports these walls.
     #[must_use]
     pub fn round_wall(&self) -> Option<String> {
         let round = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Round { .. }))?;
         Some(format!("wall `{}` is the side of a cylinder or a cone", round.name))
     }
 
-    /// Names a wall of triangles; `None` if there is none. Not every solver has such walls.
+    /// Returns a description of the first wall of triangles; `None` if there is none. Not every solver supports these
+    /// walls.
     #[must_use]
     pub fn mesh_wall(&self) -> Option<String> {
         let mesh = self.walls.iter().find(|wall| matches!(wall.shape, WallShape::Mesh(_)))?;
         Some(format!("wall `{}` is a mesh of triangles", mesh.name))
     }
 
-    /// Names a feature that needs a solver for deformable bodies; `None` if there is none.
+    /// Returns a description of a feature that needs a solver for deformable bodies; `None` if there is none.
     #[must_use]
     pub fn needs_deformable(&self) -> Option<&'static str> {
         if !self.bodies.is_empty() {
-            return Some("bodies that are no grains");
+            return Some("bodies that are not grains");
         }
         if !self.spots.is_empty() {
             return Some("probes of the material inside grains");
@@ -518,9 +523,9 @@ impl Scene {
     }
 
     /// Returns the critical time step `2√(m_min/k_max)` of a mass on a spring to ground (s), from the smallest mass and
-    /// the largest normal or tangential stiffness (Cundall & Strack 1979, p. 53). It is an estimate: assemblies need a
-    /// fraction of it, which users choose. The stiffness of a Hertz contact is taken at an overlap of 0.01 of the
-    /// largest radius.
+    /// the largest normal or tangential stiffness (Cundall & Strack 1979, p. 53). It is an estimate. Simulations of
+    /// many grains need a fraction of it, which the user chooses. The stiffness of a Hertz contact is taken at an
+    /// overlap of 0.01 of the largest radius. Without springs, the result is infinite.
     #[must_use]
     pub fn critical_time_step(&self) -> f64 {
         let mass = self.grains.iter().map(|grain| grain.mass).fold(f64::INFINITY, f64::min);

@@ -1,12 +1,12 @@
-//! Sealed files, which only this program reads. A file holds a line with its kind and format, the number of bytes that
-//! follow the hash (8 bytes, little-endian), their BLAKE3 hash (32 bytes), and these bytes.
+//! Sealed files, which only this program reads. A file consists of a line with kind and format, the number of content
+//! bytes (8 bytes, little-endian), the BLAKE3 hash of the content (32 bytes), and the content.
 
-/// Bytes of length and hash.
+/// Number of bytes of length and hash.
 const HEAD: u64 = 40;
-/// Largest number of digits of one of our format numbers, plus the end of the line.
+/// Largest number of digits of a format number (10), plus the end of the line.
 const DIGITS: usize = 11;
 
-/// Reason that bytes are not a valid sealed file.
+/// Reason why bytes are not a valid sealed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SealError {
     /// Another kind of file.
@@ -21,7 +21,7 @@ pub(crate) enum SealError {
     Changed,
 }
 
-/// Returns the bytes of a file of some kind and format.
+/// Returns the bytes of a file with the given kind (`magic`), format and content.
 pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
     let mut bytes = [magic, format.to_string().as_bytes(), b"\n"].concat();
     bytes.extend((body.len() as u64).to_le_bytes());
@@ -30,7 +30,7 @@ pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the sealed bytes.
+/// Returns the content of a file of the given kind (`magic`) and format.
 pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], SealError> {
     let start = &bytes[..bytes.len().min(magic.len() + DIGITS)];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();

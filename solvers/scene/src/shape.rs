@@ -1,9 +1,9 @@
-//! Shapes of vectors and tensors in scene files, for error messages about a wrong value. Walls that exist only in three
-//! dimensions are shown in three dimensions.
+//! Expected forms ("shapes") of values in scene files, for error messages. Keys that exist only in three dimensions
+//! always show three components.
 
 use crate::scene::Dimension;
 
-/// Keys with the shapes of their values. `@` stands for a vector, `%` for its components and `#` for a symmetric
+/// Keys, and the shapes of their values. `@` is replaced by a vector, `%` by its components, and `#` by a symmetric
 /// tensor. `table.key` distinguishes keys of the same name.
 const SHAPES: &[(&str, &str)] = &[
     ("plane", "{ point = @, normal = @ }"),
@@ -97,8 +97,8 @@ pub(crate) const fn symmetric(dimension: Dimension) -> &'static str {
     }
 }
 
-/// Returns the key of a dotted path, and the expected shape of its value. Numbers in brackets at the end of the path,
-/// which denote parts of a value, are removed.
+/// Returns the key at a dotted path, and the expected shape of its value. Indices in brackets at the end of the path
+/// are removed, because they refer to parts of the value.
 pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String)> {
     let mut end = path.trim_end_matches(|letter| letter != '.').len();
     end += path[end..].find('[').unwrap_or(path.len() - end);
@@ -106,7 +106,7 @@ pub(crate) fn expected(path: &str, dimension: Dimension) -> Option<(&str, String
     let mut names = key.rsplit('.').map(|part| part.split('[').next().unwrap_or(part));
     let last = names.next()?;
     let above = names.next();
-    // A group with the name of a key is still a table of its kind.
+    // If the user's name equals the name of a key, the value is still a table of this kind.
     let kind = above.filter(|above| names.next().is_none() && OF_NAMES.contains(above));
     let shape_of = |key: &str| SHAPES.iter().find(|(name, _)| *name == key).map(|(_, shape)| *shape);
     let shape = match (kind, above) {

@@ -1,4 +1,4 @@
-//! Interface of solvers, which take a scene and a resolution and return a record.
+//! Interface of solvers. A solver receives a scene and a resolution, and returns a record.
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -42,7 +42,7 @@ pub enum Resolution {
 impl Resolution {
     /// Default step of a rigid-body engine (s): sixty per second, a usual frame rate.
     pub const RIGID_STEP: f64 = 1.0 / 60.0;
-    /// Default number of iterations of its constraint solver.
+    /// Default number of iterations of the constraint solver of a rigid-body engine.
     pub const RIGID_ITERATIONS: u32 = 4;
 
     /// Default Courant number of a method with a grid.
@@ -72,8 +72,8 @@ impl Resolution {
         Self::Rigid { step: Self::RIGID_STEP, substeps, iterations: Self::RIGID_ITERATIONS }
     }
 
-    /// Returns the resolution with steps or cells longer by a factor; `None` if the number of substeps would not be a
-    /// whole number.
+    /// Returns the resolution with the time step or the cell size multiplied by a factor; `None` if the number of
+    /// substeps would not be a whole number of at least 1.
     #[must_use]
     pub fn coarser(&self, factor: f64) -> Option<Self> {
         Some(match *self {
@@ -138,31 +138,32 @@ impl Resolution {
         };
         let wanted = courant * scene.crossing_time(scene.reference_length / cells);
         if !(wanted.is_finite() && wanted > 0.0) {
-            return Err(format!("expected a material that deforms and positive numbers, found none at {self}"));
+            return Err(format!("expected a deformable material and positive numbers, found none at {self}"));
         }
         beyond_run(scene, wanted, time / wanted).map_or_else(|| Ok(whole_steps(time, wanted)), Err)
     }
 }
 
-/// Returns the step (s) and the whole number of steps of at most `wanted` (s) that fill a time (s). A small tolerance
-/// prevents an extra step due to rounding.
+/// Returns the longest time step (s) of at most `wanted` (s) that divides a time (s) into a whole number of steps, and
+/// this number. A small tolerance prevents an extra step due to rounding.
 fn whole_steps(time: f64, wanted: f64) -> (f64, u64) {
     let steps = (time / wanted * (1.0 - 1e-12)).ceil().max(1.0);
     (time / steps, steps as u64)
 }
 
-/// Largest number of steps of any solver. At a million steps per second, these would take thirty years.
+/// Limit of the number of steps of any solver. A run with this number of steps takes thirty years at a million steps
+/// per second.
 const MOST_STEPS: f64 = 1e15;
 
-/// Describes a number of steps that is too large; `None` if it is not.
+/// Returns an error message for a number of steps that is too large; `None` for other numbers.
 #[must_use]
 pub fn beyond_steps(steps: f64) -> Option<String> {
     (steps.is_nan() || steps >= MOST_STEPS)
         .then(|| format!("expected fewer than {MOST_STEPS:e} steps, found {steps:.3e}"))
 }
 
-/// Describes a run with steps of `time_step` (s) that has too many steps, or whose record does not fit into memory.
-/// Returns `None` for other runs.
+/// Returns an error message for a run with steps of `time_step` (s) that has too many steps, or whose record does not
+/// fit into memory; `None` for other runs.
 #[must_use]
 pub fn beyond_run(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
     beyond_steps(steps).or_else(|| recorder::beyond_memory(scene, time_step, steps))
@@ -195,10 +196,10 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// Kind of a solver, by its type of resolution.
+/// Numerical method of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Method {
-    /// Discrete element method. Its resolution is a time step.
+    /// Discrete element method. The resolution is a time step.
     Dem,
     /// Rigid grains. The resolution consists of substeps and iterations.
     Rigid,
@@ -207,7 +208,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Returns the kind of one of our solvers, by name.
+    /// Returns the method of one of our solvers, by name.
     #[must_use]
     pub fn from_name(solver: &str) -> Option<Self> {
         match solver.split([':', '+']).next() {
@@ -229,14 +230,14 @@ impl Method {
     }
 }
 
-/// Deliberate defect of a solver, for negative controls.
+/// Deliberate defect of a solver, for a negative control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Defect {
     /// All contacts lose their history after every step.
     ForgetsHistory,
 }
 
-/// Reason that a simulation broke.
+/// Reason why a simulation broke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// A position or velocity is NaN or infinite.
@@ -293,7 +294,8 @@ pub enum Cause {
     StartsInside {
         /// Overlap (m).
         depth: f64,
-        /// Strain of the surface layer that carries the spring forces of the overlap.
+        /// Strain p/M of the surface layer, with the pressure p of the contact springs and the longitudinal modulus M
+        /// (Pa).
         strain: f64,
         /// Largest allowed strain.
         allowed: f64,
@@ -303,14 +305,14 @@ pub enum Cause {
         /// Number of cells required.
         cells: f64,
     },
-    /// A poured grain was inserted into another grain.
+    /// A poured grain was inserted at the position of another grain.
     CameIntoGrain {
         /// Id of the other grain, from 1.
         other: u32,
         /// Overlap relative to the smaller radius.
         ratio: f64,
     },
-    /// A poured grain was inserted into a wall.
+    /// A poured grain was inserted at the position of a wall.
     CameIntoWall {
         /// Number of the wall in the order of the file, from 1.
         wall: u16,
@@ -319,8 +321,8 @@ pub enum Cause {
     },
 }
 
-/// Overlap, relative to the smaller radius, above which an inserted grain has no room: the default limit of initial
-/// overlaps.
+/// Largest overlap of an inserted grain, relative to the smaller radius. A larger overlap breaks the simulation. The
+/// value equals the default limit of initial overlaps.
 pub const LARGEST_ENTRY_OVERLAP: f64 = 0.1;
 
 impl fmt::Display for Cause {
@@ -333,7 +335,8 @@ impl fmt::Display for Cause {
             Self::StiffContact { stiffness } => {
                 write!(
                     formatter,
-                    "a contact of it became so stiff, {stiffness:.3e} N/m, that the time step is above the critical one"
+                    "one of its contacts became so stiff, {stiffness:.3e} N/m, that the time step is above the \
+                     critical one"
                 )
             }
             Self::Spun { turned } => write!(formatter, "it turned by {turned:.3e} rad in one step"),
@@ -348,35 +351,35 @@ impl fmt::Display for Cause {
             }
             Self::Stiffened { crossing, at_start } => write!(
                 formatter,
-                "it was deformed until the fastest wave took {crossing:.4e} s through a cell, {at_start:.4e} s at the start, and \
-                 less than the time step"
+                "it was deformed until the fastest wave crossed a cell in {crossing:.4e} s ({at_start:.4e} s at the \
+                 start), less than the time step"
             ),
             Self::GainedEnergy { gained, allowed } => write!(
                 formatter,
-                "it moves fastest in a run that has gained {gained:.4e} J since the start, which nothing supplied, more than \
-                 {allowed:.4e} J"
+                "it is the fastest in a run that has gained {gained:.4e} J since the start, which nothing supplied; at \
+                 most {allowed:.4e} J is allowed"
             ),
             Self::StartsInside { depth, strain, allowed } => write!(
                 formatter,
-                "it starts {depth:.4e} m inside another surface, which springs push out with a strain of {strain:.3} in a shock, \
-                 more than {allowed}"
+                "it starts {depth:.4e} m inside another surface; the springs would expel it in a shock with a strain \
+                 of {strain:.3}, more than {allowed}"
             ),
             Self::LeftGrid { cells } => write!(formatter, "it left the grid, which would need {cells:.3e} cells"),
             Self::CameIntoGrain { other, ratio } => write!(
                 formatter,
-                "it was poured into grain {other}, which it overlaps by {ratio:.3} of the smaller radius: what is poured needs \
-                 room in its box when it comes, whatever stands or falls there by then"
+                "it was poured into grain {other}, which it overlaps by {ratio:.3} of the smaller radius: a poured \
+                 grain needs room in its box at its time, and other grains may have piled up there"
             ),
             Self::CameIntoWall { wall, ratio } => write!(
                 formatter,
-                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: what is poured \
-                 needs room in its box when it comes"
+                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: a poured \
+                 grain needs room in its box at its time"
             ),
         }
     }
 }
 
-/// Particle that broke the simulation.
+/// Particle at which a simulation broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FailedParticle {
     /// Grain, by id from 1.
@@ -397,7 +400,7 @@ impl fmt::Display for FailedParticle {
     }
 }
 
-/// Failure of a simulation, with time, position, cause, and a stable alternative.
+/// Failure of a simulation, with time, position, cause, and advice on a stable setting.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "the simulation broke at t = {time:.6e} s (step {step}): {subject} at ({:.4e}, {:.4e}, {:.4e}) m: {cause}; the time step \
@@ -409,9 +412,9 @@ pub struct SimulationFailure {
     pub time: f64,
     /// Step number at the failure.
     pub step: u64,
-    /// Particle that broke.
+    /// Particle at which the simulation broke.
     pub subject: FailedParticle,
-    /// Last position (m).
+    /// Last position of the particle (m).
     pub position: Vector3<f64>,
     /// Detected reason of the failure.
     pub cause: Cause,
@@ -432,7 +435,7 @@ fn of_critical(time_step: f64, critical: f64) -> String {
     }
 }
 
-/// Reason that a solver returned no record.
+/// Reason why a solver returned no record.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
     /// The solver does not support this scene.
@@ -468,7 +471,7 @@ pub enum RunError {
     NotAvailable {
         /// Name of the solver.
         solver: String,
-        /// Searched locations.
+        /// Reason, such as the locations that were searched.
         reason: String,
     },
     /// The stored record belongs to another scene.
@@ -476,7 +479,7 @@ pub enum RunError {
     Stale {
         /// Name of the solver.
         solver: String,
-        /// Required action.
+        /// Reason, and the command that computes the run again.
         reason: String,
     },
     /// The solver is an external program that failed.
@@ -537,7 +540,7 @@ fn last_words(lines: &[String]) -> String {
     if lines.is_empty() { String::new() } else { format!("; it said last: {}", lines.join(" | ")) }
 }
 
-/// Size of a run, known before its first step.
+/// Size of a run, which is known before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunOutline {
     /// Time step (s).
@@ -551,18 +554,18 @@ pub struct RunOutline {
 /// Options of a run, fixed before its first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunOptions {
-    /// Number of threads for solvers that use several. No bit of the record depends on it.
+    /// Number of threads, for solvers that can use several. The record is the same for any number, bit for bit.
     pub threads: usize,
     /// Number of steps between checkpoints; `None` for no checkpoints.
     pub checkpoint_interval: Option<u64>,
-    /// Largest number of rows of grains, contacts and points in a wanted snapshot. For a larger snapshot,
-    /// [`Observer::in_short`] is called, and no memory is used for its rows.
+    /// Largest number of rows (grains, contacts and material points) of a snapshot. A snapshot with more rows is not
+    /// created. Instead, [`Observer::in_short`] receives a summary.
     pub most_rows: u64,
-    /// True if a run continues although its time step exceeds the critical one.
+    /// True if a run may have a time step at or above the critical one.
     pub allow_unstable: bool,
-    /// True if every snapshot stays in the record.
+    /// True if the record contains every snapshot.
     pub keep_snapshots: bool,
-    /// True if the final state is wanted as the initial state of another scene.
+    /// True if the observer requests the final state, from which another scene can start.
     pub end_state: bool,
 }
 
@@ -577,7 +580,7 @@ impl RunOptions {
         end_state: false,
     };
 
-    /// Returns the default options with time steps above the critical one.
+    /// Returns the default options, except that time steps at or above the critical one are allowed.
     #[must_use]
     pub const fn unstable() -> Self {
         Self { allow_unstable: true, ..Self::DEFAULT }
@@ -596,29 +599,30 @@ pub trait Observer {
     fn options(&self) -> RunOptions {
         RunOptions::DEFAULT
     }
-    /// Called once, before the first step.
+    /// Receives the size of the run, once before the first step.
     fn begin(&mut self, _ahead: RunOutline) {}
-    /// Called from time to time with the number of completed steps and the total.
+    /// Receives the number of completed steps and the total number, repeatedly during the run.
     fn progress(&mut self, _done: u64, _total: u64) {}
-    /// Called with every snapshot, in order of time. A returned snapshot stays in the record of the run and in its
-    /// checkpoints. If the observer takes it over, it is in neither, and memory holds one snapshot at a time.
+    /// Receives every snapshot, in order of time. If the snapshot is returned, the record and the checkpoints of the
+    /// run contain it. If `None` is returned, they do not, and memory holds one snapshot at a time.
     ///
     /// # Errors
     /// When the snapshot cannot be stored. The run ends with this error.
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
         Ok(Some(snapshot))
     }
-    /// Called instead of [`Observer::snapshot`] for a snapshot that is not wanted, with a summary and its number of rows.
+    /// Receives the summary and the number of rows of a snapshot that has more than [`RunOptions::most_rows`] rows.
+    /// [`Observer::snapshot`] is not called for this snapshot.
     fn in_short(&mut self, _brief: Brief, _rows: u64) {}
-    /// Called with the final state, by solvers that provide it.
+    /// Receives the final state from solvers that provide it.
     fn end_state(&mut self, _state: EndState) {}
-    /// Returns true if the run must end early; called after each progress report.
+    /// Returns true if the run must end early. The main loop calls this function before each progress report.
     fn is_over(&self) -> bool {
         false
     }
-    /// Called with the partial output when the simulation broke or was interrupted.
+    /// Receives the partial output of a run that broke or was interrupted.
     fn broke(&mut self, _remains: PartialOutput) {}
-    /// Called with every checkpoint.
+    /// Receives every checkpoint.
     ///
     /// # Errors
     /// When the checkpoint cannot be stored. The run ends with this error.
@@ -639,7 +643,7 @@ impl Observer for RunOptions {
 
 /// Solver, internal or external.
 pub trait Solver: Send + Sync {
-    /// Name and convention, such as `dem:lammps`.
+    /// Returns the name and the convention, such as `dem:lammps`.
     fn name(&self) -> String;
 
     /// Checks that the solver can run on this machine. Our own solvers always can.
@@ -650,14 +654,14 @@ pub trait Solver: Send + Sync {
         Ok(())
     }
 
-    /// Returns true if its contacts have the springs and dashpots of a scene. Claims about springs and dashpots are not
-    /// evaluated for solvers with rigid contacts.
+    /// Returns true if contacts of the solver have the springs and dashpots of the scene. Claims about springs and
+    /// dashpots are not evaluated for solvers with rigid contacts.
     fn has_springs(&self) -> bool {
         true
     }
 
-    /// Returns true if its bodies deform. Claims about the interior of bodies, or about the effect of deformation on
-    /// motion, are evaluated only for such solvers.
+    /// Returns true if bodies deform in the solver. Claims about the interior of bodies, or about the effect of
+    /// deformation on motion, are evaluated only for solvers with deformable bodies.
     fn deforms(&self) -> bool {
         false
     }
@@ -680,7 +684,7 @@ pub trait Solver: Send + Sync {
         _from: &Checkpoint,
         _observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        let reason = "it leaves no checkpoints to continue from".to_owned();
+        let reason = "it writes no checkpoints".to_owned();
         Err(RunError::Unsupported { solver: self.name(), reason })
     }
 }

@@ -1,4 +1,4 @@
-//! Text of a scene file, with parsing, variants, overrides, and the lines of keys.
+//! Text of a scene file: parsing, variants, overrides, and line numbers of keys.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::file::SceneFile;
@@ -15,7 +15,7 @@ pub struct SceneSource {
     /// Directory that paths in the file are relative to.
     pub directory: PathBuf,
     text: String,
-    /// Text as a table. All copies share it, even with other variants and overrides, so the text is parsed once.
+    /// Parsed text. Copies with other variants and overrides share it, so the text is parsed only once.
     read: Arc<OnceLock<toml::Table>>,
     variant: Option<String>,
     overrides: Vec<(String, String)>,
@@ -53,7 +53,7 @@ impl SceneSource {
         }
         let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = Self { name, directory, text, read: Arc::default(), variant: None, overrides: Vec::new() };
-        // Errors in any variant are found, even if another variant is used.
+        // All variants are checked, so that an error in an unused variant is found too.
         let table = source.parse()?;
         let mut varied = source.clone();
         for variant in variant_names(table) {
@@ -89,7 +89,8 @@ impl SceneSource {
         self
     }
 
-    /// Overrides one key, given as a dotted path, with a TOML value. Text that is not TOML is used as a string.
+    /// Overrides one key, given as a dotted path, with a TOML value. A value that is not TOML is used as a string. An
+    /// empty value removes the key.
     #[must_use]
     pub fn set(mut self, key: &str, value: &str) -> Self {
         self.overrides.push((key.to_owned(), value.to_owned()));
@@ -120,7 +121,8 @@ impl SceneSource {
         self.laid_over(self.parse()?)
     }
 
-    /// Returns the files that the scene names in any variant or override: meshes, states and tables of grains.
+    /// Returns the existing files that the scene names, such as meshes, states and data files of grains. Files named in
+    /// variants and overrides are included.
     ///
     /// # Errors
     /// When the text is not TOML, the variant is unknown, or an override cannot be applied.
@@ -130,7 +132,7 @@ impl SceneSource {
         Ok(files)
     }
 
-    /// Deserialises a table with its variant and overrides applied.
+    /// Deserialises a scene file from its table, with the variant and the overrides applied.
     fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
         let table = self.laid_over(text)?;
         serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
@@ -154,7 +156,7 @@ impl SceneSource {
                     let names = variant_names(text);
                     let help = did_you_mean(variant, names.iter().map(String::as_str));
                     let known = match &names[..] {
-                        [] => "no variant, for this scene has none".to_owned(),
+                        [] => "no variant, because this scene has none".to_owned(),
                         names => format!("one of the variants {}", names.join(", ")),
                     };
                     return Err(self.error("variants", &known, &format!("`{variant}`"), help));
@@ -219,25 +221,26 @@ impl SceneSource {
         Ok(())
     }
 
-    /// Removes an existing key: `--set key=`.
+    /// Removes an existing key, as `--set key=` requests.
     fn take_away(&self, table: &mut toml::Table, key: &str) -> Result<(), SceneError> {
         let (path, last) = key.rsplit_once('.').map_or((None, key), |(path, last)| (Some(path), last));
         let mut parts = path.into_iter().flat_map(|path| path.split('.'));
         let within = parts.try_fold(table, |table, part| table.get_mut(part)?.as_table_mut());
         match within.and_then(|table| table.remove(last)) {
             Some(_) => Ok(()),
-            None => Err(self.error(key, "a key of the scene, which an empty value takes away", "none", None)),
+            None => Err(self.error(key, "a key of the scene, because an empty value deletes it", "none", None)),
         }
     }
 
-    /// Returns the origin of a key: the `--set` option, or file and line of the key or its nearest parent.
+    /// Returns the origin of a key for error messages: the `--set` option, or the file and the line of the key or of
+    /// its nearest existing parent.
     fn place(&self, key: &str) -> String {
         if let Some((set, value)) = self.overrides.iter().rev().find(|(set, _)| within(key, set)) {
             return format!("--set {set}={value}");
         }
         let variant = self.variant.as_ref().map(|variant| format!("variants.{variant}.{key}"));
         let exact = variant.and_then(|path| self.line(&path, true)).or_else(|| self.line(key, true));
-        // If a parent is not in the file, an override of a key below it has created it.
+        // If the key is not in the file, an override of a key below it may have created it.
         if let (None, Some((set, value))) = (exact, self.overrides.iter().rev().find(|(set, _)| within(set, key))) {
             return format!("--set {set}={value}");
         }
@@ -245,8 +248,8 @@ impl SceneSource {
         line.map_or_else(|| self.name.clone(), |line| format!("{}:{line}", self.name))
     }
 
-    /// Returns the line of a key. With `exact`, the whole path must exist; otherwise the line of its deepest existing
-    /// part counts.
+    /// Returns the line of a key. If `exact` is true, the whole path must exist. Otherwise, the result is the line of
+    /// the deepest existing part of the path.
     fn line(&self, key: &str, exact: bool) -> Option<usize> {
         let document = toml_edit::Document::parse(self.text.as_str()).ok()?;
         let mut item: &dyn toml_edit::TableLike = document.as_table();
@@ -267,7 +270,7 @@ impl SceneSource {
         line
     }
 
-    /// Translates a message of serde into a scene error.
+    /// Converts an error message of serde to a scene error.
     fn explain(&self, path: &str, message: &str, table: &toml::Table) -> SceneError {
         let message = message.trim();
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -314,7 +317,7 @@ impl SceneSource {
     }
 }
 
-/// Returns the files that text values in a table name, relative to a directory.
+/// Returns the existing files whose paths are string values in a table. The paths are relative to `directory`.
 #[must_use]
 pub fn named_files(directory: &Path, table: &toml::Table) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -381,7 +384,7 @@ fn variant_tables(table: &toml::Table) -> Option<&toml::Table> {
     table.get("variants").and_then(toml::Value::as_table)
 }
 
-/// Merges a table into another. An empty string removes a key.
+/// Merges the table `overlay` into `base`. An empty string removes a key.
 fn merge(base: &mut toml::Table, overlay: toml::Table) {
     for (key, value) in overlay {
         match (base.get_mut(&key), value) {

@@ -1,7 +1,7 @@
-//! Two and three dimensions from the same source.
+//! Vectors and tensors in two and three dimensions, for solvers that are generic over the dimension.
 //!
-//! Everything that differs between the plane and space is a method of [`Space`]. Solvers are generic over it and need
-//! no feature flag and no duplicate file.
+//! All operations that differ between two and three dimensions are methods of [`Space`]. A generic solver therefore
+//! needs only one source.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde::Serialize;
@@ -60,7 +60,8 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     type Vector: Linear;
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
-    /// Symmetric tensor, including the out-of-plane component (plane strain): xx, yy, zz, xy, (yz, zx).
+    /// Symmetric tensor, with the components xx, yy, zz, xy, and in three dimensions also yz, zx. In two dimensions, zz
+    /// is the out-of-plane component (plane strain).
     type Symmetric: Copy + Debug + PartialEq + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
     /// Zero vector.
     const ORIGIN: Self::Vector;
@@ -69,15 +70,15 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
 
     /// Returns the scalar product.
     fn dot(a: Self::Vector, b: Self::Vector) -> f64;
-    /// Returns the vector in three dimensions, with z = 0 for the plane.
+    /// Returns the vector in three dimensions. In two dimensions, z = 0 is added.
     fn embed(vector: Self::Vector) -> Vector3<f64>;
-    /// Returns the vector without the components that this space lacks.
+    /// Returns the components of a three-dimensional vector that exist in this space.
     fn restrict(vector: Vector3<f64>) -> Self::Vector;
     /// Returns `a bᵀ`.
     fn outer(a: Self::Vector, b: Self::Vector) -> Self::Matrix;
     /// Returns the gradient in three dimensions, with zero out-of-plane components.
     fn embed_gradient(gradient: Self::Matrix) -> Matrix3<f64>;
-    /// Returns the gradient without the components that this space lacks.
+    /// Returns the components of a three-dimensional gradient that exist in this space.
     fn restrict_gradient(gradient: Matrix3<f64>) -> Self::Matrix;
     /// Returns a symmetric tensor as a matrix.
     fn embed_symmetric(tensor: Self::Symmetric) -> Matrix3<f64>;
@@ -85,22 +86,22 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn restrict_symmetric(tensor: Matrix3<f64>) -> Self::Symmetric;
     /// Returns the determinant of a gradient.
     fn determinant(gradient: Self::Matrix) -> f64;
-    /// Returns `F Fᵀ` of a deformation gradient without out-of-plane stretch.
+    /// Returns `F Fᵀ` of a deformation gradient F. In two dimensions, zz is 1 (no out-of-plane stretch).
     fn finger(deformation: Self::Matrix) -> Self::Symmetric;
-    /// Returns the symmetric part of a gradient.
+    /// Returns ½ (G + Gᵀ) of a gradient G.
     fn symmetric_part(gradient: Self::Matrix) -> Self::Symmetric;
     /// Returns the displacement gradient H of a step with respect to the midpoint configuration, from the gradient G
     /// with respect to the initial configuration: H = G (1 + G/2)⁻¹ (Hughes & Winget 1980). Both are dimensionless.
     ///
     /// A rotation by θ, 1 + G = R, gives H = 2 (R − 1)(R + 1)⁻¹. This H is skew with entries ±2 tan(θ/2), so it
-    /// contains no strain. The symmetric part of its G is (cos θ − 1) 1.
+    /// contains no strain. The symmetric part of the corresponding G is (cos θ − 1) 1, so G contains strain.
     fn at_midpoint(gradient: Self::Matrix) -> Self::Matrix;
-    /// Returns `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2). W is the skew part of a
-    /// displacement gradient with respect to the midpoint configuration (Hughes & Winget 1980).
+    /// Returns `R σ Rᵀ` with the rotation of the midpoint rule, R = (1 − W/2)⁻¹(1 + W/2). W is the skew part of
+    /// `increment`, the displacement gradient with respect to the midpoint configuration (Hughes & Winget 1980).
     fn turned(tensor: Self::Symmetric, increment: Self::Matrix) -> Self::Symmetric;
     /// Returns `a f + b`.
     fn scaled_sum(a: Self::Symmetric, factor: f64, b: Self::Symmetric) -> Self::Symmetric;
-    /// Returns a multiple of the unit tensor of three dimensions.
+    /// Returns the unit tensor of three dimensions, multiplied by `value`.
     fn isotropic(value: f64) -> Self::Symmetric;
     /// Returns the trace in three dimensions.
     fn trace(tensor: Self::Symmetric) -> f64;
@@ -114,11 +115,11 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn component(vector: Self::Vector, axis: usize) -> f64;
 }
 
-/// Plane: vectors (x, y), spin about z.
+/// Two dimensions: vectors (x, y), spin about z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane;
 
-/// Space of three dimensions.
+/// Three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Solid;
 
@@ -176,7 +177,7 @@ impl Space for Plane {
     }
     #[inline(always)]
     fn at_midpoint(g: Matrix2<f64>) -> Matrix2<f64> {
-        // By the Cayley–Hamilton theorem: (G + ½ det G 1)/det(1 + G/2).
+        // By the Cayley–Hamilton theorem, H = (G + ½ det G 1)/det(1 + G/2).
         let minor = 0.5 * (g.m11 * g.m22 - g.m12 * g.m21);
         let inverse = 1.0 / (1.0 + 0.5 * (g.m11 + g.m22 + minor));
         Matrix2::new((g.m11 + minor) * inverse, g.m12 * inverse, g.m21 * inverse, (g.m22 + minor) * inverse)
@@ -276,8 +277,8 @@ impl Space for Solid {
     }
     #[inline(always)]
     fn at_midpoint(gradient: Matrix3<f64>) -> Matrix3<f64> {
-        // By the Cayley–Hamilton theorem: (G − ½ adj G + (½ tr adj G + ¼ det G) 1)/det(1 + G/2). The columns of adj G
-        // are cross products of the rows of G.
+        // By the Cayley–Hamilton theorem, H = (G − ½ adj G + (½ tr adj G + ¼ det G) 1)/det(1 + G/2). The columns of adj
+        // G are cross products of the rows of G.
         let [x, y, z] = [0, 1, 2].map(|row| gradient.row(row).transpose());
         let adjugate = Matrix3::from_columns(&[y.cross(&z), z.cross(&x), x.cross(&y)]);
         let (minors, quarter) = (0.5 * adjugate.trace(), 0.25 * x.dot(&y.cross(&z)));

@@ -20,14 +20,14 @@ pub struct Entry {
     pub time: f64,
 }
 
-/// Removal of grains outside a box.
+/// Removal of grains whose centre lies outside a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Removal {
     /// Lower corner (m).
     pub low: Vector3<f64>,
     /// Upper corner (m).
     pub high: Vector3<f64>,
-    /// Number of steps between searches for such grains.
+    /// Number of steps between searches for grains to remove.
     pub every: u64,
 }
 
@@ -46,8 +46,8 @@ impl Stays {
         self.entries.is_empty() && self.removal.is_none()
     }
 
-    /// Returns the number of grains inserted until a time (s). A tolerance ensures that rounding does not exclude
-    /// insertions at the end of the step.
+    /// Returns the number of grains inserted until a time (s). Because of a tolerance, rounding does not exclude
+    /// insertions at this time.
     #[must_use]
     pub fn entered_by(&self, time: f64) -> usize {
         let now = time + 1e-9 * time.abs();

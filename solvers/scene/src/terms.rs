@@ -1,5 +1,5 @@
-//! Conformance properties of a solver. They state its resolution in tests, its order of convergence in the time step,
-//! and its limitations with their physical reasons.
+//! Conformance properties of a solver: the resolution in tests, the order of convergence in the time step, and the
+//! limitations with their physical reasons.
 
 use crate::solver::Resolution;
 
@@ -10,9 +10,9 @@ pub struct Terms {
     pub resolution: Resolution,
     /// Order of convergence in the time step; `None` if the solver claims none.
     pub order: Option<Order>,
-    /// Limitations compared with other methods.
+    /// Properties that the solver satisfies only within an error limit.
     pub less: &'static [Limitation],
-    /// True if scenes in three dimensions are also run. Some methods need a long time for them.
+    /// True if the tests include scenes in three dimensions. Some methods need a long time for them.
     pub in_space: bool,
     /// True if runs that monitor the energy take 10⁵ steps instead of some thousands.
     pub long: bool,
@@ -21,13 +21,13 @@ pub struct Terms {
 /// Claimed order of convergence in the time step, for smooth motion without dashpots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// Expected order, such as 2.
+    /// Expected order of convergence in the time step, such as 2.
     pub expected: f64,
-    /// Three resolutions; each has half the time step of the previous one. The run lasts ten critical time steps.
+    /// Three resolutions. Each has half the time step of the previous one. The runs last ten critical time steps.
     pub levels: [Resolution; 3],
 }
 
-/// Limitation: property that a method satisfies only within an error limit, not to rounding.
+/// Limitation: property that a method satisfies only within an error limit above rounding errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limitation {
     /// Property, such as `rotation-invariance`.
@@ -42,7 +42,8 @@ pub struct Limitation {
 }
 
 impl Terms {
-    /// Properties of central differences with second order in the time step, at time steps for contact springs.
+    /// Properties of central differences, which are of second order in the time step. The time steps suit contact
+    /// springs.
     pub const SECOND_ORDER: Self = Self {
         resolution: Resolution::CriticalFraction(0.02),
         order: Some(Order {
@@ -58,25 +59,25 @@ impl Terms {
         long: false,
     };
 
-    /// Returns properties without a claimed order.
+    /// Returns properties with a resolution, and without a claimed order or limitations.
     #[must_use]
     pub const fn at(resolution: Resolution) -> Self {
         Self { resolution, order: None, less: &[], in_space: true, long: false }
     }
 
-    /// Returns the properties with limitations.
+    /// Returns these properties with the given limitations.
     #[must_use]
     pub const fn owing_less(self, less: &'static [Limitation]) -> Self {
         Self { less, ..self }
     }
 
-    /// Returns the properties for scenes in the plane only.
+    /// Returns these properties for scenes in two dimensions only.
     #[must_use]
     pub const fn in_the_plane(self) -> Self {
         Self { in_space: false, ..self }
     }
 
-    /// Returns the properties with long energy runs.
+    /// Returns these properties with long runs that monitor the energy.
     #[must_use]
     pub const fn at_length(self) -> Self {
         Self { long: true, ..self }

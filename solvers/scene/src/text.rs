@@ -1,4 +1,4 @@
-//! Text from users. The functions read files and display titles, keys and file names safely.
+//! Functions for text from users: reading of files, and safe display of titles, keys and file names.
 
 use std::fs;
 use std::io;
@@ -10,7 +10,8 @@ const MOST: u64 = 1 << 20;
 /// Reads a text file written by a user.
 ///
 /// # Errors
-/// When the file cannot be read; the error holds the expected and the found value.
+/// When the file cannot be read, is not a regular file, is larger than 1 MiB, or is not UTF-8. The error is the
+/// expected and the found value.
 pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
     let readable = |reason: io::Error| ("a file that can be read", reason.to_string());
     let found = fs::metadata(path).map_err(readable)?;
@@ -32,7 +33,8 @@ const EXCERPT: usize = 80;
 /// Largest length of a path or of a quoted sentence in a message (characters).
 const LONG_EXCERPT: usize = 240;
 
-/// Returns a message whose long excerpts are shortened in the middle: words, quoted text, and lists in square brackets.
+/// Returns a message with long excerpts shortened in the middle. Excerpts are words, quoted text, and lists in square
+/// brackets.
 #[must_use]
 pub fn shortened(message: &str) -> String {
     let (mut short, mut rest) = (String::with_capacity(message.len()), message);
@@ -106,7 +108,7 @@ mod tests {
     fn long_excerpts_are_shortened_and_sentences_are_not() {
         let many = |text: &str| text.repeat(1000);
         for long in [
-            format!("s.toml:3: {}: expected a number, found 1", many("x")),
+            format!("s.toml:3: {}: expected a number, found true", many("x")),
             format!("s.toml:3: title: expected a number, found `{}`", many("1+")),
             format!("s.toml:3: title: expected a number, found \"{}\"", many("( ")),
             format!("s.toml:3: gravity: expected [x, y], found [{}0.0]", many("0.0, ")),

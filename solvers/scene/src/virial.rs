@@ -6,8 +6,8 @@
 //!
 //! The vector Δx points from the centre of the grain to the contact point in the middle of the overlap. The force F
 //! acts on the grain at this point. By Gauss' theorem, σ is the mean stress of a grain of volume V in equilibrium.
-//! Compression is negative. The symmetric part of V σ (J; J per metre of depth for discs) is stored: it needs no volume
-//! and is additive over grains.
+//! Compression is negative. The symmetric part of V σ (J; J per metre of depth for discs) is stored, because it needs
+//! no volume and can be summed over grains.
 
 use crate::record::{ContactState, Partner, Snapshot};
 
@@ -20,8 +20,8 @@ pub fn touching(contact: &ContactState) -> impl Iterator<Item = u32> {
     [Some(contact.grain), other].into_iter().flatten()
 }
 
-/// Adds the contribution of a contact to V σ (J) of one of its grains, which has the given radius (m). The formula is
-/// the same for both grains, because lever arm and force change sign together.
+/// Adds the contribution of a contact to V σ (J) of one of its grains. `radius` is the radius of this grain (m). The
+/// formula is the same for both grains, because lever arm and force change sign together.
 pub fn add(sum: &mut [f64; 6], contact: &ContactState, radius: f64) {
     let force = contact.shear_force - contact.normal * contact.normal_force;
     let arm = contact.normal * (radius - 0.5 * contact.overlap);
@@ -30,8 +30,8 @@ pub fn add(sum: &mut [f64; 6], contact: &ContactState, radius: f64) {
     }
 }
 
-/// Returns V σ of every grain of a snapshot (J), in their order; `None` if contacts are not reported, which differs
-/// from zero.
+/// Returns V σ of every grain of a snapshot (J), in the order of the grains; `None` if the snapshot has no list of
+/// contacts.
 #[must_use]
 pub fn virials(snapshot: &Snapshot) -> Option<Vec<[f64; 6]>> {
     let mut sums = vec![[0.0; 6]; snapshot.grains.len()];

@@ -1,11 +1,12 @@
-//! Scene keys for grains placed by rule.
+//! Tests of scene keys: periodic axes, lattices, random grains and variants.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
-/// A scene without its grains. `tests/refusals/placed-grains.toml` has the wrong ones.
+/// Scene text to which each test adds the keys of the group `g`. `tests/refusals/placed-grains.toml` contains the
+/// invalid keys.
 const SCENE: &str = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
     contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3 }\n\
     domain = { low = [0.0, 0.0], high = [40.0, 40.0], periodic = PERIODIC }\n\
@@ -54,7 +55,7 @@ fn grains_at_random_have_their_radii_and_their_region() {
     assert!(random(&format!("radii = {{ {normal} }}")).unwrap().grains.iter().any(|grain| grain.radius > 0.3));
 }
 
-/// An empty string removes a key, in a variant as with `--set`.
+/// An empty string removes a key, both in a variant and with `--set`.
 #[test]
 fn a_variant_takes_keys_away() {
     const VARIANTS: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\

@@ -1,4 +1,5 @@
-//! Resolved scenes against values computed by hand. Closed forms that read the resolved scene would share its errors.
+//! Tests of resolved scenes against values computed by hand. A formula that reads the resolved scene would repeat its
+//! errors.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,7 +13,7 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap()
 }
 
-/// Returns the error of an invalid scene.
+/// Returns the error message of an invalid scene.
 fn refusal(text: &str) -> String {
     let source = SceneSource::from_text("test", Path::new(""), text);
     source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string()
@@ -74,8 +75,8 @@ fn slopes_masses_and_inertia() {
     close(sphere.grains[0].inertia, 52.359_877_559_829_89);
 }
 
-/// Grains of R = .5 m in a period of 10 m overlap across its face by .7 m, which is 1.4 of the radius. The overlap is
-/// found for two discs, for three discs, and for a disc that starts a period away.
+/// Grains of R = .5 m in a period of 10 m overlap across the periodic face by .7 m, which is 1.4 of the radius. The
+/// overlap is found for two discs, for three discs, and for a disc that starts a period away.
 #[test]
 fn overlaps_are_found_across_a_period() {
     for xs in [vec![0.2, 9.9], vec![0.2, 5.0, 9.9], vec![9.9, 0.2], vec![10.2, 9.9], vec![0.2, 0.2 + 9.7]] {
@@ -90,8 +91,8 @@ fn overlaps_are_found_across_a_period() {
     }
 }
 
-/// A grain with its centre on a face of the domain belongs to the domain, at any position of the domain. A grain beyond
-/// the face does not.
+/// A grain with its centre on a face of the domain is accepted, at any position of the domain. A grain beyond the face
+/// is rejected.
 #[test]
 fn a_grain_on_a_face_is_in_its_domain() {
     let text = |low: f64, x: f64| {

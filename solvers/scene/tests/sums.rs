@@ -1,4 +1,4 @@
-//! Sums of the system and stress probes, for discs and another body, computed by hand.
+//! Tests of the probes `system` and `stress`, of virials and of snapshot times, with values computed by hand.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 use std::path::Path;
 
 /// A disc of 1000 kg and 125 kg m² is at (2, 3) m with (4, 5) m/s and 6 rad/s. A body of 20 kg and 7 kg m² is at (1,
-/// −2) m with (3, −1) m/s and −2 rad/s. Gravity is (3, −10) m/s². The internal kinetic energy is 11 J, and the
-/// springs hold 13 J. Uneven rotation adds 3 J and −8 kg m²/s.
+/// −2) m with (3, −1) m/s and −2 rad/s. Gravity is (3, −10) m/s². The internal kinetic energy is 11 J, and the springs
+/// hold 13 J. The inertia tensors add 3 J and −8 kg m²/s to the values with scalar moments of inertia.
 ///
 /// - Kinetic: ½ 1000 41 + ½ 20 10 + 11. Rotational: ½ 125 36 + ½ 7 4 + 3. Gravitational, −Σ m g·x: 1000 (10·3 − 3·2) − 20
 ///   (10·2 + 3·1).
@@ -66,11 +66,12 @@ fn energies_and_momenta() {
 }
 
 /// Three discs of R = .5 m lie in a periodic square of 2 m. The second is .9 m beside the first, with a repulsion of 10
-/// N and a friction of 3 N upwards on the first. The third is .8 m above the first, with 20 N and with 4 N to the
-/// right. The wall does not count.
+/// N and a friction of 3 N upwards on the first. The third is .8 m above the first, with a repulsion of 20 N and a
+/// friction of 4 N to the right on the first. The contact with the wall does not count.
 ///
-/// With the vector l between centres and the force f on the first disc, σ_ij = Σ l_i f_j/V. The first row is .9 (−10,
-/// 3)/V, the second .8 (4, −20)/V, with V = 4 m². Two contacts of three discs give a coordination number of 4/3.
+/// With the vector l between the centres and the force f on the first disc, σ_ij = Σ l_i f_j/V, where V = 4 m². The
+/// first row of σ is .9 m (−10, 3) N/V, and the second row is .8 m (4, −20) N/V. Two contacts of three discs give a
+/// coordination number of 4/3.
 #[test]
 fn mean_stress_and_coordination() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\n\
@@ -109,9 +110,9 @@ fn mean_stress_and_coordination() {
     }
 }
 
-/// A contact adds the product of its force and the vector l between the centres to V σ of its grains. The length of l
-/// is R₁ + R₂ − δ. Spheres of .5 and .3 m that overlap by .1 m have l = .7 m along x, times −10 N and 4 N. Half of the
-/// shear is in σ_xy.
+/// A contact adds the product of its force and the vector l between the centres to the sum of V σ over its grains. The
+/// length of l is R₁ + R₂ − δ. Spheres of radii .5 and .3 m with an overlap of .1 m have l = .7 m along x. The product
+/// is −7 J for xx (−10 N) and 2.8 J for the shear force (4 N), half of which is the symmetric component xy.
 #[test]
 fn both_grains_of_a_contact_share_the_vector_between_them() {
     let contact = ContactState {
@@ -131,7 +132,7 @@ fn both_grains_of_a_contact_share_the_vector_between_them() {
     }
 }
 
-/// A snapshot is taken at the step nearest to the requested time.
+/// Each snapshot is taken at the step nearest to the requested time.
 #[test]
 fn a_snapshot_is_taken_at_the_nearest_step() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\

@@ -1,11 +1,12 @@
-//! Products of vectors and tensors in the plane and in space. With these numbers, any exchange of components changes a
-//! result.
+//! Tests of products of vectors and tensors in two and three dimensions. The numbers are chosen so that any exchange of
+//! components changes a result.
 
 use grainbench_scene::space::{Plane, Solid, Space};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-/// Components xx, yy, zz, xy, and xx, yy, zz, xy, yz, zx.
+/// Symmetric tensor in two dimensions, with the components xx, yy, zz, xy.
 const FLAT: [f64; 4] = [2.0, 3.0, 5.0, 7.0];
+/// Symmetric tensor in three dimensions, with the components xx, yy, zz, xy, yz, zx.
 const FULL: [f64; 6] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0];
 
 #[test]
@@ -23,7 +24,7 @@ fn vectors_make_a_dyad() {
     );
 }
 
-/// Shear components count twice.
+/// In products of two symmetric tensors, shear components count twice.
 #[test]
 fn invariants_and_works() {
     assert_eq!((Plane::trace(FLAT), Solid::trace(FULL)), (10.0, 10.0));

@@ -4,58 +4,60 @@ use super::grains::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Deformable body other than a grain: exactly one of `box` and `annulus`.
+/// Deformable body other than a grain. Its shape is exactly one of `box` and `annulus`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySpec {
-    /// Name of the material.
+    /// Name of the material, as in `materials`.
     pub material: String,
     /// Axis-aligned box.
     #[serde(default, rename = "box")]
     pub cuboid: Option<BoxSpec>,
-    /// Ring; two dimensions only.
+    /// Ring. Two dimensions only.
     #[serde(default)]
     pub annulus: Option<AnnulusSpec>,
-    /// Velocity (m/s).
+    /// Initial velocity (m/s). Default zero.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
-    /// Initial angular velocity about the centre of its shape (rad/s): one number about z in two dimensions, a vector
-    /// in three.
+    /// Initial angular velocity about the centre of the shape (rad/s). In two dimensions, it is one number (about z);
+    /// in three dimensions, a vector. Default zero.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Initial stretch rates along the axes (1/s). They add a velocity of rate times distance from the centre of the
-    /// shape. Equal rates along all axes make a ring expand.
+    /// Initial stretch rates aᵢ along the axes i (1/s). They add the velocity aᵢ (xᵢ − cᵢ) along axis i at a position
+    /// x, where c is the centre of the shape. Equal rates along x and y make a ring expand. Default zero.
     #[serde(default)]
     pub stretch: Option<Vec<f64>>,
-    /// Initial stress at the centre of the shape (Pa, tension positive), `[[xx, xy], [xy, yy]]` in two dimensions.
+    /// Initial Cauchy stress at the centre of the shape (Pa, tension positive). In two dimensions, it is `[[xx, xy],
+    /// [xy, yy]]`, and σ_zz follows from plane strain. Not together with `initial_pressure`. Default zero.
     #[serde(default)]
     pub stress: Option<Vec<Vec<f64>>>,
-    /// Gradient of the initial stress along the axes (Pa/m).
+    /// Gradients of the initial stress along the axes (Pa/m). Default zero.
     #[serde(default)]
     pub stress_gradient: Option<StressGradientSpec>,
-    /// Initial velocity along x: a sine mode of a bar fixed at the lower end of the box.
+    /// Initial velocity along x, in addition to `velocity`: a vibration mode of a bar that is fixed at its end of
+    /// smallest x. Boxes only.
     #[serde(default)]
     pub wave: Option<WaveSpec>,
-    /// Fixed sides of a box, which do not move.
+    /// Sides of a box that do not move, such as `["x-low"]`. Default none.
     #[serde(default)]
     pub fixed: Vec<SideSpec>,
-    /// Sides of a box that do not move along their normal (symmetry boundaries).
+    /// Sides of a box that do not move along their normal (symmetry boundaries). Default none.
     #[serde(default)]
     pub sliding: Vec<SideSpec>,
 }
 
-/// Gradient of a stress along each axis (Pa/m). For soil under its own weight with a lateral stress of K₀ times the
-/// vertical stress, `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
+/// Gradients of the initial stress along the axes (Pa/m). Example for soil of density ρ under its own weight, with y
+/// upwards and a lateral stress of K₀ times the vertical stress: `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StressGradientSpec {
-    /// Along x.
+    /// Gradient along x (Pa/m): a symmetric tensor, row by row. Default zero.
     #[serde(default)]
     pub x: Option<Vec<Vec<f64>>>,
-    /// Along y.
+    /// Gradient along y (Pa/m): a symmetric tensor, row by row. Default zero.
     #[serde(default)]
     pub y: Option<Vec<Vec<f64>>>,
-    /// Along z.
+    /// Gradient along z (Pa/m): a symmetric tensor, row by row. Three dimensions only. Default zero.
     #[serde(default)]
     pub z: Option<Vec<Vec<f64>>>,
 }
@@ -82,13 +84,13 @@ pub struct AnnulusSpec {
     pub outer: f64,
 }
 
-/// Initial velocity v₀ sin((2n − 1)π (x − x_low)/2L) along x.
+/// Initial velocity v₀ sin((2n − 1)π (x − x_low)/2L) along x, in a box of length L that begins at x_low.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaveSpec {
     /// Amplitude v₀ (m/s).
     pub amplitude: f64,
-    /// Mode n, from 1.
+    /// Number n of the mode, from 1. Default 1.
     #[serde(default = "first_mode")]
     pub mode: u32,
 }
@@ -97,7 +99,7 @@ const fn first_mode() -> u32 {
     1
 }
 
-/// Side of a box.
+/// Side of a box, or face of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SideSpec {

@@ -4,31 +4,33 @@ use super::{MotionSpec, SideSpec, SpinSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Grains with prescribed motion: they have a given velocity and spin, ignore forces, and do not deform. Give exactly
-/// one of `grains`, `material`, `face` and `region`. Before `start` and after `stop`, they move freely.
+/// Grains with prescribed velocity and spin. The grains do not deform, and forces do not change their motion. Exactly
+/// one of `grains`, `material`, `face` and `region` selects the grains. Before `start` and after `stop`, the grains
+/// move freely.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpec {
-    /// All grains of a group.
+    /// Name of a group, which selects all its grains.
     #[serde(default)]
     pub grains: Option<String>,
-    /// All grains of a material, by its name.
+    /// Name of a material, which selects all grains of this material.
     #[serde(default)]
     pub material: Option<String>,
-    /// The grains that intersect a face of the domain at the start.
+    /// Face of the domain, which selects the grains that intersect it at the start. The face must not be periodic.
     #[serde(default)]
     pub face: Option<SideSpec>,
-    /// The grains with their centres in a box at the start.
+    /// Box, which selects the grains whose centres lie in it at the start.
     #[serde(default)]
     pub region: Option<RegionSpec>,
-    /// Velocity (m/s). Default zero.
+    /// Prescribed velocity (m/s). Default zero.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
-    /// Angular velocity of each grain about its own centre (rad/s): one number about z in two dimensions, a vector in
-    /// three. Default zero.
+    /// Prescribed angular velocity of each grain about its own centre (rad/s). In two dimensions, it is one number
+    /// (about z); in three dimensions, a vector. Not supported by MPM. Default zero.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Further motion in addition to the velocity, as for a wall but without spin. The parts add up.
+    /// Further motion, which is added to `velocity`. It has the keys of the motion of a wall, but no `spin`, and its
+    /// times are in seconds. The displacements of all parts are added.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,
     /// Start of the prescribed motion (s). Default: the start of the run.

@@ -1,40 +1,44 @@
-//! Keys of `grains`: groups of grains, placed one by one, in order or at random.
+//! Keys of `grains` (groups of grains and their placement) and of `removal`.
 
 use super::driven::RegionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Group of grains: exactly one of `position`, `lattice`, `random`, `packed`, `poured`, `state` and `file`.
+/// Group of grains. Exactly one of `position`, `lattice`, `random`, `packed`, `poured`, `state` and `file` gives their
+/// positions.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainsSpec {
-    /// Name of the material.
+    /// Name of the material, as in `materials`.
     pub material: String,
-    /// Radius R (m). Required unless `random`, `packed`, `state` or `file` gives sizes.
+    /// Radius R of every grain (m). Required unless `random`, `packed`, `state` or `file` gives the radii.
     #[serde(default)]
     pub radius: Option<f64>,
-    /// Velocity of every grain of the group (m/s).
+    /// Initial velocity of every grain of the group (m/s). `state` and `file` give velocities themselves. Default zero.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
-    /// Angular velocity (rad/s): one number about z in two dimensions, a vector in three.
+    /// Initial angular velocity of every grain of the group (rad/s). In two dimensions, it is one number (about z); in
+    /// three dimensions, a vector. Not with `poured`; `state` and `file` give angular velocities themselves. Default
+    /// zero.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Position of a single grain (m).
+    /// Centre of a single grain (m).
     #[serde(default)]
     pub position: Option<Vec<f64>>,
     /// Grains on a lattice.
     #[serde(default)]
     pub lattice: Option<LatticeSpec>,
-    /// Grains placed at random without overlap, from a seed.
+    /// Grains at random positions without overlap.
     #[serde(default)]
     pub random: Option<RandomSpec>,
-    /// Grains of given sizes in a dense packing without overlap, from a seed.
+    /// Grains of given radii in a dense random packing without overlap.
     #[serde(default)]
     pub packed: Option<PackedSpec>,
-    /// Grains inserted one after the other, from a seed. They start with the velocity of the group.
+    /// Grains inserted one after the other during the run, at random positions in a box. Each grain starts with
+    /// `velocity`.
     #[serde(default)]
     pub poured: Option<PouredSpec>,
-    /// Grains in the final state of a run, with their contact history.
+    /// Grains from the final state of another run, with their contact history.
     #[serde(default)]
     pub state: Option<StateSpec>,
     /// Grains from a LAMMPS data file (atom style sphere), plain or gzip.
@@ -42,47 +46,48 @@ pub struct GrainsSpec {
     pub file: Option<FileSpec>,
 }
 
-/// Angular velocity.
+/// Angular velocity (rad/s).
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged, expecting = "a number (two dimensions) or a vector of three numbers (three dimensions)")]
 pub enum SpinSpec {
-    /// About z (rad/s).
+    /// Angular velocity about z (rad/s), in two dimensions.
     About(f64),
-    /// Vector (rad/s).
+    /// Angular velocity vector (rad/s), in three dimensions.
     Vector(Vec<f64>),
 }
 
-/// Lattice: square, simple cubic, or close-packed.
+/// Lattice: rows along the axes (square or simple cubic), or close-packed.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeSpec {
     /// Centre of the first grain (m).
     pub origin: Vec<f64>,
-    /// Distance between neighbours along each axis (m). For `close_packed`, one number: the distance of nearest
-    /// neighbours.
+    /// Distance between neighbours along each axis (m). For `close_packed`, it is one number, the distance between
+    /// nearest neighbours.
     pub spacing: SpacingSpec,
-    /// Number of grains along each axis. Grains are numbered along x first.
+    /// Number of grains along each axis. Grains are numbered along x first, then along y, then along z.
     pub count: Vec<u32>,
-    /// Close-packed lattice. Rows along x are √3/2 of a spacing apart, and every second row is shifted by half a
-    /// spacing (hexagonal). In three dimensions, such layers are √(2/3) of a spacing apart along z, and the fourth
-    /// layer lies above the first (face-centred cubic).
+    /// If true, the lattice is close-packed. Rows along x are √3/2 of the spacing apart, and every second row is
+    /// shifted by half the spacing (hexagonal). In three dimensions, layers of this kind are √(2/3) of the spacing
+    /// apart along z, and the fourth layer lies exactly above the first (face-centred cubic). Default false.
     #[serde(default)]
     pub close_packed: bool,
-    /// Largest random displacement of the centres (m), each in a random direction, from `seed`.
+    /// Largest random displacement of a centre (m). Each centre moves in a random direction by at most this distance.
+    /// Default 0.
     #[serde(default)]
     pub perturbation: f64,
-    /// Seed of the perturbation. The same seed gives the same grains on every machine.
+    /// Seed of the perturbation. The same seed gives the same grains on every machine. Default 0.
     #[serde(default)]
     pub seed: u64,
 }
 
 /// Distance between neighbours.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged, expecting = "distances along each axis such as [1.0, 1.0], or, close-packed, one number")]
+#[serde(untagged, expecting = "distances along each axis such as [1.0, 1.0], or one number if close-packed")]
 pub enum SpacingSpec {
-    /// Distance of nearest neighbours (m).
+    /// Distance between nearest neighbours (m), for a close-packed lattice.
     Nearest(f64),
-    /// Distance along each axis (m).
+    /// Distances between neighbours along the axes (m).
     Along(Vec<f64>),
 }
 
@@ -94,35 +99,37 @@ pub struct RandomSpec {
     pub count: u32,
     /// Seed of the generator. The same seed gives the same grains on every machine.
     pub seed: u64,
-    /// Smallest and largest radius (m) of a uniform distribution. Default: `radius` of the group.
+    /// Smallest and largest radius (m) of a uniform distribution. Default: every grain has the `radius` of the group.
     #[serde(default)]
     pub radius_range: Option<[f64; 2]>,
-    /// Speed of every grain (m/s), in a random direction.
+    /// Initial speed of every grain (m/s), in a random direction. This velocity is added to `velocity` of the group.
+    /// Default 0.
     #[serde(default)]
     pub speed: f64,
-    /// Another distribution of radii, instead of `radius_range`.
+    /// Distribution of radii that is not uniform. Not together with `radius_range`.
     #[serde(default)]
     pub radii: Option<RadiiSpec>,
-    /// Part of the domain in which grains are placed without crossing its faces. Default: the whole domain.
+    /// Box inside the domain in which grains are placed. Grains do not cross its faces. Default: the whole domain.
     #[serde(default)]
     pub region: Option<RegionSpec>,
 }
 
-/// Distribution of radii: exactly one of `log_normal` and `by_mass`.
+/// Distribution of radii. Give exactly one of `log_normal` and `by_mass`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RadiiSpec {
     /// Log-normal distribution: ln R is normally distributed.
     #[serde(default)]
     pub log_normal: Option<LogNormalSpec>,
-    /// Sieve curve: pairs of a radius (m) and the mass fraction of grains that are no larger. Both rise, and the
-    /// fraction rises from 0 to 1. Between two pairs, the mass is spread uniformly over the radii.
+    /// Sieve curve: pairs of a radius (m) and the mass fraction of the grains up to this radius. Radii and fractions
+    /// must not decrease. The first fraction is 0, and the last is 1. Between two pairs, the mass is distributed
+    /// uniformly over the radii.
     #[serde(default)]
     pub by_mass: Option<Vec<(f64, f64)>>,
 }
 
-/// Log-normal distribution R = median · exp(deviation · n) with n normally distributed. Values outside `range` are
-/// redrawn.
+/// Log-normal distribution R = median · exp(deviation · n) with a standard normal variable n. Radii outside `range` are
+/// drawn again.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LogNormalSpec {
@@ -134,15 +141,16 @@ pub struct LogNormalSpec {
     pub range: [f64; 2],
 }
 
-/// Dense packing in the domain without overlap. Faces that are not periodic are walls for the packing.
+/// Dense random packing in the domain without overlap. Non-periodic faces of the domain act as walls during packing.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackedSpec {
-    /// Sizes: pairs of radius (m) and number of grains.
+    /// Pairs of a radius (m) and the number of grains of this radius. The total is at most 20,000 grains.
     pub radii: Vec<(f64, u32)>,
     /// Seed of the generator. The same seed gives the same packing on every machine.
     pub seed: u64,
-    /// If true, faces that are not periodic bound the centres of grains, so that these faces cut grains. Default false.
+    /// If true, only the centres of grains must lie within the non-periodic faces, so that grains may cross these
+    /// faces. Default false.
     #[serde(default)]
     pub cut: bool,
 }
@@ -157,24 +165,24 @@ pub struct PouredSpec {
     pub rate: f64,
     /// Seed of the generator. The same seed gives the same grains on every machine and in every solver.
     pub seed: u64,
-    /// Lower corner of the box in which centres are inserted (m).
+    /// Lower corner of the box for the centres of inserted grains (m).
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Time of the first insertion (s).
+    /// Time of the first insertion (s). Default 0.
     #[serde(default)]
     pub start: f64,
 }
 
-/// Grains in the final state of a run, from a file written by `simulate --state`. Walls are matched by name. The
-/// history of contacts with walls that this scene lacks is dropped.
+/// Grains from the final state of another run, read from a file that `simulate --state` wrote. The walls of the other
+/// run and of this scene are matched by name. The history of contacts with walls that this scene lacks is dropped.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StateSpec {
     /// Path, relative to the scene file.
     pub path: String,
-    /// If true, contacts keep their history. Programs that read the grains from a data file do not support this.
-    /// Default true.
+    /// If true, contacts start with the history in the file. External programs that read grains from a data file do not
+    /// support this. Default true.
     #[serde(default = "yes")]
     pub springs: bool,
 }
@@ -183,7 +191,7 @@ const fn yes() -> bool {
     true
 }
 
-/// Removal of grains outside a box.
+/// Removal of grains whose centre lies outside a box.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RemovalSpec {
@@ -191,7 +199,7 @@ pub struct RemovalSpec {
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Calculation cycles between searches for such grains. Default 100.
+    /// Calculation cycles (time steps) between searches for grains to remove. Default 100.
     #[serde(default = "default_removal_cycles")]
     pub every_cycles: u64,
 }
@@ -200,13 +208,13 @@ const fn default_removal_cycles() -> u64 {
     100
 }
 
-/// Grains from a file.
+/// Grains from a LAMMPS data file (atom style sphere).
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileSpec {
     /// Path, relative to the scene file.
     pub path: String,
-    /// Names of the materials of atom types 1, 2, …. Default: the group's material for all types.
+    /// Names of the materials of atom types 1, 2, …. Default: `material` of the group for all types.
     #[serde(default)]
     pub types: Vec<String>,
 }

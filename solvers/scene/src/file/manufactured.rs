@@ -1,21 +1,24 @@
-//! Keys of `manufactured`: motions that a body force makes exact.
+//! Keys of `manufactured`: chosen motions that are exact under a body force (manufactured solutions).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Chosen motion that a body force makes exact: exactly one of `axis-aligned` and `vortex`.
+/// Manufactured solution: a chosen motion with the body force that makes it exact. Give exactly one of `axis-aligned`
+/// and `vortex`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ManufacturedSpec {
-    /// Motion u_x = A sin(2πX/L) sin(cπt/L), c = √(E/ρ), in a periodic box of length L along x.
+    /// Displacement u_x = A sin(2πX/L) sin(cπt/L) in a periodic box of length L along x. X is the initial position, t
+    /// the time, and c = √(E/ρ) the bar wave speed.
     #[serde(default)]
     pub axis_aligned: Option<AxisAlignedSpec>,
-    /// Rotation of each circle about the origin, between the radii .75 m and 1.25 m.
+    /// Rotation of each circle about the origin with a radius between 0.75 m and 1.25 m. The angle depends on the
+    /// radius.
     #[serde(default)]
     pub vortex: Option<VortexSpec>,
 }
 
-/// Motion u_x = A sin(2πX/L) sin(cπt/L).
+/// Displacement u_x = A sin(2πX/L) sin(cπt/L) at the initial position X and time t, with the bar wave speed c.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisAlignedSpec {
@@ -30,7 +33,8 @@ const fn one_metre() -> f64 {
     1.0
 }
 
-/// Rotation by α = A sin(Bπt) (1 − 16 (R − 1)²)².
+/// Rotation about the origin by the angle α = A sin(Bπt) (1 − 16 (R − 1)²)² at time t and radius R, for 0.75 m < R <
+/// 1.25 m.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VortexSpec {

@@ -1,4 +1,4 @@
-//! Scene file: every key that users can write, as serde reads it, with one module per table.
+//! Keys of a scene file as types that serde reads, with one module per table of keys.
 //!
 //! Doc comments here are the documentation of the keys: `grainbench scene --schema` prints them.
 
@@ -30,13 +30,14 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Scene: its contents and its physics. Numbers are in SI units. In two dimensions, masses, forces and energies of
-/// discs are per metre of depth. Vectors have one component per dimension of the scene.
+/// Scene: grains, bodies, walls, materials, contact laws and output of a run. Numbers are in SI units. In two
+/// dimensions, masses, forces and energies of discs are per metre of depth. Vectors have one component per dimension of
+/// the scene.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Scene")]
 pub struct SceneFile {
-    /// Title, for reports.
+    /// Title of the scene in reports.
     pub title: String,
     /// Number of dimensions: 2 or 3.
     pub dimension: u8,
@@ -44,19 +45,20 @@ pub struct SceneFile {
     /// `sphere` (m = ρ(4/3)πR³, I = 2mR²/5; in two dimensions, a sphere that moves in the plane).
     #[serde(default)]
     pub grain_shape: Option<GrainShape>,
-    /// Gravity (m/s²): a vector, or magnitude and slope. Default zero.
+    /// Gravity (m/s²), as a vector or as magnitude and slope. Default zero.
     #[serde(default)]
     pub gravity: Option<GravitySpec>,
-    /// Domain of the scene (m). Required for periodic axes and for `random` and `packed` grains.
+    /// Domain of the scene, an axis-aligned box (m). Required for periodic axes and for `random` and `packed` grains.
     #[serde(default)]
     pub domain: Option<DomainSpec>,
-    /// Global mass-proportional damping α (1/s): a force −α m v and a torque −α I ω on every grain.
+    /// Global mass-proportional damping α (1/s). It exerts a force −α m v and a torque −α I ω on every grain. Default
+    /// 0.
     #[serde(default)]
     pub global_damping: f64,
     /// Simulated time (s). Give this or `duration_cycles`.
     #[serde(default)]
     pub duration: Option<f64>,
-    /// Simulated time in calculation cycles. Give this or `duration`.
+    /// Simulated time in calculation cycles (time steps). Give this or `duration`.
     #[serde(default)]
     pub duration_cycles: Option<u64>,
     /// Largest initial overlap of two grains, or of a grain and a wall, as a fraction of the smaller radius. Larger
@@ -70,10 +72,10 @@ pub struct SceneFile {
     /// Initial stress of deformable bodies. Default none.
     #[serde(default)]
     pub initial_pressure: Option<InitialPressure>,
-    /// Damped relaxation of deformable bodies before t = 0.
+    /// Damped relaxation of deformable bodies before t = 0. Default none.
     #[serde(default)]
     pub settle: Option<SettleSpec>,
-    /// Body force and initial velocities that make a chosen motion of neo-Hookean bodies exact.
+    /// Body force and initial velocities that make a chosen motion of neo-Hookean bodies exact. Default none.
     #[serde(default)]
     pub manufactured: Option<ManufacturedSpec>,
     /// Materials by name.
@@ -84,7 +86,7 @@ pub struct SceneFile {
     /// Groups of grains by name. Grains are numbered from 1 in the order of the file.
     #[serde(default)]
     pub grains: IndexMap<String, GrainsSpec>,
-    /// Removal of grains. Default none.
+    /// Removal of grains that leave a box. Default none.
     #[serde(default)]
     pub removal: Option<RemovalSpec>,
     /// Deformable bodies other than grains, by name.
@@ -96,13 +98,14 @@ pub struct SceneFile {
     /// Groups of grains with prescribed motion, by name.
     #[serde(default)]
     pub driven: IndexMap<String, DrivenSpec>,
-    /// Output of the run.
+    /// Times and contents of samples and snapshots.
     #[serde(default)]
     pub output: OutputSpec,
-    /// Named time series.
+    /// Probes by name. Each records quantities as a time series.
     #[serde(default)]
     pub probes: IndexMap<String, ProbeSpec>,
-    /// Variants by name: tables of overrides, applied to this file key by key.
+    /// Variants of the scene by name. Each is a table of keys that replace or extend the keys of this file. An empty
+    /// string removes a key.
     #[serde(default)]
     #[schemars(with = "IndexMap<String, serde_json::Value>")]
     pub variants: IndexMap<String, toml::Table>,
@@ -122,13 +125,14 @@ pub enum GrainShape {
     Sphere,
 }
 
-/// Gravity as a vector or as a slope.
+/// Gravity, as a vector or as magnitude and slope.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged, expecting = "a vector such as [0.0, -9.8] or a table { magnitude, slope_deg }")]
 pub enum GravitySpec {
     /// Acceleration (m/s²).
     Vector(Vec<f64>),
-    /// Gravity in the frame of a plane inclined by `slope_deg`: (g sin θ, −g cos θ). Down the slope is +x.
+    /// Gravity in the frame of a plane that descends towards +x at an inclination θ: (g sin θ, −g cos θ) in two
+    /// dimensions, and (g sin θ, 0, −g cos θ) in three dimensions.
     Slope(SlopeSpec),
 }
 
@@ -142,7 +146,7 @@ pub struct SlopeSpec {
     pub slope_deg: f64,
 }
 
-/// Domain of the scene.
+/// Domain of the scene: an axis-aligned box that may be periodic.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DomainSpec {
@@ -150,16 +154,16 @@ pub struct DomainSpec {
     pub low: Vec<f64>,
     /// Upper corner (m).
     pub high: Vec<f64>,
-    /// Periodic axes, by name (`["x"]`) or one by one (`[true, false]`). Default none.
+    /// Periodic axes, as names (`["x"]`) or as one value per axis (`[true, false]`). Default none.
     #[serde(default)]
     pub periodic: PeriodicSpec,
 }
 
 /// Periodic axes.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged, expecting = "names of axes such as [\"x\"], or whether each is periodic such as [true, false]")]
+#[serde(untagged, expecting = "names of periodic axes such as [\"x\"], or a value for each axis such as [true, false]")]
 pub enum PeriodicSpec {
-    /// One flag per axis.
+    /// One value per axis, true if the axis is periodic.
     Each(Vec<bool>),
     /// Names of the periodic axes.
     Named(Vec<AxisName>),
@@ -177,14 +181,14 @@ impl Default for PeriodicSpec {
 pub enum AxisName {
     /// First axis.
     X,
-    /// Second axis, upwards in the plane.
+    /// Second axis; upwards in two dimensions.
     Y,
     /// Third axis.
     Z,
 }
 
-/// Damped relaxation before t = 0. Bodies at rest come to equilibrium, then receive their velocities and spins and are
-/// released.
+/// Damped relaxation before t = 0. Bodies start at rest and come to equilibrium. At t = 0, they receive their initial
+/// velocities and spins, and gravity and damping take the values of the scene.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SettleSpec {
@@ -192,7 +196,7 @@ pub struct SettleSpec {
     pub duration: f64,
     /// Mass-proportional damping α (1/s).
     pub damping: f64,
-    /// Gravity during the relaxation. Default: gravity of the scene.
+    /// Gravity during the relaxation (m/s²). Default: gravity of the scene.
     #[serde(default)]
     pub gravity: Option<GravitySpec>,
 }

@@ -3,54 +3,60 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Named time series: exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`, `driven`, `stress`,
-/// `budget`, `count` and `system`.
+/// Probe: quantities recorded as a time series. Exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`,
+/// `driven`, `stress`, `budget`, `count` and `system` selects them.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
-    /// Grain: the name of a group with one grain, or `group.k` for the k-th grain of a group, from 1. Columns x, y,
-    /// (z), vx, …, omega (about z; or omega_x, …), angle (two dimensions).
+    /// Grain: the name of a group with one grain, or `group.k` for the k-th grain of a group, from 1. Columns in two
+    /// dimensions: x, y (m), vx, vy (m/s), omega about z (rad/s), angle (rad). Columns in three dimensions: x, y, z,
+    /// vx, vy, vz, omega_x, omega_y, omega_z.
     #[serde(default)]
     pub grain: Option<String>,
-    /// Body other than a grain, with the same columns as a grain.
+    /// Name of a body other than a grain. The columns are those of `grain`.
     #[serde(default)]
     pub body: Option<String>,
-    /// Material of a deformable grain or body at a position, averaged over the nearest material points at the start.
-    /// Columns ux, … (displacement), vx, …, sigma_xx, sigma_yy, sigma_zz, sigma_xy (and sigma_yz, sigma_zx),
-    /// plastic_strain.
+    /// Material of a deformable grain or body, averaged over the material points that are nearest to a position at the
+    /// start. Columns: displacement ux, … (m), velocity vx, … (m/s), stress (Pa) sigma_xx, sigma_yy, sigma_zz, sigma_xy
+    /// (in three dimensions also sigma_yz, sigma_zx), and plastic_strain.
     #[serde(default)]
     pub point: Option<PointSpec>,
-    /// Contact between a grain and a grain or wall. Columns overlap, normal_force, shear_force (signed in two
-    /// dimensions), slipping (0 or 1). The forces of `dem` are those that moved the grains. Their dashpots use the
-    /// velocities of half a step before, kδ − γ v(n−½). LAMMPS and LIGGGHTS do the same at walls, but recompute a
-    /// contact between grains for output. They then use the velocities at the step, kδ − γ v(n), which differs by γ a
-    /// Δt/2.
+    /// Contact between a grain and another grain or a wall, by their names. Columns: overlap (m), normal_force (N),
+    /// shear_force (N; with a sign in two dimensions), slipping (0 or 1). `dem` reports the forces that moved the
+    /// grains. Their dashpots use the velocities half a step earlier: at step n, the normal force is kδ − γ v(n−½),
+    /// with stiffness k, overlap δ, dashpot coefficient γ and velocity of separation v. LAMMPS and LIGGGHTS report this
+    /// force at walls. Between grains, they report a force that they compute from the velocities at step n: kδ − γ
+    /// v(n). The two forces differ by γ a Δt/2, with relative acceleration a and time step Δt.
     #[serde(default)]
     pub contact: Option<[String; 2]>,
-    /// Wall. Columns force_x, … of the grains on the wall.
+    /// Name of a wall. Columns force_x, … (N): force of the grains on the wall.
     #[serde(default)]
     pub wall: Option<String>,
-    /// Pressed wall. Column advance: its displacement along its normal (m).
+    /// Name of a wall with `piston` and without `until`. Column advance (m): displacement of the wall along its normal.
     #[serde(default)]
     pub piston: Option<String>,
-    /// Group of grains with prescribed motion. Columns force_x, … of the other grains on the group.
+    /// Name of a group in `driven`. Columns force_x, … (N): force of the free grains on the group.
     #[serde(default)]
     pub driven: Option<String>,
-    /// Energy budget. Columns kinetic, elastic, springs, gravitational, work, plastic, friction, damping, transfer,
-    /// contact (J), unbalanced (J), and momentum_x, impulse_x, … (kg m/s).
+    /// If true, energy budget of the run. Columns (J): kinetic, elastic, springs, gravitational, work, plastic,
+    /// friction, damping, transfer, contact, and unbalanced, which is the stored and dissipated energy less the
+    /// supplied energy. Further columns (kg m/s): momentum_x, …, impulse_x, …
     #[serde(default)]
     pub budget: Option<bool>,
-    /// Mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber 1966). The
-    /// vector l points from the centre of one grain to that of the other. f is the force on the first grain, and V the
-    /// volume of the domain. Tension is positive; walls are not included. Columns sigma_xx, sigma_yy, sigma_xy (and
-    /// sigma_zz, sigma_xz, sigma_yz), and coordination, the mean number of contacts with other grains per grain.
+    /// If true, mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber
+    /// 1966). The vector l points from the centre of the first grain of a contact to the centre of the second, and f is
+    /// the force on the first grain. V is the volume of the domain or, without a domain, of the bounding box of the
+    /// grains. Tension is positive. Contacts with walls are not included. Columns: stress (Pa) sigma_xx, sigma_yy,
+    /// sigma_xy (in three dimensions also sigma_zz, sigma_xz, sigma_yz), and coordination, the mean number of contacts
+    /// with other grains per grain.
     #[serde(default)]
     pub stress: Option<bool>,
-    /// Number of grains. Columns present, entered (including the initial grains), left.
+    /// If true, numbers of grains. Columns: present, entered (initial and inserted grains), left (removed grains).
     #[serde(default)]
     pub count: Option<bool>,
-    /// Whole system. Columns are the kinetic, rotational, elastic and gravitational energy, their sum, the momentum,
-    /// the angular momentum about the origin, and the number of contacts.
+    /// If true, sums over the whole system. Columns: kinetic_energy, rotational_energy, elastic_energy,
+    /// gravitational_energy, total_energy (J), momentum_x, … (kg m/s), angular_momentum about the origin (kg m²/s),
+    /// contacts, slipping_contacts, and largest_spin of a grain (rad/s).
     #[serde(default)]
     pub system: Option<bool>,
 }
@@ -59,12 +65,12 @@ pub struct ProbeSpec {
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointSpec {
-    /// Name of the grain.
+    /// Grain, by name as in the probe `grain`. Give this or `body`.
     #[serde(default)]
     pub grain: Option<String>,
-    /// Or name of a body other than a grain.
+    /// Name of a body other than a grain. Give this or `grain`.
     #[serde(default)]
     pub body: Option<String>,
-    /// Initial position (m).
+    /// Position at the start (m), inside the grain or body.
     pub at: Vec<f64>,
 }

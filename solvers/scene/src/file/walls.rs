@@ -4,41 +4,43 @@ use super::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Wall: exactly one of `plane`, `segment`, `rectangle`, `cylinder`, `cone` and `mesh`.
+/// Wall. Its shape is exactly one of `plane`, `segment`, `rectangle`, `cylinder`, `cone` and `mesh`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSpec {
-    /// Name of the material.
+    /// Name of the material, as in `materials`.
     pub material: String,
-    /// Infinite plane (a line in two dimensions), solid behind its normal.
+    /// Infinite plane (a line in two dimensions). The normal points out of the solid half-space.
     #[serde(default)]
     pub plane: Option<PlaneSpec>,
-    /// Segment between two points (m), solid on both sides; two dimensions only. Edges that lie on
-    /// another wall are joined: a grain at the joint has one contact.
+    /// Segment between two points (m). Two dimensions only. Grains may be in contact with either side. If an end lies
+    /// on another wall, the walls are joined: a grain at the joint has one contact.
     #[serde(default)]
     pub segment: Option<[Vec<f64>; 2]>,
-    /// Rectangle, solid on both sides; three dimensions only. Edges that lie on another wall are joined: a grain at the
-    /// joint has one contact.
+    /// Rectangle. Three dimensions only. Grains may be in contact with either side. If an edge lies on another wall,
+    /// the walls are joined: a grain at the joint has one contact.
     #[serde(default)]
     pub rectangle: Option<RectangleSpec>,
-    /// Lateral surface of a cylinder, without its ends, solid on both sides; three dimensions only. It may rotate about
-    /// its axis. Contact laws replace it by its tangent plane and ignore its curvature.
+    /// Lateral surface of a cylinder, without the end faces. Three dimensions only. Grains may be in contact with
+    /// either side. The cylinder may rotate about its axis. Contact laws replace the surface by its tangent plane and
+    /// ignore its curvature.
     #[serde(default)]
     pub cylinder: Option<CylinderSpec>,
-    /// Lateral surface of a cone or truncated cone, treated like that of a cylinder.
+    /// Lateral surface of a cone or truncated cone. Three dimensions only. Contacts and rotation are as for `cylinder`.
     #[serde(default)]
     pub cone: Option<ConeSpec>,
-    /// Surface of triangles, solid on both sides; three dimensions only. A grain has at most one contact with each flat
-    /// part, each edge between two flat parts, and each corner. The result does not depend on the triangulation.
+    /// Surface of triangles. Three dimensions only. Grains may be in contact with either side. A grain has at most one
+    /// contact with each flat part, each edge between two flat parts, and each corner. The result does not depend on
+    /// the triangulation.
     #[serde(default)]
     pub mesh: Option<MeshSpec>,
     /// Piston: the wall moves along its normal under a load, in addition to its prescribed motion. Planes only.
     #[serde(default)]
     pub piston: Option<PistonSpec>,
-    /// Time of its removal (s), as for the plug of an orifice. Default never.
+    /// Removal time of the wall (s), for example of a plug that closes an orifice. Default: never.
     #[serde(default)]
     pub until: Option<f64>,
-    /// Prescribed motion. The parts add up.
+    /// Prescribed motion in parts, whose displacements are added. Default: no motion.
     #[serde(default)]
     pub motion: Vec<MotionSpec>,
 }
@@ -49,7 +51,7 @@ pub struct WallSpec {
 pub struct PlaneSpec {
     /// Point on the plane (m).
     pub point: Vec<f64>,
-    /// Direction out of the solid. Its length does not matter.
+    /// Vector out of the solid, of any length.
     pub normal: Vec<f64>,
 }
 
@@ -63,17 +65,17 @@ pub struct RectangleSpec {
     pub edges: [Vec<f64>; 2],
 }
 
-/// Piston that presses a plane: M dv/dt = F − F_n − M c v along its normal, with the normal force F_n of the grains on
-/// it. At rest it presses with F.
+/// Piston that presses a plane against grains. Its velocity v along the normal of the plane satisfies M dv/dt = F − F_n
+/// − M c v, where F_n is the normal force of the grains on the plane. At rest, the plane presses with F.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PistonSpec {
     /// Force F along the normal (N; N/m in two dimensions).
     pub force: f64,
-    /// Mass M (kg; kg/m in two dimensions). It must not be less than the total mass of the grains in contact with the
-    /// plane; otherwise the stable time step of the grains is too long for the piston.
+    /// Mass M (kg; kg/m in two dimensions). It must be at least the total mass of the grains in contact with the plane.
+    /// With a smaller mass, the stable time step of the grains is too long for the piston.
     pub mass: f64,
-    /// Damping c (1/s).
+    /// Damping c (1/s). Default 0.
     #[serde(default)]
     pub damping: f64,
 }
@@ -94,27 +96,27 @@ pub struct CylinderSpec {
 pub struct ConeSpec {
     /// Ends of the axis (m).
     pub axis: [Vec<f64>; 2],
-    /// Radius at each end (m). One of them may be zero.
+    /// Radius at each end (m). The radii must differ, and one may be zero.
     pub radii: [f64; 2],
 }
 
-/// Surface of triangles from an STL file beside the scene, as text or binary.
+/// Surface of triangles from an STL file, in text or binary form.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSpec {
     /// Path of the file, relative to the scene file.
     pub file: String,
-    /// Unit of the coordinates: `m` or `mm`. The format does not store a unit.
+    /// Unit of the coordinates, `m` or `mm`. STL files do not store it.
     pub unit: LengthUnit,
-    /// If true, the mesh may have edges of one triangle only, as a funnel has. Otherwise such edges are errors. Default
-    /// false.
+    /// If true, the mesh may be open, like a funnel: an edge may belong to only one triangle. If false, such an edge is
+    /// an error. Default false.
     #[serde(default)]
     pub open: bool,
-    /// If true, the normals of a closed mesh must point into the enclosed volume, as for a vessel drawn from within.
-    /// Otherwise they must point outwards. Default false.
+    /// If true, the normals of a closed mesh must point into the enclosed volume, as for a vessel that contains the
+    /// grains. If false, they must point outwards. Default false.
     #[serde(default)]
     pub inward: bool,
-    /// Largest distance of corners that are merged (m). Equal corners are always merged. Default 0.
+    /// Largest distance between triangle corners that are merged (m). Equal corners are always merged. Default 0.
     #[serde(default)]
     pub merge: f64,
 }
@@ -129,17 +131,18 @@ pub enum LengthUnit {
     Mm,
 }
 
-/// Part of a motion: a `velocity` or `spin` from `start` to `stop`, immediate or with a `ramp`; a `table`; or a `sine`.
+/// Part of a motion, in one of three forms. The first is a constant `velocity` and `spin` from `start` to `stop`; a
+/// `velocity` without `spin` may rise over a `ramp`. The second is a `table`. The third is a `sine`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
-    /// Velocity (m/s).
+    /// Velocity (m/s). Default zero.
     #[serde(default)]
     pub velocity: Option<Vec<f64>>,
     /// Angular velocity (rad/s) about `centre`.
     #[serde(default)]
     pub spin: Option<SpinSpec>,
-    /// Centre of rotation (m), which moves with the wall. Required with `spin`.
+    /// Initial centre of rotation (m). It moves with the wall. Required with `spin`.
     #[serde(default)]
     pub centre: Option<Vec<f64>>,
     /// Start (s). Default: the start of the run.
@@ -148,25 +151,27 @@ pub struct MotionSpec {
     /// Stop (s). Default: never.
     #[serde(default)]
     pub stop: Option<f64>,
-    /// Start in calculation cycles.
+    /// Start as a calculation cycle (time step), instead of `start`.
     #[serde(default)]
     pub start_cycle: Option<u64>,
-    /// Stop in calculation cycles.
+    /// Stop as a calculation cycle (time step), instead of `stop`.
     #[serde(default)]
     pub stop_cycle: Option<u64>,
-    /// Time in which the velocity is reached at a constant rate from the start (s).
+    /// Time (s) over which the velocity rises from zero to `velocity` at a constant rate, beginning at `start`.
+    /// Default: the velocity is constant from the start.
     #[serde(default)]
     pub ramp: Option<f64>,
-    /// Displacement from the initial position by time: rows of time (s), x, y, (z) (m) with rising times, joined by
-    /// straight lines. Before the first row and after the last row the wall is at rest.
+    /// Table of displacements from the initial position, with rows `[t, x, y]` or `[t, x, y, z]` of a time (s) and a
+    /// displacement (m). Times rise from row to row, and the first displacement is zero. Between rows, the displacement
+    /// is linear in time. Before the first row and after the last row, the wall is at rest.
     #[serde(default)]
     pub table: Option<Vec<Vec<f64>>>,
-    /// Oscillation.
+    /// Sinusoidal oscillation.
     #[serde(default)]
     pub sine: Option<SineSpec>,
 }
 
-/// Oscillation A (sin(2πft + φ) − sin φ) from its start.
+/// Oscillation with the displacement A (sin(2πfτ + φ) − sin φ), where τ is the time since `start`.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SineSpec {
@@ -174,7 +179,7 @@ pub struct SineSpec {
     pub amplitude: Vec<f64>,
     /// Frequency f (Hz).
     pub frequency: f64,
-    /// Phase φ (degrees).
+    /// Phase φ (degrees). Default 0.
     #[serde(default)]
     pub phase_deg: f64,
 }

@@ -16,13 +16,13 @@ const FLAT: f64 = 1e-9;
 /// Options for reading a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Unit of the coordinates (m).
+    /// Length of one unit of the coordinates (m).
     pub unit: f64,
-    /// Largest distance of corners that are merged (m). Equal corners are always merged.
+    /// Largest distance between corners that are merged (m). Equal corners are always merged.
     pub merge: f64,
-    /// True if edges of one triangle only are allowed.
+    /// True if an edge may belong to only one triangle.
     pub open: bool,
-    /// True if the normals point into the enclosed volume.
+    /// True if the normals must point into the enclosed volume.
     pub inward: bool,
 }
 
@@ -30,9 +30,10 @@ pub struct Reading {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
     pub(super) ends: [u32; 2],
-    /// Adjacent triangles; the same one twice for an open edge.
+    /// Adjacent triangles. An open edge has one, which is stored twice.
     pub(super) faces: [u32; 2],
-    /// Unit vectors perpendicular to the edge, into each of these triangles.
+    /// For each triangle in `faces`, the unit vector in the plane of the triangle that is perpendicular to the edge and
+    /// points into the triangle.
     pub(super) into: [Vector3<f64>; 2],
 }
 
@@ -48,10 +49,11 @@ pub struct Surface {
     pub(super) faces: Vec<[u32; 3]>,
     pub(super) triangles: Vec<[Vector3<f64>; 3]>,
     pub(super) normals: Vec<Vector3<f64>>,
-    /// Edges of each triangle: edge i leads from its corner i to the next corner.
+    /// Edges of each triangle: edge i leads from corner i of the triangle to the next corner.
     pub(super) sides: Vec<[u32; 3]>,
     pub(super) edges: Vec<Edge>,
-    /// Start of each corner's range in `directions`, which holds unit vectors along the edges from the corner.
+    /// Start of the range of each corner in `directions`. The range contains the unit vectors from the corner along its
+    /// edges.
     pub(super) from_corner: Vec<u32>,
     pub(super) directions: Vec<Vector3<f64>>,
     pub(super) groups: Groups,
@@ -65,7 +67,7 @@ impl PartialEq for Surface {
     }
 }
 
-/// Prints the number and the hash of the triangles, by which fingerprints of scenes identify a surface.
+/// Prints the number and the hash of the triangles. Fingerprints of scenes use this text.
 impl std::fmt::Debug for Surface {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut hash = blake3::Hasher::new();
@@ -81,10 +83,10 @@ impl Surface {
     ///
     /// # Errors
     /// - When a triangle has no area or occurs twice.
-    /// - When a normal contradicts the order of the corners, or two neighbours face different sides.
-    /// - When an edge has more than two triangles or, unless open edges are allowed, only one.
-    /// - When a corner of an open edge lies inside another open edge.
-    /// - When the normals of a closed surface point to the wrong side.
+    /// - When a normal contradicts the order of the corners, or two adjacent triangles have opposite orientations.
+    /// - When an edge belongs to more than two triangles, or to only one although open edges are not allowed.
+    /// - When a corner of an open edge lies on another open edge, between its ends.
+    /// - When the normals of a closed surface point inwards instead of outwards, or the reverse for `inward`.
     pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, Flaw> {
         let (corners, faces) = merged(facets, reading);
         let triangles: Vec<_> = faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
@@ -108,7 +110,7 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Returns the corners of every triangle (m).
+    /// Returns the three corners of every triangle (m).
     #[must_use]
     pub fn triangles(&self) -> &[[Vector3<f64>; 3]] {
         &self.triangles
@@ -127,7 +129,7 @@ impl Surface {
         self.groups.counts()
     }
 
-    /// Returns the enclosed volume (m³); negative if the normals point into it.
+    /// Returns the enclosed volume (m³). It is negative if the normals point inwards.
     fn volume(&self) -> f64 {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
         let tetrahedron = |[a, b, c]: &[Vector3<f64>; 3]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0;
@@ -136,17 +138,20 @@ impl Surface {
 
     fn refuse_wrong_side(&self, inward: bool) -> Result<(), Flaw> {
         match (self.volume() < 0.0, inward) {
-            (true, false) => Err(Flaw::new("normals that point out of what the mesh encloses", "all point into it")
-                .help("its triangles are turned over; `inward = true` says that this is meant")),
-            (false, true) => {
-                Err(Flaw::new("normals that point into what the mesh encloses (`inward`)", "all point out of it"))
+            (true, false) => {
+                Err(Flaw::new("normals that point out of the enclosed volume", "all point into the enclosed volume")
+                    .help("the triangles are inverted; if this is intended, set `inward = true`"))
             }
+            (false, true) => Err(Flaw::new(
+                "normals that point into the enclosed volume (`inward`)",
+                "all point out of the enclosed volume",
+            )),
             _ => Ok(()),
         }
     }
 
-    /// Rejects a corner of an open edge that lies inside another open edge. Such an apparent seam consists of two rims,
-    /// and a grain there would be in contact with both.
+    /// Rejects a surface if a corner of an open edge lies on another open edge, between its ends. The surface seems to
+    /// be closed there but has two rims, and a grain would be in contact with both rims.
     fn refuse_corners_on_edges(&self, merge: f64, name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
         let (low, high) = self.bounds();
         let near = merge.max(1e-9 * (high - low).norm());
@@ -178,8 +183,8 @@ impl Surface {
                         name(face as usize),
                         corner.as_slice()
                     );
-                    return Err(Flaw::new("corners that end the edges on which they lie", &found)
-                        .help("divide the other triangle there, or it is a rim of its own"));
+                    return Err(Flaw::new("corners only at the ends of edges", &found)
+                        .help("divide the neighbouring triangle at this corner, or separate the edges"));
                 }
             }
         }
@@ -211,7 +216,8 @@ impl Surface {
         }
     }
 
-    /// Appends the triangles within a distance (m) of a position to a list, in order.
+    /// Appends the indices of the triangles within the distance `reach` (m) of a position (m) to `list`, in ascending
+    /// order.
     pub fn near(&self, place: Vector3<f64>, reach: f64, list: &mut Vec<u32>) {
         let from = list.len();
         self.tree.near(place, |face| {
@@ -275,9 +281,9 @@ fn normals(
         }
         let normal = across.normalize();
         if normal.dot(&facets[number].normal) < 0.0 {
-            let found = format!("{}, whose normal points to the other side", name(number));
-            return Err(Flaw::new("normals on the side from which the corners go round to the left", &found)
-                .help("the triangle is turned over, or its normal is wrong"));
+            let found = format!("{}, whose normal points to the opposite side", name(number));
+            return Err(Flaw::new("normals on the side from which the corners run counter-clockwise", &found)
+                .help("the triangle is inverted, or its normal is wrong"));
         }
         Ok(normal)
     };
@@ -291,7 +297,7 @@ fn refuse_twice(faces: &[[u32; 3]], name: &dyn Fn(usize) -> String) -> Result<()
         sorted.sort_unstable();
         if let Some(first) = known.insert(sorted, number) {
             let found = format!("{} and {} with the same corners", name(first), name(number));
-            return Err(Flaw::new("every triangle once", &found));
+            return Err(Flaw::new("each triangle only once", &found));
         }
     }
     Ok(())
@@ -327,11 +333,11 @@ fn edges(
                 let found =
                     format!("{}, {} and {} {}", name(first), name(edge.faces[1] as usize), name(number), between());
                 return Err(Flaw::new("no more than two triangles at an edge", &found)
-                    .help("surfaces that branch are walls of their own"));
+                    .help("split a branching surface into several walls"));
             }
             if edge.ends == ends {
                 let found = format!("{} and {} {}, which face different sides", name(first), name(number), between());
-                return Err(Flaw::new("neighbours that face the same side", &found).help("one of them is turned over"));
+                return Err(Flaw::new("neighbours that face the same side", &found).help("one of them is inverted"));
             }
             (edge.faces[1], edge.into[1]) = (number as u32, into);
         }
@@ -343,24 +349,24 @@ fn edges(
 fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(usize) -> String) -> Flaw {
     let [a, b] = edge.ends.map(|end| corners[end as usize]);
     let found = format!(
-        "{count} with one, the first of {} between {:?} and {:?}",
+        "{count} edges of one triangle, the first of {} between {:?} and {:?}",
         name(edge.faces[0] as usize),
         a.as_slice(),
         b.as_slice()
     );
-    // A corner very near to this one indicates a seam that rounding has opened.
+    // If another corner is very close to corner a, rounding has probably separated two equal corners.
     let size = (b - a).norm();
     let nearly =
         corners.iter().map(|corner| (corner - a).norm()).filter(|&away| away > 0.0).fold(f64::INFINITY, f64::min);
     let help = if nearly < 1e-3 * size {
-        format!("another corner is {nearly:e} m from the first: `merge` (m) takes them for one")
+        format!("another corner is {nearly:e} m from the first one: `merge` (m) merges both")
     } else {
-        "`open = true` says that this is meant, as of a funnel".to_owned()
+        "if this is intended, as for a funnel, set `open = true`".to_owned()
     };
     Flaw::new("two triangles at every edge", &found).help(&help)
 }
 
-/// Returns the unit vectors along the edges from every corner.
+/// Returns the start of the range of each corner, and the unit vectors from the corners along their edges.
 fn directions(corners: &[Vector3<f64>], edges: &[Edge]) -> (Vec<u32>, Vec<Vector3<f64>>) {
     let mut from = vec![0; corners.len() + 1];
     edges.iter().flat_map(|edge| edge.ends).for_each(|end| from[end as usize + 1] += 1);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// Part of a triangle: the interior, a side (from the corner of this number to the next), or a corner.
+/// Part of a triangle: the interior, a side or a corner. Side i leads from corner i to the next corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Face,
@@ -10,8 +10,8 @@ pub(super) enum Part {
     Corner(usize),
 }
 
-/// Returns the point of a triangle nearest to a position, and the part that contains it. It uses the Voronoi regions of
-/// the triangle (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5).
+/// Returns the point of a triangle nearest to a position, and the part of the triangle that contains this point. The
+/// Voronoi region of the position determines the part (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5).
 pub(super) fn nearest(place: Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> (Vector3<f64>, Part) {
     let (ab, ac, from_a) = (b - a, c - a, place - a);
     let (d1, d2) = (ab.dot(&from_a), ac.dot(&from_a));
@@ -44,8 +44,8 @@ pub(super) fn nearest(place: Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> (Ve
     (a + ab * (of_b / sum) + ac * (of_c / sum), Part::Face)
 }
 
-/// Returns true if a triangle intersects the line between two positions, end points excluded (Möller & Trumbore, *J.
-/// Graphics Tools* **2**, 1997).
+/// Returns true if a triangle intersects the line segment between two positions, end points excluded (Möller &
+/// Trumbore, *J. Graphics Tools* **2**, 1997).
 pub(super) fn lies_across(from: Vector3<f64>, to: Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> bool {
     const ROUNDING: f64 = 1e-9;
     let (line, u, v) = (to - from, b - a, c - a);
@@ -70,7 +70,7 @@ pub(super) fn lies_across(from: Vector3<f64>, to: Vector3<f64>, [a, b, c]: &[Vec
 mod tests {
     use super::*;
 
-    /// No sampled point of the triangle is nearer than the result.
+    /// Compares the result with sampled points of the triangle: none of them is nearer to the position.
     #[test]
     fn the_nearest_point_is_nearest() {
         let triangle = [Vector3::new(0.1, 0.2, -0.3), Vector3::new(1.3, 0.1, 0.4), Vector3::new(0.4, 1.1, 0.2)];

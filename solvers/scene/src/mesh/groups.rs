@@ -3,14 +3,15 @@
 use super::build::Edge;
 use nalgebra::Vector3;
 
-/// Sine of the largest angle between triangles and the first triangle of their patch, and between edges and the first
-/// edge of their ridge. Single precision in a file rotates the triangles of a plane by up to 10⁻⁵. A cylinder needs 60
-/// 000 sides to count as flat.
+/// Sine of the largest angle between a triangle and the first triangle of its patch, or between an edge and the first
+/// edge of its ridge. Rounding to single precision in a file rotates the triangles of a plane by up to 10⁻⁵ rad.
+/// Adjacent sides of a cylinder belong to different patches unless the cylinder has more than 60,000 sides.
 const STRAIGHT: f64 = 1e-4;
-/// Not assigned to a group yet.
+/// Value for a triangle, edge or corner without a group.
 const NONE: u32 = u32::MAX;
 
-/// Group of every part of a triangle: patch, ridge or corner. Patches are numbered first, then ridges, then corners.
+/// Group of every triangle, edge and corner of a surface. A group is a patch, a ridge or a corner. Patches have the
+/// lowest numbers, then ridges, then corners.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
     pub(super) of_face: Vec<u32>,
@@ -33,7 +34,7 @@ impl Groups {
             (!edge.is_open() && a == b).then_some(a)
         };
         let mut of_edge: Vec<u32> = edges.iter().map(|edge| in_patch(edge).unwrap_or(NONE)).collect();
-        // Edges of each corner that are not seams within a patch.
+        // For each corner, its edges that do not lie inside a patch.
         let mut sharp: Vec<Vec<u32>> = vec![Vec::new(); corners.len()];
         for (number, edge) in edges.iter().enumerate().filter(|(number, _)| of_edge[*number] == NONE) {
             edge.ends.iter().for_each(|&end| sharp[end as usize].push(number as u32));
@@ -93,7 +94,7 @@ fn patches(normals: &[Vector3<f64>], edges: &[Edge], sides: &[[u32; 3]]) -> (Vec
     (of_face, count)
 }
 
-/// Assigns a ridge to every edge that is not a seam. Returns the number of ridges.
+/// Assigns a ridge to every edge that does not lie inside a patch. Returns the number of ridges.
 fn ridges(corners: &[Vector3<f64>], edges: &[Edge], sharp: &[Vec<u32>], of_edge: &mut [u32], patches: u32) -> u32 {
     let along = |edge: &Edge| (corners[edge.ends[1] as usize] - corners[edge.ends[0] as usize]).normalize();
     let (mut count, mut open) = (0, Vec::new());
@@ -123,7 +124,7 @@ fn ridges(corners: &[Vector3<f64>], edges: &[Edge], sharp: &[Vec<u32>], of_edge:
     count
 }
 
-/// Returns true if an edge continues in another one beyond their common end, instead of turning back.
+/// Returns true if edge b continues edge a beyond their common end, instead of turning back.
 fn goes_on(edges: &[Edge], a: usize, b: usize, end: u32, along: &dyn Fn(&Edge) -> Vector3<f64>) -> bool {
     let away = |edge: &Edge| if edge.ends[0] == end { along(edge) } else { -along(edge) };
     away(&edges[a]).dot(&away(&edges[b])) < 0.0

@@ -1,8 +1,8 @@
-//! Triangulated walls, which are read from STL, checked, and searched for contacts with spheres.
+//! Walls of triangles: reading from STL files, checks, and contacts with spheres.
 //!
-//! Contacts do not depend on the triangulation. Connected triangles in one plane form a *patch*, and edges in one line
-//! between the same patches form a *ridge*. The remaining parts are *corners*. A sphere has at most one contact with
-//! each of them (`touch`).
+//! Contacts do not depend on the triangulation. Connected triangles in one plane form a *patch*. Connected edges in one
+//! line between the same patches form a *ridge*. The remaining points are *corners*. A sphere has at most one contact
+//! with each patch, ridge and corner (`touch`).
 
 mod build;
 mod flaw;
@@ -20,10 +20,10 @@ use crate::motion::{Displacement, Motion};
 use nalgebra::{Rotation3, Vector3};
 use std::sync::Arc;
 
-/// Mesh at its present position. It rotates about the origin of its file, and that origin moves.
+/// Mesh at its present position. The mesh rotates about the origin of its file coordinates, and this origin moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Surface in the coordinates of its file (m).
+    /// Surface in the file coordinates (m).
     pub surface: Arc<Surface>,
     /// Present rotation.
     pub turn: Rotation3<f64>,
@@ -48,13 +48,13 @@ impl Mesh {
         }
     }
 
-    /// Converts a position to the coordinates of the file (m).
+    /// Converts a position (m) to the file coordinates (m).
     #[must_use]
     pub fn within(&self, place: Vector3<f64>) -> Vector3<f64> {
         self.turn.inverse_transform_vector(&(place - self.origin))
     }
 
-    /// Returns the present position of a point of the surface (m).
+    /// Returns the present position (m) of a point given in the file coordinates (m).
     #[must_use]
     pub fn place(&self, point: Vector3<f64>) -> Vector3<f64> {
         self.origin + self.turn * point

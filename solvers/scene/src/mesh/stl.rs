@@ -1,10 +1,11 @@
-//! Reader for both forms of STL, which stores the position of each triangle in its file.
+//! Reader of STL files in text or binary form. It stores the position of each triangle in the file for error messages.
 
 use super::Flaw;
 use nalgebra::Vector3;
 
-/// Bytes of the binary form: before the first triangle, and per triangle.
+/// Number of bytes before the first triangle in the binary form.
 const HEAD: usize = 84;
+/// Number of bytes of a triangle in the binary form.
 const EACH: usize = 50;
 
 /// Triangle as stored in a file.
@@ -14,16 +15,16 @@ pub struct Facet {
     pub corners: [Vector3<f64>; 3],
     /// Normal as stored in the file; it may be zero.
     pub normal: Vector3<f64>,
-    /// Start of the facet: a line of text, from 1, or a byte offset, from 0.
+    /// Start of the facet: line number from 1 in text form, byte offset from 0 in binary form.
     pub place: Place,
 }
 
 /// Position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Line of text.
+    /// Line of text, from 1.
     Line(usize),
-    /// Byte offset.
+    /// Byte offset, from 0.
     Byte(usize),
 }
 
@@ -36,11 +37,11 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// Reads the triangles of a file. A file that begins with `solid` may have either form. It is binary if its length
-/// matches its number of triangles, or if it contains zero bytes, which text does not.
+/// Reads the triangles of a file. A file that begins with `solid` may have text or binary form. It is binary if its
+/// length agrees with its stored number of triangles, or if it contains a zero byte. Text contains no zero bytes.
 ///
 /// # Errors
-/// When the file is truncated, has additional data, or contains an invalid or infinite number.
+/// When the file is empty, is truncated, has additional data, or contains an invalid or infinite number.
 pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
     if bytes.is_empty() {
         return Err(Flaw::new("triangles as STL", "an empty file"));
@@ -59,18 +60,18 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
 fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
     let Some(count) = count else {
         let found = format!("{} bytes, less than the {HEAD} before the first triangle", bytes.len());
-        return Err(Flaw::new("STL, as text that begins with `solid` or binary", &found));
+        return Err(Flaw::new("an STL file, binary or as text that begins with `solid`", &found));
     };
     let triangles = bytes.len() - HEAD;
     let whole = triangles / EACH;
     if triangles != EACH * count {
         let rest = match triangles % EACH {
             0 => String::new(),
-            rest => format!(" and {rest} bytes of another"),
+            rest => format!(" and {rest} bytes of another triangle"),
         };
-        let expected = format!("{count} triangles, as byte 80 says, {} bytes in all", HEAD + EACH * count);
+        let expected = format!("{count} triangles, as byte 80 states, {} bytes in total", HEAD + EACH * count);
         let found = format!("{} bytes, {whole} triangles{rest}", bytes.len());
-        let help = if whole < count { "the file is cut off" } else { "there is more in it than it says" };
+        let help = if whole < count { "the file is truncated" } else { "the file is longer than it states" };
         return Err(Flaw::new(&expected, &found).help(help));
     }
     let number = |at: usize| f64::from(f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
@@ -90,7 +91,7 @@ fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
         .collect()
 }
 
-/// Words of a text, with the line of each.
+/// Reader of the words of a text, with the unread rest of the text and the present line number.
 struct Words<'a> {
     text: &'a str,
     line: usize,
@@ -108,7 +109,7 @@ impl<'a> Words<'a> {
         Some((word, self.line))
     }
 
-    /// Skips the rest of a line, because names may contain anything.
+    /// Skips the rest of the line, because names of solids may contain any text.
     fn skip_line(&mut self) {
         self.text = &self.text[self.text.find('\n').unwrap_or(self.text.len())..];
     }
@@ -120,11 +121,11 @@ impl<'a> Words<'a> {
                 Flaw::new(expected, &format!("`{word}` in line {line}"))
             }
             None => Flaw::new(expected, &format!("the end of the file after line {}", self.line))
-                .help("the file is cut off"),
+                .help("the file is truncated"),
         }
     }
 
-    /// Reads one of the expected words.
+    /// Reads the next word, which must be one of the expected words.
     fn take(&mut self, expected: &[&str]) -> Result<(&'a str, usize), Flaw> {
         let found = self.next();
         found.filter(|(word, _)| expected.iter().any(|expected| word.eq_ignore_ascii_case(expected))).ok_or_else(|| {
@@ -158,7 +159,7 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
                 break;
             }
             words.take(&["normal"])?;
-            // Stored normals are often unreliable; they only have to be numbers.
+            // Stored normals are often inaccurate. Here they only have to be finite numbers.
             let normal = words.vector()?;
             words.take(&["outer"])?;
             words.take(&["loop"])?;
@@ -211,7 +212,7 @@ mod tests {
         assert_eq!(binary[0].place, Place::Byte(84));
     }
 
-    /// A truncated file is rejected at any length, so that a part of a mesh never counts as the whole.
+    /// A file truncated at any length is rejected, so that a part of a mesh is never read as the whole mesh.
     #[test]
     fn what_is_cut_off_is_refused() {
         let end = ONE.find("endsolid").unwrap() + "endsolid".len();

@@ -1,23 +1,24 @@
 //! Contacts between a sphere and a surface.
 //!
-//! A contact exists where the distance from the sphere's centre along the surface has a local minimum below the radius.
-//! On a triangle, this is the foot of the perpendicular from the centre. On an edge or at a corner, it is the nearest
-//! point, provided that all adjacent parts lead away from the centre. A sphere thus has one contact on a plane, two
-//! contacts in the concave edge of two planes, and one contact on their convex edge. The centre may be on either side
-//! of a triangle, but parts behind another triangle are not in contact.
+//! The distance to the centre of the sphere is a function on the surface. A contact is a local minimum of this function
+//! below the radius. On a triangle, the minimum is the foot of the perpendicular from the centre. On an edge or at a
+//! corner, it is the nearest point, provided that all adjacent parts lead away from the centre. A sphere thus has one
+//! contact on a plane, two contacts in a concave edge between two planes, and one contact on a convex edge. The centre
+//! may be on either side of a triangle. A point behind another triangle is not in contact.
 
 use super::build::Surface;
 use super::geometry::{Part, lies_across, nearest};
 use nalgebra::Vector3;
 
-/// Tolerance on the cosine at which an adjacent part counts as leading away. With it, rounding may give a sphere over a
-/// seam one contact side or both, but never none.
+/// Tolerance of the cosine of the angle at which an adjacent part counts as leading away from the centre. A sphere may
+/// lie over the common edge of two triangles in one plane. Rounding then gives a contact with one triangle or with
+/// both, but not with none.
 const ROUNDING: f64 = 1e-9;
 
 /// Contact of a sphere, in the coordinates of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereContact {
-    /// Patch, ridge or corner.
+    /// Number of the patch, ridge or corner.
     pub group: u32,
     /// Contact point (m).
     pub point: Vector3<f64>,
@@ -28,12 +29,13 @@ pub struct SphereContact {
 }
 
 impl Surface {
-    /// Finds the contacts of a sphere with nearby triangles: at most one for each patch, ridge and corner.
+    /// Replaces `found` by the contacts of a sphere with the triangles in `near`: at most one for each patch, ridge and
+    /// corner.
     pub fn touched(&self, centre: Vector3<f64>, radius: f64, near: &[u32], found: &mut Vec<SphereContact>) {
         found.clear();
         for &face in near {
             let Some(touched) = self.candidate(centre, radius, face as usize) else { continue };
-            // A point on the border of two parts is one contact, although both may report it due to rounding.
+            // A point on the border of two parts is one contact, even if both parts report it because of rounding.
             let same = |other: &SphereContact| {
                 other.group == touched.group || (other.point - touched.point).norm() <= 10.0 * ROUNDING * radius
             };
@@ -51,7 +53,7 @@ impl Surface {
         }
     }
 
-    /// Returns the nearest point of a triangle, if the sphere is in contact there.
+    /// Returns the contact at the nearest point of a triangle; `None` if the sphere is not in contact there.
     fn candidate(&self, centre: Vector3<f64>, radius: f64, face: usize) -> Option<SphereContact> {
         let triangle = &self.triangles[face];
         let (point, part) = nearest(centre, triangle);
@@ -112,7 +114,7 @@ mod tests {
         found
     }
 
-    /// Cube with edges of 1 m and a corner at the origin.
+    /// Returns a cube with edges of 1 m and a corner at the origin.
     fn cube() -> Surface {
         let corner = |bits: usize| [0, 1, 2].map(|axis| f64::from((bits >> axis & 1) as u8));
         let mut triangles = Vec::new();
@@ -128,7 +130,7 @@ mod tests {
         assert_eq!(cube().parts(), [6, 12, 8]);
     }
 
-    /// On a plane of many triangles, there is one contact at every position, including seams and corners of triangles.
+    /// A sphere on a plane of many triangles has one contact at every position.
     #[test]
     fn a_plane_is_touched_once_everywhere() {
         let at = |i: u32, j: u32| [0.1 * f64::from(i) + 0.017 * f64::from(j), 0.1 * f64::from(j), 0.3];
@@ -142,7 +144,7 @@ mod tests {
         let plane = surface(&triangles, true);
         assert_eq!(plane.parts()[0], 1);
         for number in 0..4000 {
-            // Every second position lies on the diagonals of the triangles, apart from rounding.
+            // Every second position lies on a line parallel to the diagonals, which are edges of two triangles.
             let (part, row) = ((f64::from(number) * 0.754_877).fract(), f64::from(number % 10) * 0.1 + 0.1);
             let [x, y] =
                 if number % 2 == 0 { [0.2 + part, 0.3 + 0.5 * part] } else { [row + 0.117 * part, row + 0.1 * part] };
@@ -152,7 +154,8 @@ mod tests {
         }
     }
 
-    /// Positions outside a cube at a face, a ridge and a corner; and inside at a corner of three faces.
+    /// A sphere outside a cube has one contact, at a face, a ridge or a corner. A sphere inside, near a corner, has
+    /// three.
     #[test]
     fn a_cube_is_touched_as_a_cube() {
         let cube = cube();
@@ -173,7 +176,7 @@ mod tests {
         assert!(touched(&cube, [0.5, 0.5, 0.5], 0.4).is_empty());
     }
 
-    /// The far side of a thin plate lies behind the near side.
+    /// The far side of a thin plate lies behind the near side, so a sphere is in contact with the near side only.
     #[test]
     fn a_thin_plate_is_touched_on_one_side() {
         let thin = |bits: usize| {

@@ -5,15 +5,16 @@ use nalgebra::Vector3;
 /// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
 
-/// Bounding box of triangles that are consecutive in the order of the tree.
+/// Node of the tree, with the bounding box of a range of triangles.
 #[derive(Clone, Debug)]
 struct Node {
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// Range in `order`.
+    /// Index in `order` of the first triangle.
     from: u32,
+    /// Index in `order` after the last triangle.
     to: u32,
-    /// Second child; the first child follows its parent. Zero for a leaf.
+    /// Index of the second child; zero for a leaf. The first child follows its parent.
     second: u32,
 }
 
@@ -50,11 +51,12 @@ impl Tree {
         self.add(triangles, from + half, to);
     }
 
-    /// Visits the triangles of all leaves whose bounding box lies within a radius (m) of a position. The radius is read
-    /// again at each node, by a visit without a triangle, so that a nearest-neighbour search can reduce it.
+    /// Visits the triangles of all leaves whose bounding box lies within a radius of a position (m). `visit` returns
+    /// the radius (m). It is also called with `None` at each node, so that a nearest-neighbour search can reduce the
+    /// radius.
     pub(super) fn near(&self, place: Vector3<f64>, mut visit: impl FnMut(Option<u32>) -> f64) {
         let mut at = 0;
-        // Nodes are visited in order; the children of a distant node are skipped.
+        // Nodes are visited in order. The descendants of a distant node are skipped.
         while let Some(node) = self.nodes.get(at) {
             let away = (node.low - place).sup(&(place - node.high)).sup(&Vector3::zeros());
             let is_leaf = node.second == 0;
@@ -71,7 +73,7 @@ impl Tree {
         }
     }
 
-    /// Returns the node after all descendants of a node.
+    /// Returns the index of the node that follows the last descendant of a node.
     fn after(&self, at: usize) -> usize {
         let mut last = at;
         while self.nodes[last].second != 0 {

@@ -31,7 +31,7 @@ impl Resolver<'_> {
                 amplitude: check.finite(&key("wave.amplitude"), wave.amplitude, "velocity (m/s)")?,
                 wave_number: (2.0 * f64::from(wave.mode) - 1.0) * PI / (2.0 * (high.x - low.x)),
             }),
-            (Some(_), _) => return Err(check.error(&key("wave"), "a mode from 1 on, of a box", "something else")),
+            (Some(_), _) => return Err(check.error(&key("wave"), "a mode of 1 or more, for a box", "something else")),
         };
         Ok(Block {
             name: name.to_owned(),
@@ -55,13 +55,13 @@ impl Resolver<'_> {
             (_, gradient) => gradient.clone().unwrap_or_default(),
         };
         if self.file.initial_pressure.is_some() {
-            return Err(check.error(&key("stress"), "one of it and `initial_pressure`", "both"));
+            return Err(check.error(&key("stress"), "one of `stress` and `initial_pressure`", "both"));
         }
         let of_material = &self.file.materials[usize::from(material)];
         let Some(moduli) = of_material.deformable(&spec.material, check)? else {
             return Err(check.error(&key("stress"), "a material with elastic moduli", &format!("`{}`", spec.material)));
         };
-        // In the plane, there is no out-of-plane strain, so the out-of-plane stress is that of plane strain.
+        // In two dimensions there is no strain along z (plane strain), so σ_zz = ν (σ_xx + σ_yy).
         let tensor = |part: &str, rows: Option<&Vec<Vec<f64>>>| -> Result<Matrix3<f64>, SceneError> {
             let mut stress = rows.map_or(Ok(Matrix3::zeros()), |rows| check.symmetric(&key(part), rows))?;
             if check.dimension == Dimension::Two {
@@ -70,7 +70,7 @@ impl Resolver<'_> {
             Ok(stress)
         };
         if gradient.z.is_some() && check.dimension == Dimension::Two {
-            return Err(check.error(&key("stress_gradient.z"), "axes that the scene has, `x` and `y`", "`z`"));
+            return Err(check.error(&key("stress_gradient.z"), "axes of the scene, `x` or `y`", "`z`"));
         }
         Ok(Some(InitialStress {
             centre: tensor("stress", spec.stress.as_ref())?,
@@ -135,8 +135,8 @@ impl Resolver<'_> {
         Ok(sides)
     }
 
-    /// Returns the given reference length, or the smallest grain radius, or the smallest characteristic length of a
-    /// body (m).
+    /// Returns the reference length of the file (m). If it is not given, the result is the smallest radius of a grain
+    /// or, without grains, the smallest characteristic length of a body.
     pub(super) fn reference_length(&self, grains: &[Grain], bodies: &[Block]) -> Result<f64, SceneError> {
         if let Some(length) = self.file.reference_length {
             return self.check.positive("reference_length", length, "length (m)");

@@ -7,8 +7,8 @@ use crate::motion::Moment;
 use crate::scene::{Domain, Driven, Grain};
 
 impl Resolver<'_> {
-    /// Returns the groups of grains with prescribed motion, and gives these grains their velocity and spin if the
-    /// motion starts at once.
+    /// Returns the groups of grains with prescribed motion. If the motion of a group starts at t = 0, its grains get
+    /// the `velocity` and the `spin` of the group as initial values.
     pub(super) fn driven(
         &self,
         grains: &mut [Grain],
@@ -21,26 +21,27 @@ impl Resolver<'_> {
             let key = format!("driven.{name}");
             let members = self.members(&key, spec, grains, groups, domain)?;
             if members.is_empty() {
-                return Err(self.check.error(&key, "one grain or more", "none"));
+                return Err(self.check.error(&key, "at least one grain", "none"));
             }
             let span = self.span(&key, spec)?;
             let velocity = self.check.vector_or_zero(&format!("{key}.velocity"), spec.velocity.as_ref())?;
             for &grain in &members {
                 if taken[grain] {
-                    let found = format!("grain {} in two of them", grain + 1);
-                    return Err(self.check.error(&key, "grains of one driven group", &found));
+                    let found = format!("grain {} in two groups", grain + 1);
+                    return Err(self.check.error(&key, "grains that are in only one driven group", &found));
                 }
                 taken[grain] = true;
             }
             let spin = self.check.spin(&format!("{key}.spin"), spec.spin.as_ref())?;
             let motion = self.motion(&format!("{key}.motion"), &spec.motion)?;
             if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
-                let expected = "a motion without spin (a `spin` beside it turns each about its own centre)";
-                return Err(self.check.error(&format!("{key}.motion"), expected, "one that turns"));
+                let expected = "a motion without spin (the key `spin` next to `motion` rotates each grain about its \
+                                own centre)";
+                return Err(self.check.error(&format!("{key}.motion"), expected, "a motion with spin"));
             }
             let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(_));
             if motion.phases.iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)) {
-                return Err(self.check.error(&format!("{key}.motion"), "moments in seconds", "one in cycles"));
+                return Err(self.check.error(&format!("{key}.motion"), "times in seconds", "a time in cycles"));
             }
             let driven = Driven { name: name.clone(), grains: members, velocity, span, spin, motion };
             if driven.is_moved_at(0.0) {
@@ -53,7 +54,7 @@ impl Resolver<'_> {
         Ok(all)
     }
 
-    /// Returns the start and the end of the prescribed motion (s).
+    /// Returns the start and the end of the prescribed motion (s). The end is infinite if it is not given.
     fn span(&self, key: &str, spec: &DrivenSpec) -> Result<[f64; 2], SceneError> {
         let start = self.check.not_negative(&format!("{key}.start"), spec.start.unwrap_or(0.0), "time (s)")?;
         let Some(stop) = spec.stop else { return Ok([start, f64::INFINITY]) };

@@ -14,14 +14,14 @@ use indexmap::IndexMap;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Memory per grain in a scene, a solver and a snapshot together (B).
+/// Memory per grain, summed over scene, solver and snapshot (B).
 const BYTES_OF_A_GRAIN: f64 = 1e3;
 
 /// Grains with their initial state.
 pub(super) struct PlacedGrains {
     pub(super) grains: Vec<Grain>,
     pub(super) groups: Groups,
-    /// Grains inserted later.
+    /// Grains that are inserted during the run.
     pub(super) entries: Vec<Entry>,
     /// Initial contact history.
     pub(super) springs: Option<Arc<Springs>>,
@@ -89,7 +89,7 @@ impl Resolver<'_> {
             let origin = check.vector(&key("origin"), &lattice.origin)?;
             let dimensions = check.dimension.count();
             if lattice.count.len() != dimensions || lattice.count.contains(&0) {
-                let expected = format!("{dimensions} counts of one or more");
+                let expected = format!("{dimensions} counts of at least one");
                 return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
             }
             let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
@@ -110,7 +110,7 @@ impl Resolver<'_> {
                 (SpacingSpec::Along(found), true) => {
                     return Err(check.error(
                         &key("spacing"),
-                        "one number, that of nearest neighbours",
+                        "one number, the distance of nearest neighbours",
                         &format!("{found:?}"),
                     ));
                 }
@@ -134,18 +134,21 @@ impl Resolver<'_> {
             };
             let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
             let density = density()?;
-            let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension)
-                .map_err(|NoRoom { share, is_costly }| {
+            let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension).map_err(
+                |NoRoom { share, is_costly }| {
                     let place = if random.region.is_some() { "region" } else { "domain" };
                     let found = format!("{} that would fill {share:.2} of it", random.count);
                     if is_costly {
-                        let expected = format!("a count and radii for which room in the {place} is found in a minute");
+                        let expected =
+                            format!("a count and radii for which the search finds room in the {place} within a minute");
                         return check.error(&key("count"), &expected, &found);
                     }
-                    let help = "one after the other at random, equal discs fill .55 and spheres .38 at most; `packed` is denser";
+                    let help = "randomly placed equal discs fill at most 0.55, and spheres at most 0.38; `packed` is \
+                                denser";
                     let expected = format!("grains that find room in the {place}");
                     check.source.error(&key("count"), &expected, &found, Some(help.to_owned()))
-                })?;
+                },
+            )?;
             grains.extend(
                 placed.into_iter().map(|place| grain(place.position, place.radius, density, velocity + place.velocity)),
             );
@@ -198,16 +201,17 @@ impl Resolver<'_> {
             let asked = packing::filled(radii.iter().copied(), domain, check.dimension);
             let expected = match packing::reachable(&radii, packed.seed, domain, check.dimension, packed.cut) {
                 Some(share) => {
-                    format!("grains that fill {share:.2} of the domain or less, which is as dense as these come")
+                    format!("grains that fill at most {share:.2} of the domain, the densest packing of these grains")
                 }
-                None => "grains that fill half of the domain at most: these find no room denser".to_owned(),
+                None => "grains that fill at most half of the domain, because no denser packing was found".to_owned(),
             };
             check.error(&key, &expected, &format!("{total} grains that would fill {asked:.2} of it"))
         })?;
         Ok(centres.into_iter().zip(radii).collect())
     }
 
-    /// Rejects grains whose mass, moment of inertia or position is not finite, although radius, density and domain are.
+    /// Rejects grains whose moment of inertia is not positive and finite, or whose position is not finite. Finite input
+    /// can cause both, because products overflow or underflow.
     fn refuse_beyond_numbers(&self, group: &str, grains: &[Grain]) -> Result<(), SceneError> {
         let key = format!("grains.{group}");
         for grain in grains {
@@ -222,8 +226,8 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Rejects a grain wider than a period, which would overlap itself, and a grain outside the faces of a non-periodic
-    /// axis.
+    /// Rejects a grain with a diameter above the period along an axis, because it would overlap itself. Along
+    /// non-periodic axes, rejects a grain whose centre lies outside the domain.
     pub(super) fn refuse_outside(&self, domain: &Domain, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
         for (name, range) in groups {
             for (at, grain) in range.clone().zip(&grains[range.clone()]) {
@@ -247,7 +251,7 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Rejects more grains than the memory can hold; such a number is a mistake.
+    /// Rejects a number of grains that exceeds 100 million or the available memory.
     fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
         if count > 100_000_000 {
             return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
@@ -314,7 +318,7 @@ impl Resolver<'_> {
     ) -> Result<(), SceneError> {
         let bound = self.file.largest_initial_overlap;
         self.check.not_negative("largest_initial_overlap", bound, "ratio")?;
-        // If the centre of a grain lies within another grain, the search for deeper overlaps is of no use.
+        // The search ends at an overlap ratio above 1, or above `bound` if `bound` is larger than 1.
         let mut later = vec![false; grains.len()];
         // Grains inserted at time zero are present from the start.
         stays.entries[stays.entered_by(0.0)..].iter().for_each(|entry| later[entry.grain] = true);

@@ -7,8 +7,8 @@ use crate::scene::{Block, Grain, Wall};
 use std::collections::BTreeSet;
 
 impl Resolver<'_> {
-    /// Returns the law of each pair of `materials` (indices in the file). Laws of other pairs are checked but not
-    /// stored.
+    /// Returns the table of laws for all pairs of `materials` (indices in the file). Laws of other pairs in the file
+    /// are checked but not stored.
     pub(super) fn laws(
         &self,
         materials: &[usize],
@@ -26,7 +26,7 @@ impl Resolver<'_> {
             let a = usize::from(self.material(&key, &spec.between[0])?);
             let b = usize::from(self.material(&key, &spec.between[1])?);
             if !stated.insert((a.min(b), a.max(b))) {
-                let pair = format!("a second one for {} and {}", spec.between[0], spec.between[1]);
+                let pair = format!("a second law for {} and {}", spec.between[0], spec.between[1]);
                 return Err(self.check.error(&key, "one law for each pair of materials", &pair));
             }
             let law = spec.law(name, &around)?;
@@ -44,8 +44,8 @@ impl Resolver<'_> {
         Ok(table)
     }
 
-    /// Rejects a pair of materials that can come into contact but has no law, because such grains would pass through
-    /// each other.
+    /// Rejects a pair of materials that can come into contact but has no law. Without a law, their grains would pass
+    /// through each other.
     fn require_laws(
         &self,
         materials: &[usize],
@@ -65,7 +65,7 @@ impl Resolver<'_> {
                 let at_wall = grains_of[a] > 0 && walls.contains(&b);
                 if (among_grains || at_wall) && table[a * count + b].is_none() {
                     let name = |place: usize| self.material_name(materials[place]);
-                    let pair = format!("a law between {} and {}, which can meet", name(a), name(b));
+                    let pair = format!("a law between {} and {}, which can come into contact", name(a), name(b));
                     return Err(self.check.error("contacts", &pair, "none"));
                 }
             }

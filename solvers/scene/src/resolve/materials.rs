@@ -9,8 +9,8 @@ use crate::scene::{Block, Grain, Wall};
 const MOST_MATERIALS: usize = 1000;
 
 impl Resolver<'_> {
-    /// Returns the materials in use, by index in the file. Grains, bodies and walls then refer to indices in this list.
-    /// Unused materials in the file thus cost nothing.
+    /// Returns the indices in the file of all materials in use. The materials of grains, bodies and walls are changed
+    /// to indices in this list, so that unused materials cost nothing.
     pub(super) fn used_materials(
         &self,
         grains: &mut [Grain],
@@ -25,7 +25,7 @@ impl Resolver<'_> {
         named().for_each(|material| used[usize::from(material)] = true);
         let kept: Vec<usize> = (0..used.len()).filter(|&place| used[place]).collect();
         if kept.len() > MOST_MATERIALS {
-            let expected = format!("at most {MOST_MATERIALS} materials that something is made of");
+            let expected = format!("at most {MOST_MATERIALS} materials that are in use");
             return Err(self.check.error("materials", &expected, &kept.len().to_string()));
         }
         let mut now = vec![0_u16; used.len()];

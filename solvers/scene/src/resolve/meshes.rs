@@ -1,4 +1,4 @@
-//! Walls of triangles, from files beside the scene.
+//! Walls of triangles, read from STL files.
 
 use super::Resolver;
 use crate::error::SceneError;
@@ -7,10 +7,11 @@ use crate::mesh::{Flaw, Mesh, Reading, Surface, stl};
 use crate::scene::{Dimension, Domain, Grain, Wall, WallShape};
 use nalgebra::Vector3;
 
-/// Largest size of a file (B): about ten million triangles in binary form.
+/// Largest size of a file (B). A binary file of this size has about ten million triangles.
 const MOST: u64 = 1 << 29;
-/// Largest ratio of the size of a mesh to that of all grains or the domain. A mesh in millimetres read as metres is a
-/// thousand times too large, and a mesh is usually no smaller than its contents.
+/// Largest ratio of the size of a mesh to the size of the domain or of all grains together, whichever is larger. A mesh
+/// that surrounds the grains has a ratio of about 1. A mesh in millimetres that is read as metres has a ratio a
+/// thousand times too large.
 const TOO_LARGE: f64 = 300.0;
 
 impl Resolver<'_> {
@@ -22,7 +23,7 @@ impl Resolver<'_> {
         }
         let merge = check.not_negative(&key(".merge"), spec.merge, "length (m)")?;
         if spec.open && spec.inward {
-            return Err(check.error(&key(".inward"), "a mesh that encloses something", "one that is `open`"));
+            return Err(check.error(&key(".inward"), "a mesh that encloses a volume", "a mesh that is `open`"));
         }
         let path = check.source.directory.join(&spec.file);
         let unreadable = |found: String| check.error(&key(".file"), "a file of triangles (STL)", &found);
@@ -67,13 +68,13 @@ impl Resolver<'_> {
             if own > TOO_LARGE * size {
                 let expected =
                     format!("a mesh no more than {TOO_LARGE} times as large as all grains together or the domain");
-                let found = format!("one of {own} m for {size} m");
+                let found = format!("a mesh of {own} m for {size} m");
                 let spec = self.file.walls.get(&wall.name).and_then(|spec| spec.mesh.as_ref());
                 let help = match spec.map(|spec| spec.unit) {
                     Some(LengthUnit::M) => {
-                        "`unit = \"mm\"` where the file is in millimetres, or a `domain` where that is meant"
+                        "set `unit = \"mm\"` if the file is in millimetres, or add a `domain` if this size is intended"
                     }
-                    _ => "a `domain` where that is meant",
+                    _ => "add a `domain` if this size is intended",
                 };
                 let key = format!("walls.{}.mesh.unit", wall.name);
                 return Err(self.check.source.error(&key, &expected, &found, Some(help.to_owned())));

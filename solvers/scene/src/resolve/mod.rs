@@ -47,14 +47,14 @@ pub struct FileGrain {
     pub spin: Vector3<f64>,
 }
 
-/// Reader of grains from a data file. Its error names file, line, expected and found value.
+/// Reader of grains from a data file. Its error states file, line, expected and found value.
 pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, String>;
 
 impl SceneSource {
-    /// Returns the scene, with variant and overrides, checked and complete.
+    /// Returns the resolved scene, with variant and overrides applied and all values checked.
     ///
     /// # Errors
-    /// When anything in the file is wrong. The error names file, line, key, expected and found value.
+    /// When the scene has an error. The message states file, line, key, expected and found value.
     pub fn scene(&self, read_grains: ReadGrains<'_>) -> Result<Scene, SceneError> {
         let file = self.scene_file()?;
         let dimension = match file.dimension {
@@ -67,7 +67,7 @@ impl SceneSource {
     }
 }
 
-/// Range of grain indices of each group of the file.
+/// Range of grain indices for each group of the file, by name.
 type Groups = IndexMap<String, Range<usize>>;
 
 struct Resolver<'a> {
@@ -244,7 +244,7 @@ impl Resolver<'_> {
             PeriodicSpec::Named(names) => {
                 for &name in names {
                     if name as usize >= dimensions {
-                        return wrong("axes that the scene has, `x` and `y`".to_owned(), "`z`".to_owned());
+                        return wrong("axes of the scene, `x` or `y`".to_owned(), "`z`".to_owned());
                     }
                     periodic[name as usize] = true;
                 }
@@ -261,7 +261,7 @@ impl Resolver<'_> {
         )?;
         match (self.file.duration, self.file.duration_cycles) {
             (Some(seconds), _) => Ok(Duration::Seconds(check.positive("duration", seconds, "time (s)")?)),
-            (None, Some(0) | None) => Err(check.error("duration_cycles", "one cycle or more", "0")),
+            (None, Some(0) | None) => Err(check.error("duration_cycles", "at least one cycle", "0")),
             (None, Some(cycles)) => Ok(Duration::Cycles(cycles)),
         }
     }
@@ -271,7 +271,7 @@ impl Resolver<'_> {
         match (output.every, output.every_cycles) {
             (Some(_), Some(_)) => Err(check.error("output", "one of `every` and `every_cycles`", "both")),
             (Some(every), None) => Ok(Sampling::Seconds(check.positive("output.every", every, "time (s)")?)),
-            (None, Some(0)) => Err(check.error("output.every_cycles", "one cycle or more", "0")),
+            (None, Some(0)) => Err(check.error("output.every_cycles", "at least one cycle", "0")),
             (None, Some(every)) => Ok(Sampling::Cycles(every)),
             (None, None) => Ok(Sampling::Count(200)),
         }
@@ -297,12 +297,12 @@ impl Resolver<'_> {
             return Err(check.error(
                 "output.mean_every_cycles",
                 "`mean-virial` among the columns",
-                "no mean to be taken",
+                "no column with a mean",
             ));
         }
         let mean_every = output.mean_every_cycles.unwrap_or(1);
         if mean_every == 0 {
-            return Err(check.error("output.mean_every_cycles", "one cycle or more", "0"));
+            return Err(check.error("output.mean_every_cycles", "at least one cycle", "0"));
         }
         Ok(Columns { chosen, digits: output.digits, mean_every })
     }

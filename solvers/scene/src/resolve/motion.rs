@@ -41,7 +41,8 @@ impl Resolver<'_> {
         Ok(motion)
     }
 
-    /// Adds a part of a motion that is a table or a function. Returns false if the part has another form.
+    /// Adds a part of a motion that is a table, a sine or a ramp. Returns false, and adds nothing, if the part is none
+    /// of these.
     fn in_other_form(&self, key: &str, spec: &MotionSpec, motion: &mut Motion) -> Result<bool, SceneError> {
         let forms = [
             ("table", spec.table.is_some()),
@@ -56,7 +57,7 @@ impl Resolver<'_> {
         check.exactly_one(key, &forms)?;
         if spec.velocity.is_some() != spec.ramp.is_some() {
             let expected =
-                if spec.ramp.is_some() { "the `velocity` that it rises to" } else { "no `velocity` beside it" };
+                if spec.ramp.is_some() { "the final `velocity` of the ramp" } else { "a ramp without `velocity`" };
             let found = if spec.ramp.is_some() { "none" } else { "one" };
             return Err(check.error(&format!("{key}.velocity"), expected, found));
         }
@@ -66,7 +67,7 @@ impl Resolver<'_> {
         }
         if let Some(rows) = &spec.table {
             if spec.start.is_some() || spec.stop.is_some() {
-                return Err(check.error(key, "the times of a table alone", "`start` or `stop`"));
+                return Err(check.error(key, "only the times of the table", "`start` or `stop`"));
             }
             motion.phases.extend(self.table(&format!("{key}.table"), rows)?);
             return Ok(true);
@@ -93,7 +94,8 @@ impl Resolver<'_> {
         Ok(true)
     }
 
-    /// Converts a table to phases of constant velocity. Consecutive rows on one straight line form one phase.
+    /// Converts a table to phases of constant velocity. Consecutive rows with the same velocity between them form one
+    /// phase.
     fn table(&self, key: &str, rows: &[Vec<f64>]) -> Result<Vec<Phase>, SceneError> {
         let check = &self.check;
         let shape = if check.dimension.count() == 2 { "[t, x, y]" } else { "[t, x, y, z]" };
@@ -102,16 +104,16 @@ impl Resolver<'_> {
             let wrong = row.len() != check.dimension.count() + 1 || row.iter().any(|value| !value.is_finite());
             let rises = |(before, _): &(f64, Vector3<f64>)| row[0] > *before;
             if wrong || row[0] < 0.0 || !places.last().is_none_or(rises) {
-                let expected = format!("two rows or more {shape}, with times from 0 on that rise");
+                let expected = format!("at least two rows {shape}, with increasing times from 0 on");
                 return Err(check.error(key, &expected, &format!("{row:?}")));
             }
             places.push((row[0], check.vector(key, &row[1..])?));
         }
         let Some(first) = places.first().filter(|_| places.len() > 1) else {
-            return Err(check.error(key, &format!("two rows or more {shape}"), &format!("{}", places.len())));
+            return Err(check.error(key, &format!("at least two rows {shape}"), &format!("{}", places.len())));
         };
         if first.1 != Vector3::zeros() {
-            let expected = "a first row at the place at the start, zeros behind its time";
+            let expected = "a first row with zeros after its time, because displacements are relative to the start";
             return Err(check.error(key, expected, &format!("{:?}", rows[0])));
         }
         let mut phases: Vec<Phase> = Vec::new();

@@ -1,4 +1,4 @@
-//! Probes, and the names to which they refer.
+//! Probes, and the search for the objects that they name.
 
 use super::{Groups, Resolver};
 use crate::check::Checker;
@@ -46,7 +46,7 @@ impl Resolver<'_> {
             };
             let at = check.vector(&key("point.at"), &point.at)?;
             if let Some(away) = names.outside(&body, at, check.dimension.count()) {
-                let expected = "a place in the body at the start";
+                let expected = "a position inside the body at the start";
                 return Err(check.error(&key("point.at"), expected, &format!("{:?}, {away:.3e} m outside", point.at)));
             }
             spots.push(Spot { body, at });
@@ -80,16 +80,17 @@ impl Resolver<'_> {
         let of_a_grain = matches!(target, ProbeTarget::Grain(_) | ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..));
         if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
             let expected =
-                "a probe of what is there all the time (a wall, the system, a count), for grains come or go here";
+                "a probe of a wall, the system or a count, because grains are inserted or removed in this scene";
             let found = match target {
-                ProbeTarget::Grain(_) => "one of a grain",
-                ProbeTarget::Budget => "one of the budget",
-                _ => "one of a contact",
+                ProbeTarget::Grain(_) => "a probe of a grain",
+                ProbeTarget::Budget => "a probe of the budget",
+                _ => "a probe of a contact",
             };
             return Err(check.error(&format!("probes.{name}"), expected, found));
         }
         if names.walls.iter().any(|wall| wall.piston.is_some()) && target == ProbeTarget::Budget {
-            let expected = "no budget where a wall is pressed, for its energy is not added up";
+            let expected = "no budget in a scene with a piston, because the budget does not include the energy of the \
+                            piston";
             return Err(check.error(&format!("probes.{name}.budget"), expected, "one"));
         }
         Ok(Probe { name: name.to_owned(), target })
@@ -111,7 +112,7 @@ impl Names<'_> {
         check.place_of(key, name, "a body of this scene", self.bodies.iter().map(|body| &body.name))
     }
 
-    /// Returns the distance of a position outside a body at the start (m); `None` if it lies inside.
+    /// Returns the distance (m) of a position from a body at the start; `None` if the position lies inside the body.
     fn outside(&self, body: &BodyName, at: Vector3<f64>, dimensions: usize) -> Option<f64> {
         let (away, size) = match *body {
             BodyName::Grain(grain) => {
@@ -123,11 +124,12 @@ impl Names<'_> {
                 (shape.outside(at, dimensions), shape.length(dimensions))
             }
         };
-        // The tolerance accepts rounded positions on the surface.
+        // Because of the tolerance, rounded positions on the surface count as inside.
         (away > 1e-6 * size).then_some(away)
     }
 
-    /// Returns the grain of a name that could also be the name of a wall.
+    /// Returns the index of the grain with a name. The name could also belong to a wall, so an error lists groups and
+    /// walls.
     fn grain_or_wall(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
         let group = name.rsplit_once('.').map_or(name, |(group, _)| group);
         if !self.groups.contains_key(name) && !self.groups.contains_key(group) {
@@ -137,7 +139,7 @@ impl Names<'_> {
         self.grain(check, key, name)
     }
 
-    /// Returns the grain called `group` (if the group has one grain) or `group.k`.
+    /// Returns the index of the grain with the name `group` (for a group of one grain) or `group.k`, k from 1.
     fn grain(&self, check: &Checker<'_>, key: &str, name: &str) -> Result<usize, SceneError> {
         let (group, number) = match name.rsplit_once('.').and_then(|(group, k)| Some((group, k.parse::<usize>().ok()?)))
         {

@@ -6,11 +6,12 @@ use crate::file::{GrainShape, RandomSpec, RegionSpec};
 use crate::radii::Radii;
 use crate::scene::Domain;
 
-/// Smallest fraction of a distribution within its range, because radii outside the range are redrawn.
+/// Smallest fraction of a log-normal distribution that must lie within its range. Radii outside the range are drawn
+/// again, and a smaller fraction would need many draws.
 const LEAST: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// Returns the distribution of radii; by default, all grains have the `radius` of the group.
+    /// Returns the distribution of radii. By default, all grains have the `radius` of the group.
     pub(super) fn radii(
         &self,
         key: &str,
@@ -40,7 +41,7 @@ impl Resolver<'_> {
                 |radius: f64| 0.5 * libm::erf(libm::log(radius / median) / (deviation * std::f64::consts::SQRT_2));
             if deviation > 0.0 && share(range[1]) - share(range[0]) < LEAST {
                 let found = format!("{} to {} m", range[0], range[1]);
-                let expected = format!("a range that holds {LEAST} of the distribution or more");
+                let expected = format!("a range that contains at least {LEAST} of the distribution");
                 return Err(check.error(&key("range"), &expected, &found));
             }
             return Ok(Radii::LogNormal { median, deviation, range });
@@ -51,23 +52,24 @@ impl Resolver<'_> {
         let is_whole =
             curve.first().is_some_and(|first| first.1 == 0.0) && curve.last().is_some_and(|last| last.1 == 1.0);
         if !(rises && is_whole && curve.iter().all(|(radius, _)| radius.is_finite() && *radius > 0.0)) {
-            let expected =
-                "pairs [radius (m), share of the mass that is no larger], both rising, the share from 0 to 1";
+            let expected = "pairs [radius (m), mass fraction of grains up to this radius], both increasing, the fraction from 0 \
+                 to 1";
             return Err(check.error(&key, expected, &format!("{curve:?}")));
         }
         Ok(Radii::by_mass(curve, if shape == GrainShape::Disc { 2 } else { 3 }))
     }
 
-    /// Checks a smallest and a largest radius (m).
+    /// Returns the smallest and largest radius (m), after checking that they are positive, finite and in this order.
     fn range(&self, key: &str, [small, large]: [f64; 2]) -> Result<[f64; 2], SceneError> {
         self.check.positive(key, small, "radius (m)")?;
         if !large.is_finite() || large < small {
-            return Err(self.check.error(key, "a range upwards", &format!("{small} to {large}")));
+            return Err(self.check.error(key, "an increasing range", &format!("{small} to {large}")));
         }
         Ok([small, large])
     }
 
-    /// Returns the part of the domain within a box. It is periodic along axes on which the box spans the domain.
+    /// Returns the part of the domain within a box. This part is periodic along the periodic axes that the box spans
+    /// completely.
     pub(super) fn region_of(&self, key: &str, spec: &RegionSpec, domain: &Domain) -> Result<Domain, SceneError> {
         let [low, high] = self.corners(key, &spec.low, &spec.high)?;
         let mut part = *domain;

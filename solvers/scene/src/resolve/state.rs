@@ -18,20 +18,20 @@ impl Resolver<'_> {
         let check = &self.check;
         let key = format!("grains.{name}.state.path");
         let path = check.source.directory.join(&spec.path);
-        let refuse = |found: String| check.error(&key, "a state that `simulate --state` left", &found);
+        let refuse = |found: String| check.error(&key, "a state written by `simulate --state`", &found);
         let bytes = std::fs::read(&path).map_err(|error| refuse(error.to_string()))?;
         let state = EndState::from_bytes(&bytes).map_err(refuse)?;
         if state.dimension != check.dimension.count() {
-            return Err(refuse(format!("one of {} dimensions", state.dimension)));
+            return Err(refuse(format!("a state in {} dimensions", state.dimension)));
         }
         if let Some(given) = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())]
             .into_iter()
             .find_map(|(part, given)| given.then_some(part))
         {
             let key = format!("grains.{name}.{given}");
-            return Err(check.error(&key, "none, for the state tells it", "one"));
+            return Err(check.error(&key, "none, because the state contains it", "one"));
         }
-        // A single material is replaced by the material of the group, whatever its name.
+        // A state with a single material gets the material of the group, even if the names differ.
         let materials: Vec<u16> = match &state.materials[..] {
             [_] => vec![material],
             several => several.iter().map(|material| self.material(&key, material)).collect::<Result<_, _>>()?,
@@ -51,7 +51,7 @@ impl Resolver<'_> {
         }
         if spec.springs {
             if springs.is_some() {
-                return Err(check.error(&key, "springs of one state (`springs = false` for others)", "two"));
+                return Err(check.error(&key, "springs of one state (`springs = false` for further states)", "two"));
             }
             *springs = Some(state.springs.later_by(first));
         }

@@ -9,7 +9,7 @@ use crate::stays::{Entry, Removal, Stays};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
-    /// Returns the insertion times (s) and centres (m) of the grains of a group.
+    /// Returns the insertion times (s) and centres (m) of the poured grains of a group.
     pub(super) fn pour(
         &self,
         name: &str,
@@ -28,10 +28,10 @@ impl Resolver<'_> {
             return Err(check.error(&key("high"), "a corner not below `low`", &found));
         }
         if spec.count == 0 {
-            return Err(check.error(&key("count"), "one grain or more", "0"));
+            return Err(check.error(&key("count"), "at least one grain", "0"));
         }
         if group.spin.is_some() {
-            return Err(check.error(&format!("grains.{name}.spin"), "no spin of grains that are poured", "one"));
+            return Err(check.error(&format!("grains.{name}.spin"), "no spin, because the grains are poured", "one"));
         }
         let pour = Pour {
             count: spec.count,
@@ -45,13 +45,13 @@ impl Resolver<'_> {
         };
         poured(&pour, domain, check.dimension).map_err(|reason| {
             let expected = match reason {
-                PouringError::NoRoom => "room in the box for each grain when it comes",
-                PouringError::Crowd => "a box that grains fall out of: with a velocity, gravity or a lower rate",
+                PouringError::NoRoom => "room in the box for each grain at its time",
+                PouringError::Crowd => "a box that grains leave in time, by velocity, gravity or a lower rate",
             };
-            // The search tries a half, a quarter, … of the rate, until grains fall away in time.
+            // Tries a half, a quarter, … of the rate, until there is room for all grains.
             let slower = (1..=10).map(|halvings| pour.rate / f64::from(1 << halvings));
             let fits = |rate: &f64| poured(&Pour { rate: *rate, ..pour }, domain, check.dimension).is_ok();
-            let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is"));
+            let help = slower.into_iter().find(fits).map(|rate| format!("at {rate} 1/s there is room"));
             let help = help.filter(|_| reason == PouringError::NoRoom);
             check.source.error(&key("rate"), expected, &format!("{} 1/s", spec.rate), help)
         })
@@ -62,12 +62,12 @@ impl Resolver<'_> {
         let check = &self.check;
         let [low, high] = self.corners("removal", &spec.low, &spec.high)?;
         if spec.every_cycles == 0 {
-            return Err(check.error("removal.every_cycles", "one cycle or more", "0"));
+            return Err(check.error("removal.every_cycles", "at least one cycle", "0"));
         }
         Ok(Some(Removal { low, high, every: spec.every_cycles }))
     }
 
-    /// Rejects a grain that would be removed as soon as it is inserted.
+    /// Rejects an inserted grain with an initial position at which grains are removed.
     pub(super) fn refuse_lost_pours(&self, stays: &Stays, grains: &[Grain], groups: &Groups) -> Result<(), SceneError> {
         let Some(removal) = stays.removal else { return Ok(()) };
         let dimension = self.check.dimension.count();
@@ -75,12 +75,12 @@ impl Resolver<'_> {
         let Some(lost) = stays.entries.iter().find(is_lost) else { return Ok(()) };
         let group = groups.iter().find(|(_, range)| range.contains(&lost.grain)).map_or("", |(name, _)| name);
         let place = &grains[lost.grain].position.as_slice()[..dimension];
-        let expected = "a box within that of `removal`, outside of which grains are taken out";
-        Err(self.check.error(&format!("grains.{group}.poured"), expected, &format!("a grain that comes at {place:?}")))
+        let expected = "a box within the box of `removal`, because grains outside it are removed";
+        Err(self.check.error(&format!("grains.{group}.poured"), expected, &format!("a grain inserted at {place:?}")))
     }
 
-    /// Returns the corners of a box with a positive length along every axis, from the keys `low` and `high` below
-    /// `key`.
+    /// Returns the corners of the box with the keys `low` and `high` below `key`. Each edge must have a positive
+    /// length.
     pub(super) fn corners(&self, key: &str, low: &[f64], high: &[f64]) -> Result<[Vector3<f64>; 2], SceneError> {
         let check = &self.check;
         let (of_low, of_high) = (format!("{key}.low"), format!("{key}.high"));
@@ -92,14 +92,22 @@ impl Resolver<'_> {
         Ok([low, high])
     }
 
-    /// Rejects inserted or removed grains in scenes with prescribed motion of grains or with deformable bodies.
+    /// Rejects insertion or removal of grains in scenes with `driven` grains or with deformable bodies.
     pub(super) fn refuse_passing(&self, stays: &Stays, driven: &[Driven], bodies: &[Block]) -> Result<(), SceneError> {
         let key = if stays.entries.is_empty() { "removal" } else { "grains" };
         if !stays.is_always() && !driven.is_empty() {
-            return Err(self.check.error("driven", "no driven grains where grains come or go", "some"));
+            return Err(self.check.error(
+                "driven",
+                "no driven grains in a scene that inserts or removes grains",
+                "some",
+            ));
         }
         if !stays.is_always() && !bodies.is_empty() {
-            return Err(self.check.error(key, "no grains that come or go beside deformable bodies", "some"));
+            return Err(self.check.error(
+                key,
+                "no insertion or removal of grains in a scene with deformable bodies",
+                "some",
+            ));
         }
         Ok(())
     }

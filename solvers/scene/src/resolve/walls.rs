@@ -81,10 +81,10 @@ impl Resolver<'_> {
         let check = &self.check;
         let key = |part: &str| format!("walls.{wall}.piston{part}");
         if !matches!(shape, WallShape::Plane { .. }) {
-            return Err(check.error(&key(""), "a `plane` that is pressed", "another wall"));
+            return Err(check.error(&key(""), "a `plane` as piston", "another wall"));
         }
         if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
-            return Err(check.error(&key(""), "a plane that does not turn", "one that does"));
+            return Err(check.error(&key(""), "a plane that does not rotate", "a rotating plane"));
         }
         Ok(Piston {
             force: check.finite(&key(".force"), spec.force, "force (N)")?,
