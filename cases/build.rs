@@ -1,11 +1,13 @@
-//! Generates the registry of cases from the case folders, so that a new case touches only its folder. Also generates a
-//! handle for each reference folder with a provenance. Such a folder contains a work from which expected values come.
+//! Generates the registry of cases from the case folders, so that a new case needs changes only in its own folder. Also
+//! generates a module for each reference folder with a `provenance.toml`. Such a folder contains a work (publication or
+//! prototype) that gives expected values.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Source folders of our solvers by kind, in the root of the workspace; for external programs those of the decks.
+/// Source folders of each kind of solver, relative to the root of the workspace. For LAMMPS and LIGGGHTS: the source of
+/// the code that writes their input decks.
 const SOURCES: [(&str, &[&str]); 4] = [
     ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/lanes/src"]),
     ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/lanes/src"]),
@@ -19,7 +21,8 @@ fn main() -> Result<(), Failure> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("registry.rs"), registry(&root)?)?;
-    // The crate `reference` reports its folder. It is beside this crate in a checkout, and elsewhere in a package.
+    // The build script of the crate `reference` sets this variable. In a checkout, the folder is beside this crate; in
+    // a package, it is not.
     let references = PathBuf::from(env::var("DEP_GRAINBENCH_REFERENCE_FOLDER")?);
     fs::write(out.join("sources.rs"), sources(&references)?)?;
     println!("cargo::rerun-if-changed={}", root.display());
@@ -36,9 +39,9 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns a hash of the paths and texts of all files in some folders, without tests and without comments of Rust
-/// sources. A package does not contain these files. There, its version and the checksums in its lock file identify the
-/// sources.
+/// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines of
+/// Rust sources do not change the hash. A package does not contain these folders; the result is then the version of the
+/// package, because checksums in its lock file identify the sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
         return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
@@ -115,7 +118,7 @@ fn registry(root: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Returns the code of a case whose claims are in `claims.toml`; none for a case in Rust.
+/// Returns the Rust code of a case whose claims are in `claims.toml`; `None` if the folder has no such file.
 fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
     let file = folder.join("claims.toml");
     if !file.is_file() {
@@ -139,7 +142,8 @@ fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
     )))
 }
 
-/// Adds the modules and the list of cases with their own target quantities of accuracy, in `cost.rs`.
+/// Adds a module for each case that has a `cost.rs`, and the list of the functions in these modules. Each function
+/// returns the target quantities of the cost study for its case.
 fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Result {
     let own: Vec<&String> = names.iter().filter(|name| root.join(name).join("cost.rs").is_file()).collect();
     for name in &own {
@@ -154,10 +158,11 @@ fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Res
     writeln!(code, "];")
 }
 
-/// Reference folders that contain works.
+/// Subfolders of the reference folder that contain works.
 const KINDS: [&str; 2] = ["literature", "prototype"];
 
-/// Returns the code of a module for each kind. It contains a module for each work, with the work and its values.
+/// Returns the code of one module for each kind of work. Each contains one module for each work, with the work and its
+/// values.
 fn sources(references: &Path) -> Result<String, Failure> {
     let (mut code, mut all) = (String::new(), String::new());
     for kind in KINDS {
@@ -175,7 +180,7 @@ fn sources(references: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Adds the module of one work.
+/// Adds the module of one work with its citation and its values.
 fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
     let text = |table: &toml::Table, key: &str| -> Result<String, Failure> {
         let value = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());

@@ -1,4 +1,4 @@
-//! A grain set down with spin and no velocity (the sphere of the 2001 paper, and a disc).
+//! A sphere (Bardenhagen et al. 2001) or a disc that is set down with spin and without velocity.
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -23,8 +23,9 @@ pub(crate) static CASE: Case = Case {
             with f = 1/3 for a disc and 2/7 for a sphere.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on friction, stiffness or damping, so that claim alone would pass a solver \
-               with a wrong friction law. The displacement depends on friction. The case has one contact and a constant load.",
+    weakness: "The final velocity does not depend on friction, stiffness or damping, so a solver with a wrong friction \
+               law would pass the claim about it. The displacement depends on friction. The case has one contact and a \
+               constant load.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,
@@ -41,7 +42,7 @@ fn claims() -> Vec<Claim> {
     dem.chain(rigid::backspins(&CASE, RIGID)).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
-/// Compares a quantity of the last state with the rigid solution.
+/// Compares a quantity of the last state with the rigid solution, in units of the rigid solution.
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     incline::end(done, OneGrain::rigid_backspin, pick)
 }
@@ -53,7 +54,7 @@ fn soft(variant: &str) -> Option<(OneGrain, f64)> {
     Some((OneGrain::from_scene(&scene), STEP.steps(&scene).ok()?.0))
 }
 
-/// Returns the tolerance halfway through the slide: the first step may have no friction.
+/// Returns the tolerance for the velocity halfway through the slide. The first step may have no friction.
 fn first_step(variant: &str) -> Tolerance {
     computed(
         soft(variant).map_or(f64::NAN, |(grain, step)| 2.0 * step / sliding(&grain)),
@@ -62,7 +63,8 @@ fn first_step(variant: &str) -> Tolerance {
     )
 }
 
-/// Returns the tolerance of the displacement: the effect of a soft contact.
+/// Returns the tolerance for the displacement at 1 s, relative to the rigid solution. It allows for the soft contact
+/// and for a first step without friction.
 fn fallen_behind(variant: &str) -> Tolerance {
     let behind = |(grain, step): (OneGrain, f64)| {
         (grain.tail() + grain.friction * grain.onto * step * sliding(&grain)) / grain.rigid_backspin(1.0).x
@@ -93,8 +95,8 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
-/// solver-independent.
+/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
+/// nearly agree.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
     let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
@@ -113,7 +115,8 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         )
         .up_to(2.0 * allowed)
     };
-    // A lever arm a changes the velocity by (1−i)/(1+i) of (R−a)/R, and the spin by 2/(1+i) of it: i = 2/5 and 1/2.
+    // A lever arm a changes the velocity by (1−i)/(1+i) times (R−a)/R, and the spin by 2/(1+i) times (R−a)/R, with
+    // i = 2/5 or 1/2.
     let arm = |times: f64| {
         computed(
             times * NEARLY_RIGID,
@@ -148,24 +151,24 @@ const ELSEWHERE: &str = "half a period of each spring until friction acts in ful
                          rolling grains overlap/R for the lever arm and the velocity of the undamped vibration of the \
                          spring";
 
-/// Returns the time of sliding (s).
+/// Returns the time at which sliding ends (s).
 fn sliding(grain: &OneGrain) -> f64 {
     grain.backspin_velocity(grain.radius) / (grain.friction * grain.onto)
 }
 
-/// Returns the largest relative error of the velocity halfway through the slide, for any parameters.
+/// Returns the largest relative error of the velocity halfway through the slide, for varied parameters.
 fn halfway(scene: &Scene) -> f64 {
     let grain = OneGrain::from_scene(scene);
     2.0 * grain.onset() / sliding(&grain)
 }
 
-/// Returns the largest relative error of final velocity and spin, for any parameters.
+/// Returns the largest relative error of final velocity and spin, for varied parameters.
 fn rolling(scene: &Scene) -> f64 {
     let grain = OneGrain::from_scene(scene);
     grain.overlap_ratio + grain.ringing(grain.friction * grain.onto) / grain.backspin_velocity(grain.radius)
 }
 
-/// Returns the largest relative error of the displacement, for any parameters.
+/// Returns the largest relative error of the displacement, for varied parameters.
 fn displaced(scene: &Scene) -> f64 {
     let grain = OneGrain::from_scene(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);

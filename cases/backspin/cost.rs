@@ -1,4 +1,5 @@
-//! Target quantity of accuracy: the transition from sliding to rolling, over stiffness.
+//! Target quantity of the cost study: the displacement of a grain that first slides and then rolls, for several
+//! stiffnesses.
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;

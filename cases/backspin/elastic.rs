@@ -1,9 +1,9 @@
-//! The grain as an elastic body, with the material point method.
+//! Backspin of an elastic grain, computed with the material point method.
 //!
 //! An elastic grain rolls on a flattened side. Its centre is lower, and it becomes a few per cent faster than a rigid
-//! grain. For the sphere, an independent prototype gives the displacement. For the disc there is no reference, but ten
-//! and a hundred times larger moduli lead to the rigid solution. The mean speed from 0.5 s on averages over the
-//! undamped free vibration of the contact.
+//! grain. For the sphere, an independent prototype gives the displacement. For the disc there is no reference, but its
+//! motion approaches the rigid solution if its moduli are ten or a hundred times larger. The speed is averaged from 0.5
+//! s on, because the contact vibrates freely without damping.
 
 use crate::exact::one_grain::course;
 use crate::rows::elastic::{PressedDisc, Rest, settle, stiffen};
@@ -32,10 +32,10 @@ fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f6
     })
 }
 
-/// Returns the flattening of the disc at rest: the decrease of the height of its centre, over R. The load is its weight
-/// W (N per metre), on a grid with `cells` cells a radius. The flattening includes the compression of the springs at
-/// the surface. K = 10 MPa and G = 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5 m. See [`PressedDisc::gives`] for the
-/// displacement of the disc.
+/// Returns the flattening of the disc at rest: the decrease of the height of its centre, divided by R. The load is the
+/// weight W of the disc (N per metre). The flattening includes the compression of the springs at the surface, which
+/// depends on the number of cells per radius (`cells`). K = 10 MPa and G = 2.5 MPa, so ν = 5/13; 3000 kg/m³ and R = 0.5
+/// m. See [`PressedDisc::gives`] for the displacement of the disc.
 fn flattened(cells: f64) -> f64 {
     let radius = 0.5;
     let rock = Deformable { bulk_modulus: 10e6, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
@@ -48,9 +48,9 @@ fn flattened(cells: f64) -> f64 {
 
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    // The deviations were required before the solver existed.
+    // Cells per radius, and the largest relative error of the displacement that was required before the solver existed.
     for (cells, asked) in [(4.0, 0.03), (8.0, 0.01)] {
-        // The run with R/8 takes a minute.
+        // The run with 8 cells per radius takes a minute.
         let run = run("sphere", "mpm", cells);
         claims.extend(sphere(&format!("R/{cells}"), asked, if cells > 4.0 { run.long() } else { run.slow() }));
     }
@@ -101,8 +101,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Claims with moduli ten and a hundred times larger. The disc is then closer to the rigid solution, so no reference is
-/// needed.
+/// Returns the claims with moduli ten and a hundred times as large. The disc is then closer to the rigid solution, so
+/// no elastic reference is needed.
 fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);

@@ -51,7 +51,7 @@ impl Impact {
         Self { speed: body.velocity.x, wave: (modulus / body.density).sqrt(), length, density: body.density }
     }
 
-    /// Returns the velocity of the right bar's centre of mass (m/s).
+    /// Returns the velocity of the right bar's centre of mass (m/s) at a time (s).
     fn velocity(&self, time: f64) -> f64 {
         self.speed * (0.5 * time * self.wave / self.length).min(1.0)
     }
@@ -61,16 +61,17 @@ impl Impact {
     }
 }
 
-/// Returns the width of a wave front after a path length 2L, over 2L.
+/// Returns the width of a wave front after a path length 2L, divided by 2L.
 fn width(resolution: Resolution) -> f64 {
     let Resolution::Grid { cells, .. } = resolution else { return f64::NAN };
     front(0.5 / cells, 1.0)
 }
 
-/// Momentum that a contact has not yet transferred when half of a front of width 1 has arrived.
+/// Momentum that the contact has not yet transferred when half of a front of width 1 has arrived, in units of the
+/// width.
 const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
-/// Returns the mean stress in the middle of the right bar from 0.7 to 1.3 transits L/c.
+/// Returns the mean stress (Pa) in the middle of the right bar from 0.7 to 1.3 transit times L/c.
 fn plateau(done: &FinishedRun) -> Result<f64, MissingData> {
     let impact = Impact::from_scene(&done.scene);
     let transit = impact.length / impact.wave;

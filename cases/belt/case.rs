@@ -13,7 +13,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
 /// Variant with a belt that stops.
 const STOPS: &str = "stops";
-/// Number of substeps of `rigid`.
+/// Number of substeps in 1/60 s of the solver `rigid`.
 const SUBSTEPS: u32 = 8;
 
 const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
@@ -38,7 +38,6 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Grain and belt.
 struct Belt {
     grain: OneGrain,
     /// Belt speed V (m/s).
@@ -70,7 +69,7 @@ impl Belt {
         self.grain.share() * self.speed
     }
 
-    /// Returns the time of sliding t_s (s).
+    /// Returns the duration t_s of sliding (s).
     fn sliding(&self) -> f64 {
         self.rolling() / self.push()
     }
@@ -85,7 +84,7 @@ impl Belt {
             State { x: 0.5 * v * slid + v * (t - slid), v, omega: -v / turn }
         };
         let (now, since) = (sped_up(t), sped_up((t - stop).max(0.0)));
-        // Superposition: from the stop on, a second belt runs backwards in addition to the first.
+        // Superposition: from the stop on, the motion due to a second belt, which runs backwards, is added.
         State { x: now.x - since.x, v: now.v - since.v, omega: now.omega - since.omega }
     }
 
@@ -95,24 +94,25 @@ impl Belt {
         self.speed * moment / (moment + arm * arm)
     }
 
-    /// Returns the largest delay of sliding (s) at a time step (s): the spring displacement over V, plus one step.
+    /// Returns the largest delay (s) until friction is fully mobilised, for a time step (s): the spring displacement
+    /// divided by V, plus one step.
     fn lag(&self, step: f64) -> f64 {
         self.grain.stretch(self.push()) / self.speed + step
     }
 
-    /// Returns the largest relative error of the displacement at t.
+    /// Returns the largest relative error of the displacement at t (s), for a time step (s).
     fn displaced(&self, t: f64, step: f64) -> f64 {
         (self.rolling() * self.lag(step) + self.grain.stretch(self.push())) / self.rigid(t).x
     }
 
-    /// Returns the largest error of the second sliding distance (m) due to the spring's oscillation at its start: a
-    /// velocity μ g/ω lasts f V/(μ g).
+    /// Returns the largest error of the distance of the second slide (m). The spring oscillates at the start of this
+    /// slide with a velocity of up to μ g/ω, and sliding lasts f V/(μ g).
     fn rung(&self) -> f64 {
         self.rolling() * self.grain.ringing(self.push()) / self.push()
     }
 
-    /// Returns the velocities after the first step (m/s) if the Coulomb limit does not hold for the dashpot: with a
-    /// belt that moves from step 1 on, and from step 0 on.
+    /// Returns the velocity after the first step (m/s) if the Coulomb limit does not apply to the dashpot: for a belt
+    /// that moves from step 1 on, and for a belt that moves from step 0 on.
     fn kicked(&self, scene: &Scene, step: f64) -> [f64; 2] {
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let spring = self.grain.tangential_stiffness / self.grain.mass * step;
@@ -128,12 +128,13 @@ fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> = VARIANTS.into_iter().flat_map(of_both).collect();
     claims.extend(stopped());
     claims.push(kick());
-    // At step 0, the belt moves for the dashpot of LIGGGHTS and rests for our dashpot: see `kick`.
+    // Damped runs against LIGGGHTS are left out. At step 0, the belt moves for the dashpot of LIGGGHTS and is at rest
+    // for our dashpot: see `kick`.
     claims.extend(programs::one_grain(&VARIANTS).into_iter().filter(|claim| !is_kicked(claim)));
     claims
 }
 
-/// Compares a quantity of the last state with the rigid solution.
+/// Compares a quantity of the last state with the rigid solution, in units of the rigid solution.
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let exact = pick(Belt::from_scene(&done.scene).rigid(t));
@@ -174,8 +175,8 @@ const NO_GRAIN: OneGrain = OneGrain {
     tangential_damping: f64::NAN,
 };
 
-/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
-/// solver-independent.
+/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
+/// nearly agree.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
     let (belt, step) = stiff(variant);
@@ -223,7 +224,8 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Returns the rounding error of a sum of as many steps as runs at overlap/R = 1e-3 take, in units of the velocity.
+/// Returns the tolerance for the rounding error of a sum over all steps of a run at overlap/R = 1e-3, relative to the
+/// velocity.
 fn rounding() -> Tolerance {
     let steps = 1.0 / (0.01 * 2.0 * (1e-3_f64 * 0.5 / 9.8).sqrt());
     computed(
@@ -232,7 +234,8 @@ fn rounding() -> Tolerance {
     )
 }
 
-/// Claims rolling at the end, to rounding, with the lever arm of each convention.
+/// Returns the claims on the final velocity of rolling, which agrees to rounding with the solution for the lever arm of
+/// each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, other| {
         let at_contact = solver == "dem:liggghts";
@@ -255,8 +258,8 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Claims on rapier, whose contacts have no compliance. Its error comes from its step and its overlap at rest (see
-/// `backspin`).
+/// Returns the claims on the solver `rigid` (rapier), whose contacts have no compliance. The error of `rigid` comes
+/// from the time step and from the overlap at rest (see `cases/src/rows/rigid.rs`).
 fn by_impulses(variant: &'static str) -> Vec<Claim> {
     let (belt, _) = stiff(variant);
     let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
@@ -289,8 +292,8 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Claims on a belt that stops: velocity and spin of the disc become zero. Its displacement is the velocity of rolling
-/// times the time of the stop.
+/// Returns the claims on a disc on a belt that stops. Velocity and spin become zero. The displacement is the velocity
+/// of rolling times the time at which the belt stops.
 fn stopped() -> Vec<Claim> {
     let (belt, step) = stiff(STOPS);
     let turning = || {
@@ -336,12 +339,13 @@ fn stopped() -> Vec<Claim> {
     ]
 }
 
-/// Returns true if a claim compares a LIGGGHTS run that has a dashpot along the belt.
+/// Returns true if a claim compares with a damped LIGGGHTS run, which has a dashpot along the belt.
 fn is_kicked(claim: &Claim) -> bool {
     claim.runs.iter().any(|run| run.solver == "liggghts") && claim.quantity.contains(", damped,")
 }
 
-/// Claims the velocity difference after the first step. The dashpot of LIGGGHTS acts at step 0, when our belt still rests.
+/// Returns the claim on the difference between LIGGGHTS and our solver in velocity after the first step. At step 0, the
+/// dashpot of LIGGGHTS acts, but our belt is still at rest.
 fn kick() -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| {
         Run::new("disc", solver, Resolution::TimeStep(1e-4)).adjusted("one step, overlap/R = 1e-3", |scene| {
@@ -395,7 +399,7 @@ mod tests {
 
     use super::*;
 
-    /// In the frame of the belt, the grain has an initial spin and velocity. Its motion ends as in `backspin` with R Ω₀ = V.
+    /// Checks that displacement and velocity equal those of `backspin` with the initial surface speed R Ω₀ = V.
     #[test]
     fn is_backspin_seen_from_the_belt() {
         let belt = Belt::from_scene(&CASE.variant("disc").unwrap());
@@ -406,7 +410,8 @@ mod tests {
         }
     }
 
-    /// The disc is at rest after f V T. It slides on the stopped belt as long as on the moving belt.
+    /// Checks that the disc is at rest after the displacement f V T, and that it slides as long on the stopped belt as
+    /// on the moving belt.
     #[test]
     fn a_belt_that_stops_brings_it_to_rest() {
         let belt = Belt::from_scene(&CASE.variant(STOPS).unwrap());

@@ -4,7 +4,7 @@ use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
-/// The time step of the paper's impact (Dosta et al. 2024).
+/// Time step of the impact in the paper (Dosta et al. 2024).
 const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
 
 pub(crate) static CASE: Case = Case {
@@ -14,8 +14,8 @@ pub(crate) static CASE: Case = Case {
             each step.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Each pair has one impact at one speed and one spin. LIGGGHTS runs without its tangential dashpot, which our law \
-               does not have. The tangential dashpots of the published codes are unknown.",
+    weakness: "Each pair has one impact at one speed and one spin. LIGGGHTS runs without its tangential dashpot, \
+               because our law has none. The tangential dashpots of the published codes are unknown.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -51,7 +51,7 @@ fn runs(variant: &'static str) -> [Run; 2] {
     SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
 
-/// Claims the force on the first grain of a pair, m Δv/Δt, over all steps.
+/// Returns the claim on the force m Δv/Δt on the first grain of a pair, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
     let allowed = rounding(
         1.0,
@@ -67,7 +67,7 @@ fn force(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// Claims the torque on the first grain of a pair, I Δω/Δt.
+/// Returns the claim on the torque I Δω/Δt on the first grain of a pair, over all steps.
 fn torque(variant: &'static str, about: &str) -> Claim {
     let allowed = rounding(
         1.0,
@@ -83,8 +83,8 @@ fn torque(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// Returns the largest difference between our rate and the external solver's, in units of its largest rate. A rate is
-/// the velocity change per step, times an inertia, over the step.
+/// Returns the largest difference between our rate and that of LIGGGHTS, in units of the largest rate of LIGGGHTS. A
+/// rate is the change of a velocity in a step, times mass or moment of inertia, divided by the step.
 fn rate(done: &[FinishedRun], columns: &[&str], inertia: f64) -> Result<Measurement, MissingData> {
     let [ours, theirs, ..] = done else { return Err(MissingData("second run to compare with".to_owned())) };
     let times = &theirs.series().time;

@@ -1,5 +1,5 @@
-//! A grain that two grains with prescribed motion carry along a circle. In one variant the contact normals rotate, and
-//! in another the contacts rotate about their normals.
+//! A grain between two grains that carry it along a circle with prescribed motion. In one variant the contact normals
+//! rotate, and in another the contacts rotate about their normals.
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;
@@ -10,7 +10,7 @@ const STEP: Level = LEVELS[2];
 
 pub(crate) static CASE: Case = Case {
     name: "carried-grain",
-    title: "A grain is carried round by two",
+    title: "A grain moves in a circle between two grains",
     claim: "Tangential springs between grains rotate with their contact: with its normal and about its normal.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
@@ -22,14 +22,15 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Parameters of the motion.
+/// Parameters of motion, springs and run that determine the exact position of the carried grain.
 struct Motion {
     /// Angular velocity Ω (rad/s).
     spin: Vector3<f64>,
     /// Frequency ω of the springs (rad/s).
     frequency: f64,
-    /// Largest overlap (m), and half the sum of overlap over distance at both contacts.
+    /// Largest overlap (m).
     overlap: f64,
+    /// Half the sum over both contacts of overlap divided by distance of centres.
     curved: f64,
     start: Vector3<f64>,
     radius: f64,
@@ -56,7 +57,8 @@ impl Motion {
         }
     }
 
-    /// Returns the largest error of the position (m). Lever arms matter if the axis is across the normals.
+    /// Returns the tolerance of the final position (m). If the axis of rotation is across the contact normals, it
+    /// includes an error due to lever arms.
     fn off(&self, across: bool) -> f64 {
         let (rate, distance) = (self.spin.norm(), self.start.norm());
         let phase = 0.25 * self.frequency * self.time;

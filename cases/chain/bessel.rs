@@ -3,7 +3,7 @@
 /// Returns J_0 … J_{orders−1} at x > 0 by Miller's downward recurrence, J_{n−1} = (2n/x) J_n − J_{n+1}, normalised by
 /// J_0 + 2 Σ J_{2k} = 1.
 pub(crate) fn bessel(x: f64, orders: usize) -> Vec<f64> {
-    // The start is far above x and the orders, so the effect of its arbitrary value vanishes.
+    // The recurrence starts at an order far above x and `orders`, so its arbitrary start value has no effect.
     let top = 2 * (orders.max(x.ceil() as usize) / 2) + 60;
     let mut values = vec![0.0; top + 2];
     values[top] = 1e-300;
@@ -32,7 +32,7 @@ pub(crate) fn velocity(n: usize, x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Compares with tabulated values, and with values of the chain that were computed by quadrature.
+    /// Compares the functions with tabulated values, and the velocities of the chain with values from quadrature.
     #[test]
     fn agrees_with_tables() {
         let values = bessel(1.0, 3);

@@ -95,7 +95,7 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.scale_normal(1.02));
         }))
         .fair_to_any();
-    // Rigid beads have no dispersion, and no unique solution when many beads are in contact at once.
+    // Rigid beads have no dispersion. If many beads are in contact at once, the solution is not unique.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")
         .run(Run::new(PLAIN, "rigid", rigid::DEFAULT).known(
             "contacts are rigid: an impulse passes through all beads in one step, and its distribution over beads in contact \

@@ -36,8 +36,8 @@ pub(crate) static CASE: Case = Case {
             and between equal and unequal spheres. Angular momentum about the contact is conserved on any branch.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "Each impact has one contact. Only friction and restitution influence the sliding branch: each tangential spring \
-               that reaches the limit soon passes. Mindlin's stiffness is plotted and not tested.",
+    weakness: "Each impact has one contact. Only friction and restitution influence the sliding branch: any tangential \
+               spring that soon reaches the Coulomb limit passes. Mindlin's stiffness is plotted and not tested.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
@@ -55,7 +55,7 @@ fn claims() -> Vec<Claim> {
         claims.extend(forces(run, &["contact.normal_force"], |scene, _| hertz(scene).1));
     }
     claims.push(force_that_moves());
-    // At a wall, both external solvers output the force that moved the grain.
+    // At a wall, LAMMPS and LIGGGHTS output the force that moved the grain.
     let damped = |solver| Run::new(DAMPED[0], solver, STEP.resolution);
     claims.extend(forces(damped, &["contact.normal_force"], |scene, _| hertz(scene).1));
     claims
@@ -67,7 +67,7 @@ fn law(scene: &Scene) -> ContactLaw {
     scene.law(scene.grains[0].material, partner).copied().unwrap_or_default()
 }
 
-/// Returns Hertz's k = (4/3)E*√R*, the effective mass and the approach velocity.
+/// Returns Hertz's stiffness k = (4/3)E*√R* (N/m^{3/2}), the effective mass (kg) and the approach velocity (m/s).
 fn impact(scene: &Scene) -> (f64, f64, f64) {
     let first = &scene.grains[0];
     let (radius, mass, speed) = match scene.grains.get(1) {
@@ -88,7 +88,7 @@ fn hertz(scene: &Scene) -> (f64, f64, f64) {
     (overlap, k * overlap.powf(1.5), 2.943_275_184 * overlap / speed)
 }
 
-/// Returns the largest value of a column, refined by a parabola through the three samples about it.
+/// Returns the largest sample, refined by a parabola through this sample and its two neighbours.
 fn peak(values: &[f64]) -> f64 {
     let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
     let (left, top, right) = (values[at - 1], values[at], values[at + 1]);
@@ -96,7 +96,8 @@ fn peak(values: &[f64]) -> f64 {
     if bend < 0.0 { top - (right - left).powi(2) / (8.0 * bend) } else { top }
 }
 
-/// Returns the time at which the overlap ends: the last sample in contact, extrapolated with its approach rate.
+/// Returns the time (s) at which the overlap ends. The overlap of the last sample in contact is extrapolated to zero,
+/// at the rate at which it decreased since the sample before.
 fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
     let overlap = done.column("contact.overlap")?;
     let time = &done.series().time;
@@ -141,7 +142,7 @@ fn elastic() -> Vec<Claim> {
     claims
 }
 
-/// Returns the damping ratio ζ of a coefficient of restitution.
+/// Returns the damping ratio ζ that gives a coefficient of restitution.
 fn damping_ratio(restitution: f64) -> f64 {
     let log = restitution.ln();
     -log / (PI * PI + log * log).sqrt()
@@ -157,7 +158,7 @@ fn rebound(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(-done.last("a.vz")? / done.scene.grains[0].velocity.z)
 }
 
-/// Returns the tolerance of a restitution for a dashpot that is half a step late.
+/// Returns the tolerance of a coefficient of restitution. It is the error due to a dashpot that is half a step late.
 fn late(variant: &str, restitution: f64) -> Tolerance {
     let error = |scene: Scene| {
         let ((k, mass, speed), (overlap, ..)) = (impact(&scene), hertz(&scene));
@@ -199,8 +200,8 @@ fn restitution() -> Vec<Claim> {
         .collect()
 }
 
-/// Returns the force (N) on the sphere of aluminium oxide that hits the plane with e = 0.5, with typed values: k
-/// δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ where positive. The damping ratio ζ is that of a contact that ends at zero force.
+/// Returns the force (N) on the sphere of aluminium oxide that hits the plane with e = 0.5, from literal numbers: k
+/// δ^{3/2} + √5 ζ √(k m) δ^{1/4} δ̇ if positive. The damping ratio ζ is that of a contact that ends at zero force.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     let (radius, density, modulus) = (0.0025_f64, 4000.0, 380.0e9 / (1.0 - 0.23 * 0.23));
     let stiffness = 4.0 / 3.0 * modulus * radius.sqrt();
@@ -209,8 +210,8 @@ fn damped_force(overlap: f64, rate: f64) -> f64 {
     if overlap > 0.0 { (stiffness * overlap.powf(1.5) + damping * overlap.powf(0.25) * rate).max(0.0) } else { 0.0 }
 }
 
-/// Claims that the contact force that `dem` records is the force that moves the grain. Its dashpot uses the velocity
-/// half a step earlier, which moved the sphere from the previous position to this one.
+/// Returns the claim that the contact force recorded by `dem` is the force that moves the grain. The dashpot uses the
+/// velocity half a step earlier, with which the sphere moved from the previous position to the present one.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .run(Run::new(DAMPED[0], "dem", STEP.resolution))
@@ -242,12 +243,13 @@ fn at_angle(variant: &'static str, degrees: f64) -> Run {
     })
 }
 
-/// Returns the tangential velocity after the impact over the tangential velocity before it.
+/// Returns the tangential velocity after the impact, divided by the tangential velocity before it.
 fn tangential(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// Returns tangential restitution and spin (rad/s) after an impact that slides throughout: ∫F_n dt = m(1+e)v.
+/// Returns the tangential restitution and the spin (rad/s) after an impact that slides throughout, with the normal
+/// impulse ∫F_n dt = m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
     let meeting = ImpactParameters::from_scene(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);
@@ -288,8 +290,9 @@ fn more_friction() -> Control {
     Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
 }
 
-/// Claims on a rigid-body engine, which has neither overlap nor duration but an exact restitution. It limits friction
-/// by μ m v_n, the impulse that stops the approach. Coulomb's limit is μ(1+e) m v_n, with the impulse of restitution.
+/// Returns the claims on the solver `rigid`, which has no overlap and no contact duration, but an exact restitution.
+/// The solver limits the friction impulse by μ m v_n, where m v_n is the impulse that stops the approach. Coulomb's
+/// limit is μ(1+e) m v_n, because it includes the impulse of restitution.
 fn rigid() -> Vec<Claim> {
     let rigid = |run: Run| Run { solver: "rigid", ..run.at(rigid::DEFAULT) };
     let oblique = || rigid(at_angle(OBLIQUE[0], 60.0));

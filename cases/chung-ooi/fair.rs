@@ -1,6 +1,6 @@
 //! Solver-independent claims: properties that any external solver with Hertz springs must satisfy in the eight tests,
-//! independent of conventions. They use only sampled positions, velocities and spins, because an external solver need
-//! not output contact forces.
+//! in any contact convention. The claims use only sampled positions, velocities and spins, because an external solver
+//! need not output contact forces.
 
 use super::forms::{ImpactParameters, restitution};
 use super::turning::{BALLS, PLANE, STICKING, elastic, sliding_along, spinning};
@@ -13,7 +13,7 @@ use grainbench_harness::prelude::*;
 const ANGLES: [f64; 2] = [40.0, 70.0];
 /// Impact angle at which the contact sticks (degrees from the normal).
 const STEEP: f64 = 20.0;
-/// Largest error of an integration scheme, for an impact of about a thousand steps.
+/// Largest relative error of a first-order integration scheme, for an impact of about a thousand steps.
 const FIRST_ORDER: f64 = 1e-3;
 const SCHEME: &str = "a first-order scheme has an error of about one step, and the impact takes a thousand steps or \
                       more";
@@ -51,8 +51,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.into_iter().map(asked).collect()
 }
 
-/// Makes a claim solver-independent. Its steps are three times as long as ours, because external solvers may take a
-/// thousand times our run time.
+/// Makes a claim solver-independent. The time step is three times as long as in our own claims, because external
+/// solvers may take a thousand times our run time.
 fn asked(mut claim: Claim) -> Claim {
     for run in claim.runs.iter_mut().filter(|run| run.resolution == STEP.resolution) {
         *run = run.at(LEVELS[1].resolution);
@@ -60,7 +60,7 @@ fn asked(mut claim: Claim) -> Claim {
     claim.fair_to_any_springs()
 }
 
-/// Returns the scene of a run. The claims use only valid scenes, so it exists.
+/// Returns the scene of a run; `None` if the scene is invalid, which occurs in no claim.
 fn scene(run: &Run) -> Option<Scene> {
     let mut scene = CASE.variant(run.variant).ok()?;
     if let Some((_, change)) = &run.adjustment {
@@ -69,8 +69,8 @@ fn scene(run: &Run) -> Option<Scene> {
     Some(scene)
 }
 
-/// Returns the largest overlap of the elastic impact over the smallest radius. Lever arms of friction differ by this
-/// fraction between R and R − overlap.
+/// Returns the largest overlap of the elastic impact, divided by the smallest radius. Lever arms of friction between R
+/// and R − overlap differ by this fraction.
 fn depth(run: &Run) -> f64 {
     let relative_depth = |scene: &Scene| {
         let radius = scene.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
@@ -79,8 +79,8 @@ fn depth(run: &Run) -> f64 {
     scene(run).as_ref().map_or(0.0, relative_depth)
 }
 
-/// Returns the overlap (m) from the displacement of the first sphere since first contact; twice the displacement if two
-/// equal spheres collide.
+/// Returns the overlap (m) at each sample. It is the displacement of the first sphere since first contact, or twice
+/// this displacement if two equal spheres collide.
 fn overlap(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let times = done.scene.grains.len() as f64;
     let start = done.scene.grains[0].position.z;
@@ -95,7 +95,7 @@ fn parted(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(time[last] + (time[last + 1] - time[last]) * overlap[last] / (overlap[last] - next))
 }
 
-/// Claims on the elastic impact of tests 1 and 2.
+/// Returns the claims on the elastic impact of tests 1 and 2.
 fn normal(variant: &'static str) -> [Claim; 3] {
     let run = || Run::new(variant, "dem", STEP.resolution);
     let stiffer = || Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01)));
@@ -126,8 +126,9 @@ fn normal(variant: &'static str) -> [Claim; 3] {
     ]
 }
 
-/// Claims the coefficient of restitution of test 3. The scene gives the dashpot. In some external solvers the dashpot
-/// may pull, and in others the contact ends at zero force. The claim accepts both coefficients.
+/// Returns the claim on the coefficient of restitution of test 3. The scene prescribes the damping ratio. In some
+/// external solvers the dashpot may pull, and in others the contact ends at zero force. The claim accepts the
+/// coefficient of either case.
 fn given_back(run: Run) -> Claim {
     let words = run.adjustment.as_ref().map_or("of the scene", |(name, _)| name);
     claim(format!("rebound velocity over impact velocity, {words}, or of a release at zero force"), "1")
@@ -150,8 +151,8 @@ fn normal_impulse(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(grain.mass * (done.last("a.vz")? - grain.velocity.z))
 }
 
-/// Claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from the measured
-/// normal impulse. The claim on the rebound tests the normal impulse itself.
+/// Returns the claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from
+/// the measured normal impulse. The claim on the rebound tests the normal impulse itself.
 fn sliding(run: &Run) -> [Claim; 2] {
     let sliding_claim =
         |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
@@ -196,11 +197,13 @@ fn wrong_inertia() -> Control {
     })
 }
 
-/// Claims the impulse of friction with a strong dashpot, whose effect on the Coulomb limit is a convention. The spring
-/// force alone gives 1 + e. A contact that never pulls gives 1 + e′, with the larger e′ of a release at zero force. The
-/// magnitude of a force that finally pulls adds e′ − e once more. A dashpot that counts in the limit pushes before
-/// Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if the dashpot is made
-/// for a release at zero force and the spring is incremental.
+/// Returns the claim on the impulse of friction with a strong dashpot, divided by μ times the impulse that stops the
+/// approach. The expected value is a band, because conventions differ in the force that enters the Coulomb limit.
+///
+/// The spring force alone gives 1 + e. A contact that never pulls gives 1 + e′, with the larger e′ of a release at zero
+/// force. The magnitude of a force that finally pulls adds e′ − e once more. If the dashpot force enters the limit, the
+/// contact sticks until Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if
+/// ζ gives e with a release at zero force and the spring is incremental.
 fn coulomb(run: Run) -> Claim {
     let given = scene(&run).as_ref().map(ImpactParameters::from_scene);
     let [low, high] = given.map_or([0.0; 2], |meeting| {
@@ -220,8 +223,8 @@ fn coulomb(run: Run) -> Claim {
         .refuses(Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2)))
 }
 
-/// Claims that angular momentum about the contact is conserved for sticking and sliding: I Δω = −a m Δv with the lever
-/// arm a of friction.
+/// Returns the claim that angular momentum about the contact is conserved, for sticking and for sliding: I Δω = −a m Δv
+/// with the lever arm a of friction.
 fn lever(run: Run, times: f64) -> Claim {
     let allowed = computed(
         times * depth(&run) + FIRST_ORDER,
@@ -245,7 +248,8 @@ fn lever(run: Run, times: f64) -> Claim {
         .refuses(wrong_inertia())
 }
 
-/// Claims that the momentum changes of test 8 are equal and opposite, although one sphere is 125,000 times as heavy.
+/// Returns the claims that the momentum changes of test 8 are equal and opposite, although one sphere is 125,000 times
+/// as heavy.
 fn momentum(run: &Run) -> [Claim; 2] {
     let momentum_claim = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")
@@ -269,7 +273,7 @@ fn momentum(run: &Run) -> [Claim; 2] {
     ]
 }
 
-/// Claims that test 7 has no friction, because both surfaces have the same velocity.
+/// Returns the claims that test 7 has no friction, because both surfaces have the same velocity.
 fn gears(variant: &'static str) -> [Claim; 3] {
     let gear_claim = |quantity: &str, unit, column: &'static str, is_spin: bool| {
         claim(quantity, unit)

@@ -8,17 +8,19 @@ use std::f64::consts::PI;
 /// Impact parameters of the first grain of a scene against the second grain or the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImpactParameters {
-    /// Velocity of its surface along x relative to the partner's surface, s = v_a − ω_a R_a − v_b − ω_b R_b (m/s).
+    /// Velocity along x of the first grain's surface relative to the partner's surface, s = v_a − ω_a R_a − v_b − ω_b
+    /// R_b (m/s).
     pub(super) slip: f64,
     /// Impulse m* v_n that stops the approach (N s).
     pub(super) stopping: f64,
     /// Friction coefficient μ.
     pub(super) friction: f64,
-    /// Coefficient of restitution e for which the law was made.
+    /// Coefficient of restitution e of a contact that ends when the overlap is zero.
     pub(super) restitution: f64,
-    /// Ratio e′ of the normal velocities if the contact ends as soon as its force is zero.
+    /// Coefficient of restitution e′ of a contact that ends as soon as its force is zero.
     pub(super) early: f64,
-    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the Coulomb limit by the normal spring.
+    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force, divided by the growth rate of the Coulomb
+    /// limit of the normal spring force.
     pub(super) steepness: f64,
 }
 
@@ -28,7 +30,7 @@ pub(super) fn restitution(ratio: f64) -> f64 {
 }
 
 impl ImpactParameters {
-    /// Reads a scene.
+    /// Reads the parameters from a scene.
     pub(super) fn from_scene(scene: &Scene) -> Self {
         let first = &scene.grains[0];
         let own = first.velocity.x - first.spin.y * first.radius;
@@ -47,21 +49,23 @@ impl ImpactParameters {
         }
     }
 
-    /// Returns the part of friction's impulse, in units of μ m* v_n, that is lost because the contact sticks at first:
-    /// 2ζ²/(2ρ/3 − 1) (derivation). It assumes a limit on spring and dashpot, the ζ whose release at zero force gives
-    /// e, and an incremental spring. Increments k_s Δs give 2/3 of the force k_s s, because k_s grows with √δ.
+    /// Returns the part of the friction impulse, in units of μ m* v_n, that is lost because the contact sticks at
+    /// first: 2ζ²/(2ρ/3 − 1) (derivation). This assumes that the limit applies to spring and dashpot, that ζ gives e
+    /// with a release at zero force, and that the tangential spring is incremental. Increments k_s Δs give 2/3 of the
+    /// force k_s s, because k_s grows with √δ.
     pub(super) fn latest_start(&self) -> f64 {
         2.0 * no_tension_ratio(self.restitution).powi(2) / (2.0 / 3.0 * self.steepness - 1.0)
     }
 
-    /// Returns friction's impulse on the first grain (N s), opposite to the slip: μ times `factor` times the impulse
-    /// that stops the approach. The factor is 1 + e if the limit is the spring's, or the limit of a force that never
-    /// pulls and leaves e.
+    /// Returns the impulse of friction on the first grain (N s), opposite to the slip: μ times `factor` times the
+    /// impulse that stops the approach. The factor is 1 + e if the Coulomb limit uses the spring force. It is also
+    /// 1 + e if the limit uses a total force that never pulls and gives the restitution e.
     pub(super) fn impulse(&self, factor: f64) -> f64 {
         -self.slip.signum() * self.friction * factor * self.stopping
     }
 
-    /// Returns the velocity along x (m/s) and the spin (rad/s) of the first grain after this impulse at the distance R.
+    /// Returns the velocity along x (m/s) and the spin (rad/s) of the first grain after the impulse of
+    /// [`Self::impulse`], which acts at the distance R.
     pub(super) fn after(&self, scene: &Scene, factor: f64) -> [f64; 2] {
         let (grain, impulse) = (&scene.grains[0], self.impulse(factor));
         [grain.velocity.x + impulse / grain.mass, grain.spin.y - impulse * grain.radius / grain.inertia]

@@ -1,5 +1,5 @@
-//! Tests 5 to 8 for our solvers: friction impulses to the digits that a convention fixes, and figures with the sticking
-//! branches.
+//! Tests 5 to 8 for our solver: the friction impulse of each convention within 10⁻³, and figures that include sticking
+//! contacts.
 
 use super::forms::ImpactParameters;
 use super::{SLIDING, STEP};
@@ -22,13 +22,13 @@ pub(super) fn sliding_along(variant: &'static str, along: f64) -> Run {
 /// shorter than the critical step of the studied contact.
 pub(super) const OF_TEST_8: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Returns the run of tests 6 and 8 with a spin (rad/s).
+/// Returns the run of test 6 or 8 with a spin (rad/s).
 pub(super) fn spinning(variant: &'static str, spin: f64) -> Run {
     Run::new(variant, "dem", if variant.starts_with('8') { OF_TEST_8 } else { STEP.resolution })
         .adjusted(&format!("{spin} rad/s"), move |scene| scene.grains[0].spin.y = spin)
 }
 
-/// Returns the run of tests 6 and 8 without a dashpot, for which the conventions agree.
+/// Returns the run of test 6 or 8 without a dashpot. All conventions agree in this run.
 pub(super) fn elastic(variant: &'static str, spin: f64) -> Run {
     spinning(variant, spin).adjusted(&format!("{spin} rad/s, e = 1"), move |scene| {
         scene.grains[0].spin.y = spin;
@@ -41,9 +41,9 @@ pub(super) fn claims() -> Vec<Claim> {
     runs.chain(BALLS.map(|variant| spinning(variant, 12.0))).flat_map(|run| sharp(&run)).collect()
 }
 
-/// Claims velocity and spin after a sliding contact. With Cundall & Strack's limit, which applies to the spring,
-/// friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the part before the tangential spring is
-/// displaced is missing.
+/// Returns the claims on velocity and spin after a sliding contact. With Cundall & Strack's limit, which applies to the
+/// spring, friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the impulse lacks the part
+/// before the tangential spring is displaced.
 fn sharp(run: &Run) -> Vec<Claim> {
     let sharp_claims =
         |solver: &'static str, other: &'static str, words: &str, factor: fn(&ImpactParameters) -> f64| {
@@ -78,8 +78,8 @@ fn sharp(run: &Run) -> Vec<Claim> {
     if run.variant.starts_with('5') { spring.to_vec() } else { spring.into_iter().chain(pushing).collect() }
 }
 
-/// Returns the paper's figure: the tangential surface velocity after the impact over the value before, both over the
-/// normal velocity.
+/// Returns the figures of the paper: the tangential surface velocity after the impact against its value before the
+/// impact, both divided by the normal velocity.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slides = |done: &FinishedRun, friction: f64| -> Option<(f64, f64)> {
         let (grain, before) = (&done.scene.grains[0], ImpactParameters::from_scene(&done.scene));

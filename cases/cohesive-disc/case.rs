@@ -42,8 +42,8 @@ fn with_cohesion(factor: f64) -> Run {
     })
 }
 
-/// Compares the growth rate of the surface's slip, d(v − ΩR)/dt, with the exact rate, in units of g sin θ. The rate is
-/// that of the second half of the run.
+/// Compares the growth rate of the surface's slip velocity, d(v − ΩR)/dt, with the exact rate, in units of g sin θ. The
+/// rate is measured over the second half of the run.
 fn slip(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let scene = &done.scene;
     let grain = OneGrain::from_scene(scene);
@@ -78,7 +78,8 @@ fn claims() -> Vec<Claim> {
         )
     });
     let ours = [
-        refusal("rigid", rigid::DEFAULT).refused("rapier's contacts only push", Control::without(Effect::Cohesion)),
+        refusal("rigid", rigid::DEFAULT)
+            .refused("the contacts of rapier can only push", Control::without(Effect::Cohesion)),
         strength_claim("growth of slip, cohesion a thousandth above the threshold", 1.001, "cohesion × .998", 0.998),
         strength_claim("growth of slip, cohesion a thousandth below the threshold", 0.999, "cohesion × 1.002", 1.002),
         strength_claim("growth of slip, half the cohesion", 0.5, "cohesion × 1.002", 1.002),

@@ -47,14 +47,14 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Columns of the momentum with their axes.
+/// Columns of the momentum, each with the number of its axis.
 const AXES: [(&str, usize); 2] = [("all.momentum_x", 0), ("all.momentum_y", 1)];
 
 fn along((_, axis): (&str, usize)) -> String {
     format!("momentum along {}, worst", ["x", "y"][axis])
 }
 
-/// Compares a momentum with its initial value, in units of the first grain's momentum.
+/// Compares a momentum component with its initial value, in units of the first grain's momentum.
 fn worst_momentum(done: &FinishedRun, (column, axis): (&str, usize)) -> Result<Measurement, MissingData> {
     let grains = &done.scene.grains;
     let start: f64 = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum();
@@ -74,7 +74,7 @@ fn worst_angular_momentum(done: &FinishedRun) -> Result<Measurement, MissingData
     Ok(Measurement::worst(&done.series().time, done.column("all.angular_momentum")?, |_| start, lever(&done.scene)))
 }
 
-/// Returns effective mass (kg), frequency ω (rad/s) and damping ratio ζ of the pair.
+/// Returns effective mass (kg), undamped frequency ω (rad/s) and damping ratio ζ of the pair.
 fn pair(scene: &Scene) -> (f64, f64, f64) {
     let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
     let mass = 1.0 / scene.grains.iter().map(|grain| 1.0 / grain.mass).sum::<f64>();
@@ -82,7 +82,7 @@ fn pair(scene: &Scene) -> (f64, f64, f64) {
     (mass, (law.normal_stiffness() / mass).sqrt(), viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()))
 }
 
-/// Returns the coefficient of restitution.
+/// Returns the coefficient of restitution. The dashpot may pull if `pulls`; otherwise the contact ends at zero force.
 fn exact_restitution(zeta: f64, pulls: bool) -> f64 {
     if pulls { (-PI * zeta / (1.0 - zeta * zeta).sqrt()).exp() } else { no_tension_restitution(zeta) }
 }
@@ -96,18 +96,18 @@ fn measured_restitution(done: &FinishedRun) -> Result<Measurement, MissingData> 
     Ok(Measurement::new(after / before, exact_restitution(zeta, pulls), 1.0))
 }
 
-/// Variant whose contact force is compared: ζ = 0.2 by β.
+/// Variant whose contact force is compared: ζ = 0.2, with damping proportional to the stiffness (β).
 const FELT: &str = DAMPED[3];
 /// Largest spring force without damping, v√(k m*) (N), at an approach velocity of v = 2 m/s.
 const LARGEST: f64 = 2.0 * 70.710_678_118_654_76;
 
-/// Returns the force (N) of the pair with ζ = 0.2, with typed values: k = 1e4 N/m, c = 2ζ√(k m*) = 28.284271 N s/m.
+/// Returns the force (N) of the pair with ζ = 0.2, from literal numbers: k = 1e4 N/m, c = 2ζ√(k m*) = 28.284271 N s/m.
 fn damped_force(overlap: f64, rate: f64) -> f64 {
     if overlap > 0.0 { 1.0e4 * overlap + 28.284_271_247_461_902 * rate } else { 0.0 }
 }
 
-/// Claims that the contact force recorded by `dem` is the force that moves the grains. The dashpot of `dem` uses the
-/// velocity half a step before the sample, (δₙ − δₙ₋₁)/Δt.
+/// Returns the claim that the contact force recorded by `dem` is the force that moves the grains. The dashpot of `dem`
+/// uses the velocity half a step before the sample, (δₙ − δₙ₋₁)/Δt.
 fn force_that_moves() -> Claim {
     claim("force of a damped contact, the rate of overlap taken half a step back, worst", "N")
         .run(Run::new(FELT, "dem", LEVELS[1].resolution))
@@ -118,7 +118,7 @@ fn force_that_moves() -> Claim {
                 let overlap = |at: usize| 2.0 - (b[at] - a[at]);
                 let rate = |at: usize| (overlap(at) - overlap(at - 1)) / (time[at] - time[at - 1]);
                 let force_at = |at: usize| damped_force(overlap(at), rate(at)).max(0.0);
-                // The discs start apart.
+                // The discs are not in contact at the first sample.
                 let expected: Vec<f64> = std::iter::once(0.0).chain((1..time.len()).map(force_at)).collect();
                 Ok(Measurement::worst_of(time, done[0].column("contact.normal_force")?, &expected, LARGEST))
             },
@@ -131,8 +131,9 @@ fn force_that_moves() -> Claim {
         .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
 }
 
-/// Claims the printed force of both external solvers. They evaluate the contact again at output, so the dashpot uses
-/// the velocity of the sample: half a step later than the force that moved the grains.
+/// Returns the claim on the contact force that LAMMPS or LIGGGHTS outputs. The program evaluates the contact again at
+/// output. Its dashpot then uses the velocity of the sample, half a step later than the velocity in the force that
+/// moved the grains.
 fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
     let because = "rounding only, because both programs use the same integration cycle; in units of the largest force \
@@ -183,13 +184,13 @@ fn first_order(variant: &str, resolution: Resolution) -> f64 {
     exact_restitution(zeta, false) * (2.0 * zeta + lag(zeta)) * phase + phase * phase
 }
 
-/// Returns one of sixteen steps from 0.04 of the critical step downwards, with a ratio of 1.3.
+/// Returns the time step number `at` (0 to 15): 0.04 of the critical step divided by 1.3^`at`.
 fn step(at: i32) -> Resolution {
     Resolution::CriticalFraction(0.04 * 1.3_f64.powi(-at))
 }
 
-/// Claims that the error is within the first-order bound for each of 16 steps. An order cannot be fitted, because the
-/// error of a single run depends on the position of the release within a step.
+/// Returns the claim that the error of the restitution is within the first-order bound for each of 16 time steps. An
+/// order cannot be fitted, because the error of a single run depends on the position of the release within a step.
 fn steps(variant: &'static str, solver: &'static str) -> Claim {
     claim("restitution's error over what is of first order in Δt, worst of 16 steps", "1")
         .runs((0..16).map(|at| Run::new(variant, solver, step(at))))
@@ -206,7 +207,7 @@ fn steps(variant: &'static str, solver: &'static str) -> Claim {
         .refuses(other(solver))
 }
 
-/// Returns the rounding error over the oblique impact: `count` times ε in each step.
+/// Returns the tolerance for rounding errors in the oblique impact: `count` times ε in each step.
 fn rounding(count: f64, because: &str) -> Tolerance {
     let steps = CASE.variant("oblique").ok().and_then(|scene| LEVELS[1].resolution.steps(&scene).ok());
     computed(count * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64), because)
@@ -218,7 +219,7 @@ fn momentum() -> Vec<Claim> {
             .run(Run::new("oblique", "dem", LEVELS[1].resolution))
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
             .within(rounding(2.0, "rounding of two velocities by ε per step; in units of the momentum of one grain"))
-            // All solvers have gravity.
+            // The control applies to all solvers, because all support gravity.
             .refuses(Control::scene("a gravity of 1e-9 m/s² along x and y", |scene| {
                 (scene.gravity.x, scene.gravity.y) = (1e-9, 1e-9);
             }))
@@ -263,8 +264,8 @@ fn angular_momentum() -> Vec<Claim> {
     .collect()
 }
 
-/// Claims the spin of the first disc in the oblique impact, in which friction is at the Coulomb limit in each step. The
-/// paper's limit applies to the spring.
+/// Returns the claim on the spin of the first disc in the oblique impact, in which friction is at the Coulomb limit in
+/// each step. In Cundall & Strack (1979), the limit applies to the spring force alone.
 fn at_the_limit() -> Claim {
     claim("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s")
         .run(Run::new("oblique", "dem:1979", LEVELS[1].resolution))
@@ -281,7 +282,8 @@ fn at_the_limit() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction while F_n pulls.
+/// Returns the claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction
+/// while F_n pulls.
 fn coulomb() -> Vec<Claim> {
     let oblique_claim =
         |quantity: &str, unit, solver| claim(quantity, unit).run(Run::new("oblique", solver, LEVELS[1].resolution));

@@ -73,8 +73,8 @@ fn softer() -> Control {
 }
 
 fn claims() -> Vec<Claim> {
-    // From 25 to 50 cells, our solver must improve more than a second-order method. The claim at 50 cells does not
-    // apply to other solvers.
+    // From 25 to 50 cells, the allowed error decreases by more than the factor 4 of a second-order method. The claim at
+    // 50 cells therefore does not apply to other solvers.
     let mut claims = vec![
         swinging(LEVELS[0], 0.037).fair_to_any_continuum(),
         swinging(LEVELS[1], 9e-3).fair_to_any_continuum(),

@@ -28,25 +28,25 @@ pub(crate) static CASE: Case = Case {
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.
 const FROM: f64 = 2.0;
-/// Time (s) up to which the results of two solvers agree in all compared digits.
+/// Time (s) up to which the kinetic energies of our solver and of LAMMPS or LIGGGHTS agree to rounding.
 const FORETOLD: f64 = 2.01;
-/// End of the controls (s).
+/// Time at which the runs of negative controls end (s).
 const CONTROL_END: f64 = 5.0;
-/// Coefficient of restitution.
+/// Coefficient of restitution of the scene.
 const RESTITUTION: f64 = 0.9;
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[0].resolution)
 }
 
-/// Returns time and 1/√T of each sample, with T = E/N.
+/// Returns time (s) and 1/√T (1/√J) of each sample. T = E/N is the kinetic energy per disc.
 fn course(done: &FinishedRun) -> Result<Vec<(f64, f64)>, MissingData> {
     let count = done.scene.grains.len() as f64;
     let samples = done.series().time.iter().zip(done.column(ENERGY)?);
     Ok(samples.map(|(&time, energy)| (time, (energy / count).powf(-0.5))).collect())
 }
 
-/// Returns the slope of 1/√T over t by least squares, from [`FROM`] on.
+/// Returns the slope of 1/√T against t (1/(s √J)) by least squares, from [`FROM`] on.
 fn cooling_rate(done: &FinishedRun) -> Result<f64, MissingData> {
     let course: Vec<(f64, f64)> = course(done)?.into_iter().filter(|(time, _)| *time >= FROM).collect();
     let count = course.len() as f64;
@@ -57,7 +57,7 @@ fn cooling_rate(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(cross / square)
 }
 
-/// Returns number density n, pair correlation χ at contact, diameter d and mass m.
+/// Returns number density n (1/m²), pair correlation χ at contact, diameter d (m) and mass m (kg).
 fn gas(scene: &Scene) -> (f64, f64, f64, f64) {
     let (radius, mass) = (scene.grains[0].radius, scene.grains[0].mass);
     let size = scene.domain.map_or(f64::NAN, |domain| (domain.high - domain.low).xy().product());
@@ -66,7 +66,7 @@ fn gas(scene: &Scene) -> (f64, f64, f64, f64) {
     (number, (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2), 2.0 * radius, mass)
 }
 
-/// Returns Enskog's cooling rate (derivation).
+/// Returns Enskog's cooling rate d(1/√T)/dt (1/(s √J), derivation).
 fn enskog(scene: &Scene) -> f64 {
     const A2: f64 = -0.027;
     let (number, correlation, diameter, mass) = gas(scene);
@@ -86,12 +86,13 @@ fn in_contact(stiffness: f64) -> f64 {
 /// Student's t of 23 degrees of freedom at 99 %.
 const STUDENT: f64 = 2.807;
 
-/// Returns the 99 % interval of one run against the mean of the prototype's 24 runs, relative to the cooling rate.
+/// Returns the 99 % interval of the difference between one run and the mean of the prototype's 24 runs, relative to the
+/// cooling rate.
 fn interval() -> f64 {
     STUDENT * SPREAD.value / COOLING_RATE.value * (1.0 + 1.0 / 24.0_f64).sqrt()
 }
 
-/// Claims the cooling rate of hard discs, for a stiffness k (N/m).
+/// Returns the claim that a gas with the contact stiffness k (N/m) has the cooling rate of hard discs.
 fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
         .run(run)
@@ -105,10 +106,11 @@ fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
         .refuses(deader())
 }
 
-/// Name of the negative control.
+/// Name of the negative control in the comparisons with LAMMPS and LIGGGHTS.
 const LIVELIER: &str = "dashpots of e = .92 for .9";
 
-/// Returns the control of claims without another program. Both of these claims use its run.
+/// Returns the negative control of claims without LAMMPS and LIGGGHTS. Claims on the same run share one run of the
+/// control.
 fn deader() -> Control {
     Control::scene("dashpots of e = .86 for .9", |scene| {
         damp(scene, 0.86);
@@ -116,13 +118,13 @@ fn deader() -> Control {
     })
 }
 
-/// Changes the dashpots. Half of the run time is enough to detect the wrong slope.
+/// Changes the dashpots to e = 0.92 and shortens the run, which remains long enough to detect the wrong slope.
 fn livelier(scene: &mut Scene) {
     damp(scene, 0.92);
     scene.duration = Duration::Seconds(CONTROL_END);
 }
 
-/// Sets the dashpots to another coefficient of restitution.
+/// Sets the dashpots to a coefficient of restitution.
 fn damp(scene: &mut Scene, restitution: f64) {
     // ζ = −ln e/√(π² + ln² e).
     let ratio = -restitution.ln() / PI.hypot(restitution.ln());
@@ -182,7 +184,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let ours = runner.run(&run(PLAIN, "dem"))?;
     let mut curves = vec![];
     for (label, stroke, done) in std::iter::once(("dem", Stroke::Line, ours.clone())).chain(
-        // Without the external solver and its stored run, there is no curve.
+        // LAMMPS or LIGGGHTS has no curve if it is not installed and no run of it is stored.
         PAIRS.iter().filter_map(|pair| Some((pair[1], Stroke::Markers, runner.run(&run(PLAIN, pair[1])).ok()?))),
     ) {
         curves.push(Curve::new(label, stroke, course(&done).unwrap_or_default()));

@@ -22,11 +22,11 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Time steps of the runs, as fractions of the critical time step.
+/// Time steps of the runs in the figure, as fractions of the critical time step.
 const FRACTIONS: [f64; 3] = [0.1, 0.03, FINEST];
 const FINEST: f64 = 0.01;
 
-/// Returns a run over the same simulated time at any step: the time of 10⁵ steps at the finest step.
+/// Returns the run at a time step. The simulated time is the same for each time step: 10⁵ of the finest steps.
 fn run(fraction: f64) -> Run {
     let cycles = (1e5 * FINEST / fraction).round() as u64;
     Run::new(PLAIN, "dem", Resolution::CriticalFraction(fraction)).adjusted(&format!("{cycles} cycles"), move |scene| {

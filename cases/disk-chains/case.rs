@@ -1,4 +1,4 @@
-//! Arrival of force in chains of discs struck at one end (2001 paper, Figs 9 to 11).
+//! Arrival of force in chains of discs struck at one end (Bardenhagen et al. 2001, Figs 9 to 11).
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -19,12 +19,12 @@ const STEP: Level = LEVELS[2];
 const ARRIVED: f64 = 0.1;
 /// Longitudinal wave speed of the paper's material (m/s). The unit of time is the transit of one disc, d/c.
 const WAVE_SPEED: f64 = 10_208.355_710_680_81;
-/// Source of the paper's order of the chains.
+/// Source of the claims that force arrives earlier in one chain than in another.
 const FASTER: Source = Source::Printed(
     &bardenhagen_2001::WORK,
     "text to Figs 10 and 11: fringes pass the line, and the glued zig-zag, much faster than the zig-zag that slips",
 );
-/// Largest ratio of arrival times that counts as sooner. The paper states no ratio.
+/// Largest ratio of arrival times that counts as an earlier arrival. The paper states no ratio.
 const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
@@ -69,7 +69,7 @@ fn first_above(done: &FinishedRun, column: &str, threshold: f64) -> Result<f64, 
     Ok(time[at - 1] + share * (time[at] - time[at - 1]))
 }
 
-/// Returns the arrival time of force at the contact of a disc with the next one (s).
+/// Returns the arrival time (s) of force at the contact between a disc and the next disc.
 fn arrival(done: &FinishedRun, first: usize) -> Result<f64, MissingData> {
     first_above(done, &format!("{first}-{}.normal_force", first + 1), threshold(&done.scene))
 }
@@ -81,7 +81,8 @@ fn duration(scene: &Scene) -> f64 {
     }
 }
 
-/// Returns the run with a thousandth of the striker's speed, so that the geometry remains that of the modal solution.
+/// Returns the run with a thousandth of the striker's speed, so that the geometry hardly changes, as the modal solution
+/// assumes.
 fn gentle(variant: &'static str) -> Run {
     Run::new(variant, "dem", STEP.resolution).adjusted("striker at a thousandth of its speed", |scene| {
         scene.walls[0].motion.phases[0].velocity *= 1e-3;
@@ -100,7 +101,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Claims the arrival at a contact against the modal solution.
+/// Returns the claim that the arrival time of force at a contact agrees with the modal solution.
 fn exact(variant: &'static str, first: usize) -> Claim {
     claim(format!("arrival of force between discs {first} and {}", first + 1), "s")
         .run(gentle(variant))
@@ -120,7 +121,8 @@ fn exact(variant: &'static str, first: usize) -> Claim {
         }))
 }
 
-/// Claims the force between the first two discs of the sticking chain, as long as no contact of the assembly opens.
+/// Returns the claim on the force between the first two discs of the sticking chain, until a contact of the assembly
+/// opens.
 fn glued() -> Claim {
     claim("force between discs 1 and 2 until a contact opens, worst", "N")
         .run(gentle(GLUED))
@@ -144,25 +146,29 @@ fn glued() -> Claim {
         }))
 }
 
-/// Claims that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the paper.
+/// Returns the claim that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the
+/// paper.
 fn sooner(variant: &'static str, chain: &str) -> Claim {
     claim(format!("arrival at disc 4 of the {chain}"), "1")
         .run(Run::new(variant, "dem", STEP.resolution))
         .run(Run::new("zig-zag", "dem", STEP.resolution))
         .at_most(SOONER, FASTER, |done| Ok(arrival(&done[0], 3)? / arrival(&done[1], 3)?))
-        .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
+        .within(exactly(
+            "the paper states an order of fringes and no ratio; earlier by a hundredth or more is required",
+        ))
         .refuses(Control::scene("the slipping zig-zag four times as stiff", |scene| {
             let slips = scene.laws.iter().flatten().any(|law| law.friction == 0.5);
             scene.change_laws(|law| law.scale_normal(if slips { 4.0 } else { 1.0 }));
         }))
 }
 
-/// Claims the arrival for rigid contacts, through which an impulse passes the whole chain in one step.
+/// Returns the claim on the arrival time for rigid contacts, for which an impulse passes through the whole chain in one
+/// step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
         .run(Run::new("line", "rigid", rigid::DEFAULT)
             .known("contacts are rigid: an impulse passes through all discs in one step, like a wave of infinite speed")
-            // No arrival is earlier than the impact: −1.
+            // The relative error is at least −1, because no arrival is earlier than the impact.
             .up_to(1.0))
         .equals(Source::Derived("modes of the assembly (derivation)"), |done| {
             let scene = &done[0].scene;

@@ -2,8 +2,8 @@
 //!
 //! Stress counts as arrived when the difference of the principal stresses at a disc's centre, which fringes show, first
 //! exceeds a tenth of ρcv. Times are in transits of a disc, d/c. Arrivals depend on the contact stiffness at first
-//! contact. Our contacts are compared with finite elements (derivation), the papers' nodal contact with a prototype of
-//! the same method.
+//! contact. Our contacts are compared with finite elements (derivation). The nodal contact of the papers is compared
+//! with a prototype of the same method.
 
 use super::{FASTER, SOONER, WAVE_SPEED, fringes};
 use crate::sources::literature::bardenhagen_2001::FRINGES_SLOWER;
@@ -20,7 +20,7 @@ const ARRIVED: f64 = 0.1;
 /// The paper's second Poisson's ratio, at the same longitudinal modulus.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.48;
 
-/// Returns a grid with `cells` cells a radius and a smaller time step than usual, for the striker.
+/// Returns a resolution with `cells` cells per radius. The time step is smaller than usual because of the striker.
 pub(super) const fn grid(cells: f64, points: u32) -> Resolution {
     Resolution::Grid { cells, points, courant: 0.3 }
 }
@@ -59,7 +59,7 @@ fn set_poisson_ratio(scene: &mut Scene, poisson: f64) {
     }
 }
 
-/// Returns the run of the line with the other Poisson's ratio, for which waves in discs are slower.
+/// Returns the run of the line with ν = 0.48, for which waves in discs are slower.
 fn slower(solver: &'static str, resolution: Resolution) -> Run {
     Run::new("line", solver, resolution).adjusted("elastic, ν = .48", |scene| {
         watch(scene, 21.0);
@@ -88,7 +88,7 @@ fn arrival(done: &FinishedRun, disc: usize) -> Result<f64, MissingData> {
     Ok((time[at - 1] + share * (time[at] - time[at - 1])) * WAVE_SPEED / (2.0 * scene.grains[0].radius))
 }
 
-/// Returns the mean delay from one disc to the next (d/c), from the second to the fourth.
+/// Returns the mean delay of stress from one disc to the next (d/c), from the second to the fourth disc.
 fn delay(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(0.5 * (arrival(done, 4)? - arrival(done, 2)?))
 }
@@ -116,7 +116,7 @@ pub(super) fn claims() -> Vec<Claim> {
         );
     }
     // On still finer grids, two implementations of nodal contact differ by a fifteenth, and neither approaches the
-    // finite elements.
+    // finite-element result.
     let too_fast = "nodal contact joins the discs over a region from the start: the wave is too fast, and slows down \
                     with each refinement";
     claims.push(
@@ -142,7 +142,10 @@ pub(super) fn claims() -> Vec<Claim> {
                 .run(run(variant, "mpm", grid(8.0, 2), 15.0))
                 .run(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
                 .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))
-                .within(exactly("the paper states an order of fringes and no ratio: sooner by a hundredth or more"))
+                .within(exactly(
+                    "the paper states an order of fringes and no ratio; earlier by a hundredth or more is \
+                                 required",
+                ))
                 .refuses(
                     Control::scene("the slipping zig-zag four times as stiff", |scene| {
                         if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
@@ -165,7 +168,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
         ("line, mpm:2001", run("line", PAPER, grid(8.0, 1), 15.0)),
         ("line, springs twice as stiff", run("line", STIFF, grid(8.0, 2), 15.0)),
     ];
-    // No claim of the quick tier needs the last two.
+    // No claim of the quick tier needs the last two runs.
     let count = if runner.is_thorough() { shown.len() } else { 3 };
     for (label, run) in shown.into_iter().take(count) {
         let done = runner.run(&run)?;

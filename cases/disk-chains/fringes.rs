@@ -1,8 +1,8 @@
 //! Photoelastic fringes in the discs at the paper's frame times, and an animation of the line.
 //!
 //! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here c is
-//! fitted once, also to the line: in its last frame, the first grey fringe, cos(Δσ/c) = 0, is at the centre of the
-//! fourth disc. The zig-zags use the same c.
+//! fitted once, also to the line. In the last frame of the line, the first grey fringe, cos(Δσ/c) = 0, is at the centre
+//! of the fourth disc. The zig-zags use the same c.
 
 use super::WAVE_SPEED;
 use super::elastic::{grid, principal_difference, run};
@@ -20,7 +20,7 @@ struct Chain {
     frames: [f64; 3],
     /// Times of the frames in the paper's experiment, in transits of a disc.
     experiment: [f64; 3],
-    /// The paper's observation in these frames.
+    /// Observation of the paper in these frames, for the caption.
     seen: &'static str,
 }
 
@@ -38,15 +38,15 @@ const CHAINS: [Chain; 3] = [
         title: "zig-zag, μ = .5, Fig. 10",
         frames: [3.0, 6.0, 9.0],
         experiment: [5.3, 10.5, 15.8],
-        seen: "As in the paper the load first goes from contact to wall, and on to the next disc when its contact \
-               sticks.",
+        seen: "As in the paper, the load first goes from the contact to the wall, and passes to the next disc when its \
+               contact sticks.",
     },
     Chain {
         variant: "zig-zag-glued",
         title: "glued zig-zag, Fig. 11",
         frames: [1.4, 3.6, 5.8],
         experiment: [1.6, 4.2, 6.8],
-        seen: "As in the paper the load first goes from contact to contact, and to the walls later.",
+        seen: "As in the paper, the load first goes from contact to contact, and later to the walls.",
     },
 ];
 /// Number of frames of the animation, a quarter of a transit apart.
@@ -73,7 +73,7 @@ fn at(done: &FinishedRun, transits: f64) -> Option<&Snapshot> {
     done.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
-/// Returns the fringe constant (Pa) fitted to the line (see the head of this file).
+/// Returns the fringe constant (Pa) fitted to the line, as described at the top of this file.
 fn constant(line: &FinishedRun) -> f64 {
     let time = CHAINS[0].frames[2] * transit(&line.scene);
     let sample = line.series().time.iter().position(|&sampled| sampled >= time).unwrap_or_default();

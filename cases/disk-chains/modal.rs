@@ -13,14 +13,15 @@
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-/// A spring: the coefficients of its displacement on (x, y, θ) of all discs, and its stiffness.
+/// Spring between two discs or between a disc and a wall. `stretch` contains the derivatives of the spring displacement
+/// with respect to (x, y, θ) of all discs.
 struct Spring {
     stretch: DVector<f64>,
     stiffness: f64,
     is_shear: bool,
-    /// The two discs, if the spring is between discs.
+    /// The two discs; `None` for a spring at a wall.
     pair: Option<[usize; 2]>,
-    /// Overlap per unit of the striker's displacement.
+    /// Overlap per unit of the striker's displacement: 1 for springs at the striker, otherwise 0.
     driven: f64,
 }
 
@@ -37,7 +38,7 @@ pub(super) struct Modes {
     /// Columns M^{-1/2} v of all modes.
     shapes: DMatrix<f64>,
     frequency: Vec<f64>,
-    /// Generalised force of the drive per unit of its displacement.
+    /// Generalised force of the striker on each mode, per unit of the striker's displacement.
     drive: Vec<f64>,
     speed: f64,
 }
@@ -87,12 +88,14 @@ impl Modes {
         spring.map_or(f64::NAN, |spring| spring.stiffness * spring.overlap(&displacement, self.speed * time))
     }
 
-    /// Returns the time at which a contact of the assembly first pulls and opens (s), within `until` (s).
+    /// Returns the time at which a contact of the assembly first pulls and opens (s), within `until` (s). NaN if no
+    /// contact opens.
     pub(super) fn first_opening(&self, until: f64) -> f64 {
         let pull = |time: f64| {
             let displacement = self.displacement(time);
             let normal = self.springs.iter().filter(|spring| !spring.is_shear);
-            // Distant contacts pull slightly before the force arrives. This tolerance does not count it as opening.
+            // Distant contacts pull slightly before the force arrives. A tension within this tolerance does not count
+            // as opening.
             let felt = 1e-2 * self.speed * time;
             normal.map(|spring| -spring.overlap(&displacement, self.speed * time) - felt).fold(f64::MIN, f64::max)
         };
@@ -112,7 +115,8 @@ impl Modes {
     }
 }
 
-/// Returns the time at which a function of time first exceeds a threshold, by a scan and bisection.
+/// Returns the time at which a function of time first exceeds a threshold, by a scan and bisection. NaN if it does not
+/// up to `until` (s).
 fn first_above(value: impl Fn(f64) -> f64, threshold: f64, until: f64) -> f64 {
     const SCAN: usize = 1000;
     let time = |step: usize| until * step as f64 / SCAN as f64;

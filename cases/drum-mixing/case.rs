@@ -1,5 +1,5 @@
-//! Two kinds of spheres in a rotating drum. The large drum starts from the published state if the user has its data. A
-//! small drum starts from our own state.
+//! Two kinds of spheres in a rotating drum. The large drum starts from the published initial state if the user provides
+//! its data file. A small drum starts from our own bed.
 
 #[path = "ladder.rs"]
 mod ladder;
@@ -29,8 +29,8 @@ pub(crate) static CASE: Case = Case {
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
     weakness: "The published initial state is not part of the repository. Without it the claims that need it are \
-               `not-available`, and the other claims test 0.06 s of a small drum with little mixing. After 1 s the published \
-               codes differ by more than 1 %, and nothing is tested.",
+               `not-available`. The remaining claims test 0.06 s of a small drum with little mixing. After 1 s the \
+               published codes differ by more than 1 %, and nothing is tested.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -41,19 +41,19 @@ pub(crate) static CASE: Case = Case {
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 
-/// The paper's drum with its published start.
+/// Drum of the paper with the published initial state.
 static PUBLISHED: Data = Data {
     name: "published",
-    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` file of 38,000 grains; \
-            `grainbench run drum-mixing --data DIR` takes it from the folder DIR",
+    needs: "it starts from the published initial state of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` \
+            file of 38,000 grains; `grainbench run drum-mixing --data DIR` reads it from the folder DIR",
     scene: published,
 };
 
-/// Returns the scene of the drum with the start in a folder.
+/// Returns the scene of the drum with the initial state from a folder.
 fn published(folder: &Path) -> Result<Scene, SceneDataError> {
     let start = start_in(folder).map_err(|error| SceneDataError::Wrong(format!("{}: {error}", folder.display())))?;
     let start = start.ok_or_else(|| {
-        let expected = "expected the start of the drum, a file whose name ends in `.xyz`, found none";
+        let expected = "expected the initial state of the drum, a file whose name ends in `.xyz`, found none";
         SceneDataError::Absent(format!("{}: {expected}", folder.display()))
     })?;
     let files = read_start(&start).map_err(|error| SceneDataError::Wrong(error.to_string()))?.files();
@@ -61,9 +61,10 @@ fn published(folder: &Path) -> Result<Scene, SceneDataError> {
     made_of(&source, &files).map_err(SceneDataError::Wrong)
 }
 
-/// Tolerances that were required beforehand, with the time up to which they apply.
-const EARLY: (f64, &str) = (0.005, "required in advance: .5 % of either code until .5 s");
-const LATE: (f64, &str) = (0.01, "required in advance: 1 % of either code until 1 s");
+/// Tolerance up to 0.5 s, required beforehand, and its reason.
+const EARLY: (f64, &str) = (0.005, "required in advance: .5 % relative to each code until .5 s");
+/// Tolerance from 0.6 s to 1 s, required beforehand, and its reason.
+const LATE: (f64, &str) = (0.01, "required in advance: 1 % relative to each code until 1 s");
 
 fn claims() -> Vec<Claim> {
     let mut claims = vec![
@@ -82,7 +83,7 @@ fn claims() -> Vec<Claim> {
     claims.extend(ladder::claims());
     for ours in [SIDES[0], "dem"] {
         let run = |solver| Run::new(PLAIN, solver, LEVELS[0].resolution);
-        // Each run takes two seconds.
+        // Each run takes two seconds, so the additional run of `dem` is in the standard tier.
         let both = || if ours == SIDES[0] { SIDES.map(run) } else { [run(ours).slow(), run(SIDES[1])] };
         // One control run serves both claims.
         let smooth = || Control::ours(SMOOTH, |scene| rub(scene, 0.0));
@@ -92,7 +93,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns a negative control that reads the counts in the other lower quarter.
+/// Returns a negative control that reads the counts in the other lower quarter of the drum.
 fn beside() -> Control {
     Control::misread("counted on the other side, x > 0", zones::on_the_other_side)
 }
@@ -107,7 +108,7 @@ fn backwards(scene: &mut Scene) {
     }
 }
 
-/// Multiplies the friction of all contacts with the drum.
+/// Multiplies the friction of all contacts with the drum (material `steel`).
 fn rub(scene: &mut Scene, factor: f64) {
     let Some(steel) = scene.materials.iter().position(|name| name == "steel") else { return };
     let count = scene.materials.len();
@@ -118,12 +119,13 @@ fn rub(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// Returns the run from the published start.
+/// Returns the run from the published initial state.
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
 }
 
-/// Claims the counts of M1 in zone 2 between two times. The largest difference from either code decides.
+/// Returns the claim on the number of M1 spheres in zone 2 between two times (s). The result is the largest relative
+/// difference from LIGGGHTS or MUSEN.
 fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -> ClaimWithTolerance {
     claim(quantity, "1")
         .run(of_paper())
@@ -141,32 +143,32 @@ fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -
         .within(required(allowed, because))
 }
 
-/// Returns the count of M1 in zone 2 at a time.
+/// Returns the number of M1 spheres in zone 2 at a time (s).
 fn counted(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
     let table = done.table(zones::NAME)?;
     let column = |name: &str| table.column(name).ok_or_else(|| MissingData(format!("column `{name}`")));
     let times = column("time")?;
-    // A snapshot is taken at the nearest step.
+    // Snapshots are taken at whole steps, so their times may differ slightly from the compared times.
     let place = times.iter().position(|at| (at - time).abs() < 1e-5);
     place
         .map(|place| column(COUNTED).map(|counts| counts[place]))
         .unwrap_or_else(|| Err(MissingData(format!("count at {time} s"))))
 }
 
-/// Claims the position of one grain against LIGGGHTS before rounding errors have grown. Afterwards they grow tenfold in
-/// about a hundred steps.
+/// Returns the claim that the position of one grain agrees with LIGGGHTS before rounding errors have grown. Later,
+/// rounding errors grow tenfold in about a hundred steps.
 fn beginning() -> Claim {
     let runs = SIDES.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution));
     bulk::beginning("position of a grain of the bed over .3 ms, worst", runs)
 }
 
-/// Claims a time average from the time at which the bed moves with the drum.
+/// Returns the claim on a time average from 0.03 s, when the bed moves with the drum, to the end of the run.
 fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], control: Control) -> Claim {
     bulk::mean(&format!("mean {words} from .03 to .06 s"), unit, (column, 0.03), runs, control)
 }
 
-/// Returns the figures: counts in zone 2 over time with those of the codes, if the published start is given;
-/// acceleration of the small drum's bed.
+/// Returns the figures. The first shows the number of M1 spheres in zone 2 over time, for our run and for the published
+/// codes, if the published initial state is available. The second shows the angular momentum of the small drum's bed.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = Vec::new();
     match runner.run(&of_paper()) {
@@ -176,7 +178,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     }
     let mut curves = Vec::new();
     for (solver, stroke) in SIDES.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
-        // Without the external solver and its stored run, there is no curve.
+        // A solver has no curve if it is not installed and no run of it is stored.
         if let Ok(done) = runner.run(&Run::new(PLAIN, solver, LEVELS[0].resolution)) {
             let values = done.column("all.angular_momentum_y").unwrap_or_default();
             let points = done.series().time.iter().zip(values).map(|(time, value)| (time * 1e3, -value * 1e6));

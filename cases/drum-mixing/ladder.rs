@@ -1,4 +1,5 @@
-//! Effect of half and twice the time step on the count, compared with the effect of rounding.
+//! Effect of half and of twice the time step on the number of M1 spheres in zone 2, compared with the effect of
+//! rounding.
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
 use grainbench_harness::claim::ClaimWithTolerance;
@@ -9,11 +10,13 @@ use std::path::Path;
 
 /// Time up to which runs are compared (s).
 const UNTIL: f64 = 0.5;
-/// Time steps (s): half the step of the case, a step that differs from it by a millionth, and twice the step.
+/// Half the time step of the case (s).
 const HALF: f64 = 1.5e-6;
+/// Time step of the case, increased by a millionth (s).
 const ROUNDED: f64 = 3.000_003e-6;
+/// Twice the time step of the case (s).
 const TWICE: f64 = 6e-6;
-/// The paper's drum up to this time.
+/// Drum of the paper up to the time [`UNTIL`].
 static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
 
 fn shorter(folder: &Path) -> Result<Scene, SceneDataError> {
@@ -24,7 +27,7 @@ fn with(step: f64) -> Run {
     Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER).read_by(ZONES).long().kept()
 }
 
-/// Claims the counts with other steps against the counts with the step of the case.
+/// Returns the claims that runs with other time steps give the counts of the run with the time step of the case.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = [("half the step", HALF), ("a step longer by a millionth", ROUNDED), ("twice the step", TWICE)];
     steps.into_iter().map(|(words, step)| worst(words, with(step)).refuses(beside())).collect()

@@ -4,13 +4,13 @@ use grainbench_harness::reading::{Reader, Reading, Table};
 use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;
 
-/// Reading of each snapshot.
+/// Evaluation of each snapshot: counts of M1 spheres in two zones.
 pub(super) const ZONES: Reading = Reading { name: "zones of the drum", begin };
-/// Name of the table of the reading.
+/// Name of the table with the counts of M1 spheres.
 pub(super) const NAME: &str = "zones";
-/// Column of M1 in zone 2: x < 0 and z < 0.
+/// Column with the number of M1 spheres in zone 2: x < 0 and z < 0.
 pub(super) const COUNTED: &str = "zone_2";
-/// Columns of the table; `beside` is M1 with x > 0 and z < 0.
+/// Columns of the table. `beside` is the number of M1 spheres with x ≥ 0 and z < 0.
 const COLUMNS: [&str; 3] = ["time", COUNTED, "beside"];
 
 struct Zones {
@@ -38,7 +38,7 @@ impl Reader for Zones {
     }
 }
 
-/// Swaps zone 2 and the other lower quarter, for a control.
+/// Swaps the counts of zone 2 and of the other lower quarter, for a negative control.
 pub(super) fn on_the_other_side(tables: &mut [Table]) {
     for table in tables.iter_mut().filter(|table| table.name == NAME) {
         table.values.swap(1, 2);

@@ -38,18 +38,19 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Breathing mode of a ring, U(r) = s_Y(b) J₁(kr) − s_J(b) Y₁(kr).
+/// Breathing mode of a ring, U(r) = σ_Y(b) J₁(kr) − σ_J(b) Y₁(kr). σ_J(b) and σ_Y(b) are the stresses σ_rr of J₁(kr)
+/// and Y₁(kr) at the outer radius b.
 #[derive(Clone, Copy, Debug)]
 struct Mode {
     /// Inner and outer radius (m).
     radii: [f64; 2],
     /// M = λ + 2G and G (Pa).
     moduli: [f64; 2],
-    /// √(M/ρ) (m/s).
+    /// Wave speed √(M/ρ) (m/s).
     speed: f64,
-    /// k (1/m).
+    /// Wave number k (1/m).
     wave_number: f64,
-    /// s: initial velocity over the radius (1/s).
+    /// s: initial velocity divided by the radius (1/s).
     stretch: f64,
 }
 
@@ -77,7 +78,7 @@ impl Mode {
             .map(|(zeroth, first)| long * wave_number * zeroth - 2.0 * shear * first / radius)
     }
 
-    /// Returns the root within half of a guess.
+    /// Returns the wave number between 0.5 and 1.5 times a guess at which both radii are free of traction.
     fn root(&self, guess: f64) -> Option<f64> {
         let free = |wave_number: f64| {
             let [[ja, ya], [jb, yb]] = self.radii.map(|radius| self.traction(wave_number, radius));
@@ -137,7 +138,7 @@ fn radial(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     Ok(side?.iter().zip(corner).map(|(side, corner)| 0.5 * (side + corner)).collect())
 }
 
-/// Returns the period (s), from the first to the last inward zero crossing of the displacement.
+/// Returns the mean period (s) between the first and the last inward zero crossing of the displacement.
 fn period(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, place) = (&done.series().time, radial(done)?);
     let inwards: Vec<f64> = (1..place.len())
@@ -185,7 +186,7 @@ fn claims() -> Vec<Claim> {
             .refuses(control)
             .fair_to_any_continuum()
     };
-    // Two per cent for two cells through the thickness, and a second-order decrease.
+    // The tolerance is 2 % for two cells through the thickness, and decreases with the square of the cell length.
     let mut claims: Vec<Claim> = LEVELS
         .iter()
         .zip([2e-2, 5e-3, 1.25e-3])
@@ -250,8 +251,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns σ_rr at the outer radius over the stress of a ring of the same strain. It integrates by Runge-Kutta from
-    /// the inner radius, where σ_rr = 0: u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
+    /// Returns σ_rr at the outer radius, divided by M u/r. The function integrates by Runge-Kutta from the inner
+    /// radius, where σ_rr = 0: u' = (σ − λ u/r)/M, σ' = −ρω² u − (σ − λ u' − M u/r)/r.
     fn left_over(mode: &Mode, frequency: f64) -> f64 {
         const STEPS: u32 = 4000;
         let [long, shear] = mode.moduli;
@@ -286,11 +287,12 @@ mod tests {
         }
     }
 
-    /// Frequencies as in the derivation (rad/s).
+    /// Breathing frequency of the thin ring in the derivation (rad/s).
     const THIN_RING: f64 = 333.00;
+    /// Breathing frequency of the thick ring in the derivation (rad/s).
     const THICK_RING: f64 = 356.14;
 
-    /// E/((1 − ν²) ρ R²) is the limit, with an error proportional to the square of the thickness.
+    /// Checks that a thin ring has ω² = E/((1 − ν²) ρ R²), with an error proportional to the square of the thickness.
     #[test]
     fn a_thin_ring_has_the_hoops_frequency() {
         let thin = (1e6_f64 / (0.91 * 1000.0)).sqrt() / 0.1;

@@ -35,13 +35,13 @@ pub(crate) static CASE: Case = Case {
 /// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]
 struct Elastica {
-    /// Curvature at the clamp.
+    /// Curvature at the clamp, multiplied by the length.
     curvature: f64,
     /// Displacement of the tip below the clamp.
     sinking: f64,
     /// Angle of the tip below the horizontal (rad).
     angle: f64,
-    /// Curvature at the tip, which is zero for the solution.
+    /// Curvature at the tip, multiplied by the length; zero for the solution.
     left: f64,
 }
 
@@ -56,7 +56,7 @@ impl Elastica {
         Self::shot(weight, 0.5 * (low + high))
     }
 
-    /// Integrates from the clamp with a curvature, by Runge-Kutta.
+    /// Integrates from the clamp to the tip by Runge-Kutta, for an assumed curvature at the clamp.
     fn shot(weight: f64, curvature: f64) -> Self {
         const STEPS: u32 = 1000;
         let step = 1.0 / f64::from(STEPS);
@@ -76,18 +76,19 @@ impl Elastica {
     }
 }
 
-/// Returns length and thickness (m), and γ.
+/// Returns length and thickness (m), and γ = w L³/EI.
 fn strip(scene: &Scene) -> Option<[f64; 3]> {
     let beam = scene.bodies.first()?;
     let BlockShape::Box { low, high } = beam.shape else { return None };
     let material = scene.deformable.first().copied().flatten()?;
     let [length, thickness] = [high.x - low.x, high.y - low.y];
-    // ν = 0: E is the longitudinal modulus.
+    // For ν = 0, E is the longitudinal modulus.
     let stiffness = material.longitudinal_modulus() * thickness * thickness / 12.0;
     Some([length, thickness, beam.density * -scene.gravity.y * length.powi(3) / stiffness])
 }
 
-/// Returns the error due to the thickness of the strip and to the position of a material point, in units of the deflection.
+/// Returns the tolerance, relative to the deflection: the effects of the strip's thickness and of the spacing of
+/// material points at the tip.
 fn allowed(level: Level) -> f64 {
     let Resolution::Grid { cells, points, .. } = level.resolution else { return f64::NAN };
     let (thickness, Elastica { curvature, sinking, angle, .. }) = (0.05, Elastica::under(10.0));
@@ -123,7 +124,7 @@ fn claims() -> Vec<Claim> {
 mod tests {
     use super::*;
 
-    /// Values as in the derivation.
+    /// Compares the solution with the values in `derivation.md`.
     #[test]
     fn the_elastica_is_that_of_the_derivation() {
         let Elastica { curvature, sinking, angle, left } = Elastica::under(10.0);
@@ -132,7 +133,7 @@ mod tests {
         assert!((Elastica::under(9.0).sinking - 0.673_08).abs() < 5e-6);
     }
 
-    /// The deflection is w L⁴/8EI up to the square of the angle.
+    /// Checks that the deflection is w L⁴/8EI up to the square of the angle.
     #[test]
     fn a_light_cantilever_bends_as_a_beam() {
         let weight = 1e-3;

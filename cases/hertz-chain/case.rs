@@ -7,7 +7,7 @@ use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
-/// Coefficient of the discrete chain, from its travelling wave, which the test computes.
+/// Coefficient of the wave speed in the discrete chain. The test at the end of this file computes it.
 const COEFFICIENT: f64 = 0.688_672_8;
 /// Speeds of the striker (m/s).
 const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
@@ -30,8 +30,9 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Returns the run of a strike at a speed, as long as the wave takes. The step follows the stiffness at the wave's own
-/// overlap, which is a fraction of R/100: Δt ∝ v^{-1/5}.
+/// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave. The time
+/// step is adapted to the contact stiffness at the overlap of the wave: Δt ∝ v^{-1/5}. The critical time step refers to
+/// the larger overlap R/100.
 fn strike(speed: f64) -> Run {
     let resolution = Resolution::CriticalFraction(0.02 * speed.powf(-0.2));
     Run::new(PLAIN, "dem", resolution).adjusted(&format!("striker at {speed} m/s"), move |scene| {
@@ -44,7 +45,7 @@ fn strike(speed: f64) -> Run {
     })
 }
 
-/// Returns time and height of the peak of a force, by a parabola through the highest sample and its neighbours.
+/// Returns time (s) and height (N) of the peak of a force, by a parabola through the highest sample and its neighbours.
 fn peak(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = (1..values.len() - 1).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(1);
@@ -54,7 +55,7 @@ fn peak(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData> {
     Ok((time[at] + shift * (time[at] - time[at - 1]), top - 0.25 * (left - right) * shift))
 }
 
-/// Returns the speed of the wave (m/s) and its force (N).
+/// Returns the speed of the wave (m/s) between the two probed contacts, and its mean peak force there (N).
 fn wave(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     let (near, far) = (peak(done, "near.normal_force")?, peak(done, "far.normal_force")?);
     let distance = BEADS * 2.0 * done.scene.grains[0].radius;
@@ -69,7 +70,7 @@ fn scale(scene: &Scene) -> f64 {
     (4.0 * law.effective_modulus() / (2.0 * grain.radius * density.powf(1.5))).cbrt()
 }
 
-/// Returns the wave speed over its scale and over the sixth root of the force.
+/// Returns the wave speed divided by [`scale`] and by the sixth root of the peak force.
 fn coefficient(done: &FinishedRun) -> Result<f64, MissingData> {
     let (speed, force) = wave(done)?;
     Ok(speed / (scale(&done.scene) * force.powf(1.0 / 6.0)))
@@ -99,7 +100,7 @@ fn claims() -> Vec<Claim> {
         "momentum passes through rigid beads in one step, so there is no wave with a largest force",
         Control::scene("no probes", |scene| scene.probes.clear()),
     );
-    // Forces until the wave has passed. Afterwards the beads separate and have no contacts.
+    // The runs end when the wave has passed. Afterwards the beads separate and have no contacts.
     let sampled = |solver| {
         Run { solver, ..strike(1.0) }.adjusted("until the wave has passed, every 20 cycles", |scene| {
             scene.sampling = Sampling::Cycles(20);
@@ -146,8 +147,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 mod tests {
     use super::*;
 
-    /// Returns the sites per unit of time of the wave with the largest force 1 and k = m = 1. Its overlap r(ξ) obeys c²
-    /// r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1. The solution is by iteration on `cells` points a site.
+    /// Returns the wave speed in sites per unit of time, for a wave with the largest force 1 and k = m = 1. Its overlap
+    /// r(ξ) obeys c² r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1. The equation is solved by iteration with
+    /// `cells` points per site.
     fn sites_per_time(cells: usize) -> f64 {
         let step = 1.0 / cells as f64;
         let mut overlap: Vec<f64> = (0..=6 * cells).map(|at| (-(at as f64 * step).powi(2)).exp()).collect();
@@ -165,7 +167,8 @@ mod tests {
         square.sqrt()
     }
 
-    /// V = 2R c (k^{2/3} F^{1/3}/m)^{1/2} with k = (4/3) E* √(R/2) has the coefficient .76053 c.
+    /// Checks the coefficient of the wave speed V = 2R c (k^{2/3} F^{1/3}/m)^{1/2} with k = (4/3) E* √(R/2), which is
+    /// .76053 c.
     #[test]
     fn the_travelling_wave_has_the_coefficient() {
         let [coarse, fine] = [10, 20].map(sites_per_time);

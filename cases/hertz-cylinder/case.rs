@@ -8,14 +8,14 @@ use std::f64::consts::PI;
 
 const LEVELS: &[Level] =
     &[cells("b", 1.0, POINTS), cells("b/2", 2.0, POINTS), cells("b/4", 4.0, POINTS), cells("b/8", 8.0, POINTS)];
-/// Largest errors of half-width and peak pressure with cells as wide as the half-width b.
+/// Largest relative errors of half-width and peak pressure that pass with cells as wide as the half-width b.
 const COARSEST: [f64; 2] = [0.15, 0.12];
-/// (b/R)², R = 8 b: the error on any grid, because the bodies are not half-spaces.
+/// (b/R)² with R = 8 b: the relative error on any grid, because the bodies are not half-spaces.
 const NO_HALF_SPACE: f64 = 1.0 / 64.0;
-/// Points per cell and axis.
+/// Material points per cell and axis.
 const POINTS: u32 = 2;
-/// In the best setting, points keep their own velocities and oscillate under a static load, and so do their stresses.
-/// With APIC, the points come to rest.
+/// Solver with APIC, in which material points come to rest. In `mpm`, points keep their own velocities, so points and
+/// their stresses oscillate under a static load.
 const SOLVER: &str = "mpm+apic";
 const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");
@@ -35,7 +35,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Half-width (m) and peak pressure (Pa) for half-spaces.
+/// Half-width (m) and peak pressure (Pa) of a contact between half-spaces.
 #[derive(Clone, Copy, Debug)]
 struct Hertz {
     half_width: f64,
@@ -52,8 +52,9 @@ impl Hertz {
         Self { half_width, peak: 2.0 * load / (PI * half_width) }
     }
 
-    /// Returns the pressure −σ_yy (Pa) at a depth below the surface of a half-space: (p₀/b) m (1 − (z² + n²)/(m² + n²))
-    /// with m², n² = ½(√((b² − x² + z²)² + 4x²z²) ± (b² − x² + z²)) (McEwen 1949; Johnson, eq. 4.49b).
+    /// Returns the pressure −σ_yy (Pa) at the distance x from the middle (m) and at a depth z (m) below the surface of
+    /// a half-space: (p₀/b) m (1 − (z² + n²)/(m² + n²)) with m², n² = ½(√((b² − x² + z²)² + 4x²z²) ± (b² − x² + z²))
+    /// (McEwen 1949; Johnson, eq. 4.49b).
     fn pressure_below(&self, x: f64, depth: f64) -> f64 {
         let side = self.half_width * self.half_width - x * x + depth * depth;
         let root = (side * side + 4.0 * x * x * depth * depth).sqrt();
@@ -75,8 +76,8 @@ struct PressurePoint {
     pressure: f64,
 }
 
-/// Returns the material points of the block at the end. Their initial depth was between `from` and `to` cells, and
-/// their distance from the middle is below 1.5 b.
+/// Returns the material points of the block at the end of the run. These points had an initial depth of `from` to `to`
+/// cells and are less than 1.5 b from the middle.
 fn pressed(done: &FinishedRun, from: f64, to: f64) -> Result<Vec<PressurePoint>, MissingData> {
     let snapshots = &done.record.snapshots;
     let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));
@@ -95,8 +96,8 @@ fn pressed(done: &FinishedRun, from: f64, to: f64) -> Result<Vec<PressurePoint>,
     Ok(chosen.collect())
 }
 
-/// Fits half-width and peak pressure of the contact. The half-space solution is compared with the stress of the
-/// material points in two layers of cells below the uppermost. Least squares over both by Gauss–Newton.
+/// Fits half-width and peak pressure of the contact by least squares (Gauss–Newton). The half-space solution is
+/// compared with the stress of the material points in two layers of cells below the uppermost layer.
 fn measured(done: &FinishedRun) -> Result<Hertz, MissingData> {
     let points = pressed(done, 1.0, 3.0)?;
     let mut found = Hertz::from_scene(&done.scene);
@@ -134,12 +135,12 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
     }
 }
 
-/// Returns the remaining oscillation of the cylinder's force about equilibrium at the time of the reading, over the
-/// weight.
+/// Returns the remaining oscillation of the cylinder's force about equilibrium after 0.4 ms, divided by the weight.
 ///
 /// The half-width grows as √P. A small additional load dP therefore moves the centre of the cylinder towards the base
-/// of the block, d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]. See Johnson,
-/// Contact Mechanics, eqs. 5.57 and 5.58, for a cylinder and for a layer on a base. Steel on aluminium, R = d = 0.05 m.
+/// of the block, which is d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]. See
+/// Johnson, Contact Mechanics, eqs. 5.57 and 5.58, for a cylinder and for a layer on a base. Steel on aluminium, R = d
+/// = 0.05 m.
 fn swings() -> f64 {
     let (radius, half_width, poisson, damping) = (0.05_f64, 6.2146e-3, 0.3, 40_000.0_f64);
     let [steel, aluminium] = [210e9, 70e9].map(|young| young / (1.0 - poisson * poisson));
@@ -154,7 +155,7 @@ fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     for (level, cells) in LEVELS.iter().zip([1.0, 2.0, 4.0, 8.0]) {
         let run = Run::new(PLAIN, SOLVER, level.resolution);
-        // b/2 and b/4 take seconds, b/8 a minute.
+        // Runs with b/2 and b/4 take seconds, a run with b/8 a minute.
         let run = match cells {
             1.0 => run,
             2.0 => run.slow(),
@@ -196,8 +197,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("contact force at rest", "N/m")
             .run(Run::new(PLAIN, SOLVER, LEVELS[1].resolution).slow().known(
-                "with APIC the cylinder comes to rest more slowly than a rigid one on the springs of both bodies: .07 \
-                 % of its weight remains, and .05 % is required",
+                "with APIC the cylinder comes to rest more slowly than a rigid cylinder on the springs of both bodies: \
+                 0.07 % of its weight remains, but at most 0.05 % is allowed",
             )
             .up_to(1e-3))
             .holds("equilibrium: the cylinder's weight", |done| {

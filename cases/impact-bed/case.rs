@@ -40,15 +40,15 @@ pub(crate) static CASE: Case = Case {
             codes of the round robin of 2024, within the spread between codes and between beds.",
     scene: include_str!("scene.toml"),
     derivation: DERIVATION,
-    weakness: "The preparation of the published beds is unknown. Our beds are filled with a friction of 0.1, which gives the \
-               published packing fraction of about 0.60; the ball penetrates a looser bed farther. After 35 ms the results \
-               depend more on the bed than on the code, and on the grain caught between ball and floor: two of five beds \
-               rebound more slowly than the spread allows. Restitution is hardly tested: e = 0.9 moves the ball by 0.2 mm at \
-               30 ms, because friction dissipates nearly everything, and the data contains the height of the ball and no \
-               energy. A bed of 100,000 spheres is tested at 30 ms only; at rest the ball lies 1.5 to 2 mm deeper in our bed. \
-               In our beds of 50,000 spheres the ball is 1 mm deeper at 30 ms, because their filling differs from the \
-               published one. These beds are therefore tested only with the published data, which was not available during \
-               development.",
+    weakness: "The preparation of the published beds is unknown. Our beds are filled with a friction of 0.1, which \
+               gives the published packing fraction of about 0.60; the ball penetrates a looser bed farther. After 35 \
+               ms the results depend more on the bed than on the code, and on the grain caught between ball and floor: \
+               two of five beds rebound more slowly than the spread allows. Restitution is hardly tested: e = 0.9 \
+               moves the ball by 0.2 mm at 30 ms, because friction dissipates nearly everything, and the data contains \
+               only the height of the ball, not its energy. A bed of 100,000 spheres is tested at 30 ms only; at rest \
+               the ball lies 1.5 to 2 mm deeper in our bed. In our beds of 50,000 spheres the ball is 1 mm deeper at \
+               30 ms, because their filling differs from the published one. These beds are therefore tested only with \
+               the published data, which was not available during development.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -56,27 +56,29 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Time step of the claims, and the paper's time step.
+/// Time step of most claims.
 const STEP: Resolution = LEVELS[0].resolution;
+/// Time step of the paper.
 const FINE: Resolution = LEVELS[1].resolution;
-/// Variants of the beds.
+/// Variants with our five beds.
 const OWN: [&str; 5] = [PLAIN, "bed-2", "bed-3", "bed-4", "bed-5"];
-/// Times of the rebound (s).
+/// Times between which the mean velocity of the rebound is measured (s after the release of the ball).
 const REBOUND: [f64; 2] = [0.038, 0.050];
-/// Time at which depths are compared (s).
+/// Time at which heights of the ball are compared (s after the release of the ball).
 const DEEP: f64 = 0.030;
 
-/// Interval in which the whole path of the ball is compared with the codes (ms). Before it, beds differ mainly by the
-/// height of their surface.
+/// Interval in which the whole path of the ball is compared with the codes (ms). Before this interval, beds differ
+/// mainly in the height of their surface.
 const SURE: (f64, f64) = (24.999, 50.001);
 
-/// Reason for the tolerance of one bed, and of the mean of five beds.
-const BECAUSE: &str =
-    "our packing is one more random sample: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 1 of our beds, n = 10 published";
-const BECAUSE_FIVE: &str =
-    "our packings are five more random samples: 2 √(s_code² + s_bed² (1/m + 1/n)), m = 5 of our beds, n = 10 published";
+/// Reason for the tolerance of one bed.
+const BECAUSE: &str = "our packing is one more random sample: 2 √(s_code² + s_bed² (1/m + 1/n)), with m = 1 of our beds and \
+     n = 10 published beds";
+/// Reason for the tolerance of the mean of five beds.
+const BECAUSE_FIVE: &str = "our packings are five more random samples: 2 √(s_code² + s_bed² (1/m + 1/n)), with m = 5 of our \
+     beds and n = 10 published beds";
 
-/// Returns the largest difference between two beds of one code at 30 ms (mm), and its reason.
+/// Returns the tolerance for the difference of two beds of one code at 30 ms (mm), and its reason.
 fn of_two_beds() -> (f64, &'static str) {
     let apart = 2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value;
     (apart, "difference of two random beds, 2 √2 s_bed: only a larger change can be distinguished from another bed")
@@ -184,17 +186,18 @@ fn claims() -> Vec<Claim> {
     all_claims
 }
 
-/// Two functions for several beds: one combines their values, given the expected value; the other returns the tolerance.
+/// Two functions for several beds. The first combines the values of all beds and the expected value to one value. The
+/// second returns the tolerance.
 type BedCombination = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
-/// The mean of five beds agrees with the codes.
+/// Mean of five beds, with the tolerance of a mean over five beds.
 const MEAN: BedCombination = (|values, _| mean(values), |spread| computed(spread.allowed(OWN.len()), BECAUSE_FIVE));
-/// Each of five beds is within the range of one bed of a code.
+/// Value of the bed farthest from the codes, with the tolerance of one bed.
 const EACH: BedCombination = (farthest, |spread| computed(spread.allowed(1), BECAUSE));
 
-/// Known deviation. The ball rebounds from single beds more slowly than in the codes.
-const SLOW: &str = "the ball leaves two of five beds at 1.11 and 1.19 m/s, below the range for one more code and bed; the \
-                    lowest published bed has 1.14 m/s. Without friction all five are in the range";
+/// Known deviation: from two of five beds, the ball rebounds more slowly than in the codes.
+const SLOW: &str = "the ball rebounds from two of five beds at 1.11 and 1.19 m/s, below the range for one more code \
+                    and bed. The lowest published rebound is 1.14 m/s. Without friction all five beds are in the range";
 
 fn of_beds(
     runs: [Run; 5],
@@ -210,11 +213,11 @@ fn of_beds(
         .within(tolerance(spread))
 }
 
-/// Start time of the runs on one bed (s), before the ball hits the bed.
+/// Start time of the runs on one bed (s after the release of the ball), before the ball hits the bed.
 const MET: f64 = 0.020;
 
-/// Claims one bed from 20 ms on: the default part of the case. It ends at 50 ms in the convention of LIGGGHTS, and at
-/// 30 ms in ours and for external solvers.
+/// Returns the claim on one bed from 20 ms on, in the standard tier. The run ends at 50 ms in the convention of
+/// LIGGGHTS, and at 30 ms in our convention and for external solvers.
 fn early(variant: &'static str, solver: &'static str) -> Claim {
     let spread = Spread::new(dosta::HEIGHT_30, dosta::HEIGHT_30_CODE, dosta::HEIGHT_30_BED);
     claim("height of the ball at 30 ms, one bed, from 20 ms on", "mm")
@@ -242,7 +245,7 @@ fn smooth() -> Control {
     Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
 }
 
-/// Returns a negative control in which ball and walls have the contact law of grains.
+/// Returns a negative control in which contacts with ball and walls have the contact law of the grains.
 fn pair_of_m1() -> Control {
     Control::scene("the pair of M1 for steel", |scene| {
         let place = |name: &str| scene.materials.iter().position(|known| known == name);

@@ -1,11 +1,11 @@
-//! The impact on a hundred thousand grains, while the ball moves down.
+//! Impact on 100,000 grains, while the ball moves down.
 
 use super::{half_the_density, height};
 use crate::rows::bulk::of_packings;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
 
-/// Beds of our own, each with another random seed.
+/// Variants with our own beds, each with another random seed.
 const OWN: [&str; 5] =
     ["hundred-thousand", "hundred-thousand-2", "hundred-thousand-3", "hundred-thousand-4", "hundred-thousand-5"];
 /// Time of the comparison (s), while the ball moves down.
@@ -15,7 +15,7 @@ fn on_all() -> [Run; 5] {
     OWN.map(|variant| Run::new(variant, "dem:liggghts", super::STEP).paper_size().kept())
 }
 
-/// Claims that the mean over five beds agrees with two codes on one bed.
+/// Returns the claim that the mean over five beds agrees with two codes on one bed.
 pub(super) fn claims() -> Vec<Claim> {
     let quantity = ("height of the ball at 30 ms, 100,000 grains, mean of five beds".to_owned(), "mm");
     let at_30_ms = of_packings(
@@ -29,7 +29,7 @@ pub(super) fn claims() -> Vec<Claim> {
     vec![at_30_ms.refuses(half_the_density())]
 }
 
-/// Returns the figure of the ball's path on our beds and in two codes, if the runs are stored.
+/// Returns the figure of the path of the ball on our beds, with the height in two codes.
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let codes = vec![(DOWN * 1e3, dosta::HEIGHT_30_100K.value)];
     let mut curves = vec![Curve::new("LIGGGHTS and MUSEN, one bed", Stroke::Markers, codes)];

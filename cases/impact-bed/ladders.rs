@@ -1,13 +1,13 @@
-//! Effect of a longer time step, and of a softer wall, on the ball.
+//! Effect of a longer time step, and of softer steel of ball and walls, on the height of the ball.
 
 use super::{DEEP, MET, half_the_density, height, of_two_beds};
 use grainbench_harness::prelude::*;
 
-/// Beds for the comparison of time steps, from 20 ms on.
+/// Variants for the comparison of time steps. They start 20 ms after the release of the ball.
 const BEDS: [&str; 3] = ["down", "down-2", "down-3"];
-/// Time steps (s); the finest is the paper's.
+/// Time steps (s). The first is the time step of the paper.
 const STEPS: [f64; 4] = [5e-7, 1e-6, 2e-6, 4e-6];
-/// Young's moduli (GPa) of the steel of ball and walls.
+/// Young's moduli (GPa) of the steel of ball and walls, with the variants.
 const STEEL: [(f64, &str); 3] = [(210.0, "down"), (21.0, "down-21-gpa"), (2.1, "down-2-gpa")];
 
 fn on(variant: &'static str, step: f64) -> Run {
@@ -18,7 +18,8 @@ fn at_30_ms(done: &FinishedRun) -> Result<f64, MissingData> {
     height(done, DEEP - MET)
 }
 
-/// Returns the claims that compare longer time steps with the paper's step, and softer steel with steel.
+/// Returns the claims that runs with longer time steps agree with runs at the time step of the paper, and runs with
+/// softer steel with runs at 210 GPa.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = STEPS[1..].iter().map(|&step| {
         let runs = BEDS.into_iter().flat_map(|bed| [on(bed, step), on(bed, STEPS[0]).aside()]);
@@ -33,7 +34,7 @@ pub(super) fn claims() -> Vec<Claim> {
     steps.chain(steel).collect()
 }
 
-/// Compares runs with their reference runs, in alternating order.
+/// Returns the claim that runs agree with their reference runs. Runs and reference runs alternate in `runs`.
 fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::ClaimWithTolerance {
     let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
@@ -48,7 +49,7 @@ fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_har
         .within(computed(allowed, because))
 }
 
-/// Returns the figure of heights over the time step, for each bed.
+/// Returns the figure of the height at 30 ms against the time step, for each bed.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (number, bed) in BEDS.into_iter().enumerate() {

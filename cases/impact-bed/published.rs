@@ -1,4 +1,4 @@
-//! Published results of seven codes on ten beds, and their comparison with our results.
+//! Comparison of our results with the published results of seven codes on ten beds.
 
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
@@ -6,8 +6,8 @@ use grainbench_harness::source::CitedNumber;
 /// Number of published beds.
 const PUBLISHED: usize = 10;
 
-/// Rows of time (s), mean height of the ball (mm) and its deviations between codes and between beds (mm), derived from
-/// the published data.
+/// Rows of time (s), mean height of the ball (mm), and standard deviations of the height between codes and between beds
+/// (mm), derived from the published data.
 pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock::new(|| {
     let mut table = csv::Reader::from_reader(grainbench_reference::round_robin::IMPACT.as_bytes());
     let number = |row: &csv::StringRecord, place: usize| row.get(place)?.parse().ok();
@@ -15,7 +15,7 @@ pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock
     table.records().flatten().filter_map(row).collect()
 });
 
-/// Mean of a quantity, and its deviations between codes and between beds.
+/// Mean of a quantity, and its standard deviations between codes and between beds.
 #[derive(Clone, Copy)]
 pub(super) struct Spread {
     pub(super) mean: f64,
@@ -28,14 +28,14 @@ impl Spread {
         Self { mean: mean.value, of: spread }
     }
 
-    /// Returns the largest error of the mean over a number of our beds.
+    /// Returns the largest error of the mean over `own` of our beds that passes.
     pub(super) fn allowed(&self, own: usize) -> f64 {
         self.of.allowed(own, PUBLISHED)
     }
 }
 
-/// Returns time (ms) and deviation of our beds' mean from the codes' mean, in standard deviations. It covers each
-/// published time at which codes and beds differ.
+/// Returns time (ms) and difference between the mean height on our beds and that of the codes, in standard deviations.
+/// Times at which codes or beds differ by at most 0.01 mm (standard deviation) are left out.
 pub(super) fn scores(done: &[FinishedRun], published: &[[f64; 4]]) -> Result<Vec<(f64, f64)>, MissingData> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let is_counted = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
@@ -48,7 +48,7 @@ pub(super) fn scores(done: &[FinishedRun], published: &[[f64; 4]]) -> Result<Vec
     published.iter().filter(is_counted).map(score).collect()
 }
 
-/// Joins a text, a line end and another text.
+/// Joins two texts with a line break between them.
 pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N] {
     let (first, second) = (first.as_bytes(), second.as_bytes());
     let mut both = [b'\n'; N];
@@ -64,8 +64,8 @@ pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N]
     both
 }
 
-/// Returns the figures of the heights on our beds with the codes' mean, and of the deviation of our code in standard
-/// deviations.
+/// Returns two figures: the heights on our beds with the mean of the codes, and the difference from this mean in
+/// standard deviations.
 pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figure> {
     let course = |done: &FinishedRun| -> Vec<(f64, f64)> {
         let heights = done.column("ball.z").unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The impact on the shared beds of the round robin, if the user has them.
+//! Impact on the published beds of the round robin, if the user provides their data.
 
 use super::{DEEP, half_the_density, height};
 use crate::registry::made_of;
@@ -13,22 +13,24 @@ use std::path::Path;
 /// Time at which the ball is at rest in a hundred thousand grains (s).
 const REST: f64 = 0.06;
 
-/// The impact on the shared bed of fifty thousand grains.
+/// Impact on the shared bed of 50,000 grains.
 static FIFTY: Data = Data {
     name: "shared-50k",
-    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with fifty thousand grains, \
-            `50KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` takes it from a folder that holds it",
+    needs: "it starts from the published bed of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with fifty thousand \
+            grains, `50KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` reads it from the folder \
+            DIR",
     scene: |folder| shared(folder, 50, DEEP),
 };
-/// The impact on the shared bed of a hundred thousand grains.
+/// Impact on the shared bed of 100,000 grains.
 static HUNDRED: Data = Data {
     name: "shared-100k",
-    needs: "it begins with the shared start of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with a hundred thousand grains, \
-            `100KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` takes it from a folder that holds it",
+    needs: "it starts from the published bed of Dosta et al. 2024 (doi 10.5281/zenodo.8252892) with a hundred thousand \
+            grains, `100KParticles.txt`; `grainbench run impact-bed --levels all --data DIR` reads it from the folder \
+            DIR",
     scene: |folder| shared(folder, 100, REST),
 };
 
-/// Returns the scene of the case with the ball and the bed of a shared start, for a duration (s).
+/// Returns the scene of the case with ball and bed from a published initial state, for a duration (s).
 fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, SceneDataError> {
     let path = bed_in(folder, thousands).ok_or_else(|| {
         let [name, other] = bed_names(thousands);
@@ -43,8 +45,8 @@ fn shared(folder: &Path, thousands: usize, duration: f64) -> Result<Scene, Scene
     made_of(&source, &[("bed.data", bed.data())]).map_err(SceneDataError::Wrong)
 }
 
-/// Claims agreement with LIGGGHTS and MUSEN on the same bed. One more code may differ by 2 s_code, because there is no
-/// spread between beds.
+/// Returns the claim that our solver agrees with LIGGGHTS and MUSEN on the same bed. All codes use one bed, so there is
+/// no spread between beds, and one more code may differ by 2 s_code.
 fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (CitedNumber, CitedNumber)) -> Claim {
     let code = half.value * std::f64::consts::SQRT_2;
     let allowed = Spread { mean: cited.value, code, bed: 0.0 }.allowed(1, 1);

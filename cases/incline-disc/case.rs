@@ -1,4 +1,4 @@
-//! A disc released from rest on an inclined plane (2000 paper).
+//! A disc released from rest on an inclined plane (Bardenhagen, Brackbill & Sulsky 2000).
 
 #[path = "elastic.rs"]
 mod elastic;

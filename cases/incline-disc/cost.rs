@@ -1,4 +1,5 @@
-//! Target quantity of accuracy: rolling and slipping down a plane, over stiffness.
+//! Target quantity of the cost study: the displacement of a disc that rolls or slips down a plane, for several
+//! stiffnesses.
 
 use crate::exact::one_grain::OneGrain;
 use crate::rows::one_grain_cost::displacement;

@@ -1,10 +1,10 @@
-//! The disc as an elastic body that is set down on the plane and released, with the material point method.
+//! Elastic disc that is set down on the plane and released, computed with the material point method.
 //!
-//! The disc rests on the plane under g cos θ, damped, and is released at t = 0. An elastic disc sticks and deforms
-//! before it slips, and rolls on a flattened side. Its displacement therefore differs from that of a rigid disc by a
-//! few per cent at any resolution. The expected values are those of an independent prototype, extrapolated from four
-//! resolutions (quadratic B-splines, APIC, springs at the surface). Larger moduli lead to the rigid solution and need
-//! no reference.
+//! Before the run, the disc comes to rest on the plane under g cos θ, with damping. It is released at t = 0. An elastic
+//! disc sticks and deforms before it slips, and rolls on a flattened side. Its displacement therefore differs from that
+//! of a rigid disc by a few per cent at any resolution. The expected values are those of an independent prototype,
+//! extrapolated from four resolutions (quadratic B-splines, APIC, springs at the surface). Claims with larger moduli
+//! use the rigid solution and need no prototype.
 
 use crate::exact::one_grain::{State, course, last};
 use crate::rows::elastic::{Rest, excess, settle, stiffen};
@@ -18,15 +18,16 @@ use grainbench_harness::source::CitedNumber;
 #[derive(Clone, Copy)]
 struct Elastic {
     variant: &'static str,
-    /// Time of the reading (s).
+    /// Time at which the displacement is compared (s).
     time: f64,
-    /// Displacement of the converged elastic disc over the rigid one, minus one.
+    /// Displacement of the converged elastic disc, divided by the displacement of a rigid disc, minus one.
     reference: CitedNumber,
-    /// Largest deviation from the reference, in fractions of the rigid displacement, by cells per radius.
+    /// Pairs of cells per radius and largest deviation from the reference. Deviations are fractions of the rigid
+    /// displacement.
     allowed: &'static [(f64, f64)],
-    /// True if these deviations were required before the solver existed.
+    /// True if the deviations in `allowed` were required before the solver existed.
     asked: bool,
-    /// Results of the kinematic nodal contact of the 2000 paper, initially in contact, by cells per radius.
+    /// Pairs of cells per radius and result of the kinematic nodal contact `mpm:2000`, for a disc that starts in contact.
     kinematic: [(f64, CitedNumber); 3],
     sticks: bool,
 }
@@ -80,7 +81,7 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
     stiffened(slope, solver, cells, 1.0)
 }
 
-/// Returns the run with the moduli times a factor.
+/// Returns the run of a disc whose moduli are multiplied by a factor.
 fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> Run {
     let name = format!("elastic and settled, moduli × {factor}");
     Run::new(slope.variant, solver, Resolution::grid(cells, POINTS)).adjusted(&name, move |scene| {
@@ -89,11 +90,11 @@ fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> R
     })
 }
 
-/// Time at the end over which rolling is averaged (s): about one period of the disc's undamped rocking on its contact,
-/// which changes ΩR/v by 4 %.
+/// Duration at the end of the run over which rolling is averaged (s). It is about one period of the undamped rocking of
+/// the disc on its contact, which changes ΩR/v by 4 %.
 const ROCKS: f64 = 0.1;
 
-/// Returns mean ΩR over mean v at the end.
+/// Returns mean ΩR divided by mean v, over the last 0.1 s of the run.
 fn rolling(done: &FinishedRun) -> Result<f64, MissingData> {
     let (end, _) = last(done)?;
     let states: Vec<State> =
@@ -121,9 +122,10 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the control for a claim at a number of cells per radius.
+/// Returns the negative control of a claim at a number of cells per radius.
 fn telling_at(slope: Elastic, cells: f64) -> Control {
-    // The 2000 contact at 8 cells is run for its own claims.
+    // At 8 cells, the control with the 2000 contact needs no additional run, because the claims on this contact use the
+    // same run.
     if slope.sticks || cells <= 4.0 { telling(slope) } else { telling(slope).coarser(Resolution::grid(4.0, POINTS)) }
 }
 
@@ -143,18 +145,18 @@ fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Claim {
         .refuses(telling_at(slope, cells))
 }
 
-/// Returns the tolerance for the deviation of a disc with any contact from the elastic reference.
+/// Returns the tolerance for the deviation of a disc from the elastic reference, for any contact algorithm.
 fn asked(slope: Elastic, allowed: f64) -> Tolerance {
     let allowed = allowed + slope.reference.uncertainty;
     if slope.asked {
         required(allowed, "required at this resolution before the solver existed, and the uncertainty of the reference")
     } else {
-        judged(allowed, "discretisation at this resolution, and the reference's own uncertainty")
+        judged(allowed, "discretisation at this resolution, and the uncertainty of the reference")
     }
 }
 
-/// Claims the reference within one per cent, for any solver with a deformable disc. Contact at nodes is of first order
-/// in the cell.
+/// Returns the claim that any solver with a deformable disc agrees with the reference within one per cent. Contact at
+/// nodes has an error of first order in the cell length.
 fn to_a_hundredth(slope: Elastic) -> Claim {
     const PART: f64 = 0.3;
     claim(format!("{}, to a hundredth", excess_words(slope, 8.0)), "1")
@@ -162,7 +164,7 @@ fn to_a_hundredth(slope: Elastic) -> Claim {
         .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
         .within(required(
             0.01 + slope.reference.uncertainty,
-            "the accuracy at which costs are compared, one per cent, and the reference's own uncertainty",
+            "the accuracy at which costs are compared, one per cent, and the uncertainty of the reference",
         ))
         .refuses(
             Control::scene("three tenths of the friction", |scene| scene.change_laws(|law| law.friction *= PART))
@@ -175,7 +177,7 @@ fn excess_words(slope: Elastic, cells: f64) -> String {
     format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time)
 }
 
-/// Claims the order at which the deviation from the elastic disc decreases with the cell.
+/// Returns the claim on the order at which the deviation from the elastic disc decreases with the cell length.
 fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
         .runs(LEVELS.map(|cells| run(slope, "mpm", cells)))
@@ -185,18 +187,18 @@ fn order(slope: Elastic) -> Claim {
             Ok(fitted(&points?))
         })
         .within(exactly(
-            "the order was required before the solver existed; a contact that gains one tracer after another has no \
-             exact order",
+            "the order was required before the solver existed; a contact that grows tracer by tracer has no exact \
+             order",
         ))
         .refuses(telling(slope))
 }
 
-/// Claims with moduli ten and a hundred times larger. The disc is then closer to the rigid solution, so no reference is
-/// needed.
+/// Returns the claim with moduli that are `factor` times as large, 10 or 100. The disc is then closer to the rigid
+/// solution, so no elastic reference is needed.
 fn stiff(slope: Elastic, factor: f64) -> Claim {
     let run = stiffened(slope, "mpm", 8.0, factor);
-    // At 60° the disc hardly slips, because tan 60° = 1.73 is close to 3μ = 1.5. It sticks for a long time first. The
-    // deviation of 3.75 % decreases by √10 to 1.2 %.
+    // At 60° with μ = 0.5 the disc hardly slips, because tan 60° = 1.73 is close to 3μ = 1.5. It first sticks for a
+    // long time. With moduli ten times larger, its deviation of 3.75 % decreases by the factor √10 to 1.2 %.
     let (run, allowed) = match factor > 10.0 {
         true => (run.long(), 8e-3),
         false if slope.variant == "60deg-mu.5" => (run.slow(), 0.016),
@@ -218,7 +220,7 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
     .refuses(telling(slope))
 }
 
-/// Claims that the contact of the 2000 paper gives its known result.
+/// Returns the claim that the nodal contact `mpm:2000` gives the cited result of another implementation.
 fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
     let control =
         if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling_at(slope, cells) };
@@ -227,21 +229,22 @@ fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
         .equals_cited(cited, 1.0, |done| excess(&done[0]))
         .within(judged(
             0.022,
-            "two implementations of one method at the same resolution, with other material points; during relaxation \
-             ours damps points, not nodes, which changes up to .004. This holds for one position on the grid: from \
-             another position in a cell, rolling discs get up to .075 less far or .053 farther (derivation)",
+            "two implementations of one method at the same resolution, with different material points. During \
+             relaxation ours damps points instead of nodes, which changes the result by up to .004. This holds for one \
+             position on the grid: from other positions in a cell, the displacement of rolling discs is up to .075 \
+             smaller or .053 larger (derivation)",
         ))
         .refuses(control)
 }
 
-/// Claims the known error of the 2000 contact against the elastic disc.
+/// Returns the claim that documents the error of the 2000 contact, relative to the elastic disc.
 fn known(slope: Elastic) -> Claim {
     let (cells, allowed) = slope.allowed[1];
     let run = run(slope, "mpm:2000", cells).known(
         "nodal contact supports the disc over a region of about √(2Rh), like a flat side: at these resolutions it rolls too \
          little or not at all",
     )
-    // At −1 the disc does not move.
+    // The relative error is −1 if the disc does not move.
     .up_to(1.0);
     claim(format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time), "1")
         .run(run)
@@ -250,7 +253,8 @@ fn known(slope: Elastic) -> Claim {
         .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(cells, POINTS)))
 }
 
-/// Claims that at two cells a radius a disc in nodal contact does not roll, as the 2001 paper found for the sphere.
+/// Returns the claim that a disc in nodal contact does not roll at two cells per radius, as Bardenhagen et al. (2001)
+/// found for the sphere.
 fn does_not_roll() -> Claim {
     claim("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1")
         .run(run(SLOPES[3], "mpm:2000", 2.0))
@@ -263,7 +267,8 @@ fn does_not_roll() -> Claim {
         .refuses(Control::solver("springs at the surface", "mpm"))
 }
 
-/// Claims our own extrapolation, by the order observed over 4, 8 and 16 cells a radius, against the reference.
+/// Returns the claim that the extrapolation from our runs with 4, 8 and 16 cells per radius, at the observed order,
+/// agrees with the reference.
 fn extrapolated(slope: Elastic) -> Claim {
     claim(
         format!(
@@ -286,7 +291,7 @@ fn extrapolated(slope: Elastic) -> Claim {
     .refuses(telling(slope))
 }
 
-/// Claims ΩR/v at 8 cells a radius against the finest level.
+/// Returns the claim that ΩR/v at 8 cells per radius agrees with the value at 16 cells per radius.
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .runs([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))

@@ -1,4 +1,4 @@
-//! A sphere released from rest on an inclined plane (2001 paper).
+//! A sphere released from rest on an inclined plane (Bardenhagen et al. 2001).
 
 #[path = "elastic.rs"]
 mod elastic;

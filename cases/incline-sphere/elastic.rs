@@ -1,8 +1,8 @@
-//! The sphere as an elastic body that is set down on a rigid plane and released, with the material point method.
+//! Elastic sphere that is set down on a rigid plane and released, computed with the material point method.
 //!
 //! As for the disc, elasticity changes the rigid solution. The sphere flattens, its centre is lower, and it deforms
 //! before it slips. The expected values are those of an independent prototype (quadratic B-splines, APIC, springs at
-//! the surface), extrapolated from R/2, R/4 and R/8.
+//! the surface), extrapolated from cells of R/2, R/4 and R/8.
 
 use crate::exact::one_grain::last;
 use crate::rows::elastic::{Rest, excess, settle};
@@ -15,9 +15,9 @@ use grainbench_harness::source::CitedNumber;
 #[derive(Clone, Copy)]
 struct Elastic {
     variant: &'static str,
-    /// Displacement after one second over the rigid one, minus one.
+    /// Displacement after one second, divided by the displacement of a rigid sphere, minus one.
     reference: CitedNumber,
-    /// Deviations at R/4 and R/8 that were required before the solver existed.
+    /// Largest deviations from the reference at cells of R/4 and R/8, required before the solver existed.
     allowed: [f64; 2],
 }
 
@@ -42,7 +42,7 @@ pub(super) fn claims() -> Vec<Claim> {
             let run = run(slope, "mpm", cells);
             claims.push(
                 claim(format!("displacement at 1 s over the rigid one, less 1, R/{cells}"), "1")
-                    // The run with R/8 takes half a minute.
+                    // The run with cells of R/8 takes half a minute.
                     .run(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
                         (true, _) => run.long(),
                         (false, true) => run,
@@ -86,7 +86,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     for slope in SLOPES {
         for solver in ["mpm", "mpm:2000"] {
             let mut points = Vec::new();
-            // Claims need the finest runs of the first slope.
+            // Claims use the finest runs of the first slope, so its figure needs no additional run.
             let levels = if runner.is_thorough() || slope.variant == SLOPES[0].variant { 3 } else { 2 };
             for cells in [1.0, 2.0, 4.0].into_iter().take(levels) {
                 if let Ok(excess) = excess(&runner.run(&run(slope, solver, cells))?) {

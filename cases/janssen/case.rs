@@ -1,4 +1,4 @@
-//! Janssen's silo. The floor and the side wall each carry a part of the weight of a column.
+//! Janssen's silo: floor and side wall each carry a part of the weight of a column of spheres.
 
 #[path = "column.rs"]
 mod column;
@@ -36,17 +36,17 @@ pub(crate) static CASE: Case = Case {
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");
 
-/// Results for fillings with other random seeds, made by `examples/seeds.rs`.
+/// Table of results for fillings with other random seeds, computed by `examples/seeds.rs`.
 const PACKINGS: &str = include_str!("packings.csv");
 
-/// Variants with the friction of the side wall.
+/// Variants, each with the friction coefficient of its side wall.
 const SIDES: [(&str, &str); 2] = [(PLAIN, ".5"), ("half", ".25")];
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[0].resolution).read_by(COLUMN).long().kept()
 }
 
-/// Sets the friction of the side wall.
+/// Sets the friction coefficient of the side wall.
 fn side_friction(scene: &mut Scene, friction: f64) {
     let count = scene.materials.len();
     if let Some(place) = scene.materials.iter().position(|name| name == "side") {
@@ -59,7 +59,7 @@ fn side_friction(scene: &mut Scene, friction: f64) {
     }
 }
 
-/// Returns the friction of the side wall.
+/// Returns the friction coefficient of the side wall.
 fn friction(scene: &Scene) -> f64 {
     let place = |name: &str| scene.materials.iter().position(|known| known == name).map(|place| place as u16);
     let law = place("side").zip(place("grain")).and_then(|(side, grain)| scene.law(side, grain));
@@ -70,7 +70,7 @@ fn weight(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.mass).sum::<f64>() * scene.gravity.norm()
 }
 
-/// Returns a column of the series during the steady descent.
+/// Returns the samples of a column during the steady descent.
 fn descending(done: &FinishedRun, name: &str) -> Result<Vec<f64>, MissingData> {
     let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
     let values: Vec<f64> = values.map(|(_, value)| *value).collect();
@@ -86,19 +86,19 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Returns the part of the weight on the floor.
+/// Returns the fraction of the weight that the floor carries, averaged over the steady descent.
 fn on_floor(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(-steady(done, "floor.force_z")? / weight(&done.scene))
 }
 
-/// Returns the height of the filling (d), from the middle heights of the slices and the weight over height in each. It
-/// is the total weight divided by the largest weight per height.
+/// Returns the height of the filling (d), from the middle heights of the slices and the weight per height in each
+/// slice. The height is the total weight divided by the largest weight per height.
 fn top(heights: &[f64], weights: &[f64]) -> f64 {
     let slice = 2.0 * heights.first().copied().unwrap_or(f64::NAN);
     weights.iter().sum::<f64>() * slice / weights.iter().copied().fold(0.0, f64::max)
 }
 
-/// Means of quantities over the slices in the middle of the column.
+/// Means of stresses and of the weight per height over the slices in the middle of the column.
 struct MiddleMeans {
     vertical: f64,
     normal: f64,
@@ -128,8 +128,8 @@ impl MiddleMeans {
         })
     }
 
-    /// Returns the part of the weight on the floor if the shear stress on the side is `ratio` times the vertical
-    /// stress: (λ/H)(1 − e^(−H/λ)) with λ = D/(4 ratio).
+    /// Returns the fraction of the weight that the floor carries if the shear stress on the side is `ratio` times the
+    /// vertical stress: (λ/H)(1 − e^(−H/λ)) with the height H of the filling, the diameter D and λ = D/(4 ratio).
     fn left_over(&self, scene: &Scene, ratio: f64) -> f64 {
         let (_, _, radius) = side(scene);
         let (length, height) = (2.0 * radius / (4.0 * ratio), weight(scene) / self.weight);
@@ -154,8 +154,8 @@ fn known() -> Tolerance {
     one_interval("in units of half the 99 % confidence interval of the mean, from the means over 8 blocks of time")
 }
 
-/// Sums some force columns over the weight and compares the mean over the steady descent with 1. The unit is half the
-/// confidence interval of the mean.
+/// Compares a sum of forces with the weight. The sum is divided by the weight and averaged over the steady descent, so
+/// the expected value is 1. The error is in units of half the confidence interval of the mean.
 fn all_borne(done: &FinishedRun, columns: &[&str]) -> Result<Measurement, MissingData> {
     let weight = weight(&done.scene);
     let mut borne = Vec::new();
@@ -169,7 +169,7 @@ fn all_borne(done: &FinishedRun, columns: &[&str]) -> Result<Measurement, Missin
     Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
 }
 
-/// Claims that floor and side carry the weight.
+/// Returns the claim that floor and side wall together carry the weight.
 fn balance() -> Claim {
     claim("weight that floor and side bear, over the weight", "1")
         .run(run(PLAIN, "dem"))
@@ -180,7 +180,7 @@ fn balance() -> Claim {
         .refuses(Control::scene("gravity 1 % larger", |scene| scene.gravity *= 1.01))
 }
 
-/// Claims that without friction the floor carries the whole weight.
+/// Returns the claim that the floor carries the whole weight if the side wall has no friction.
 fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
         .run(run("smooth", "dem"))
@@ -191,7 +191,7 @@ fn smooth() -> Claim {
         .refuses(Control::scene("a friction of .02 at the side", |scene| side_friction(scene, 0.02)))
 }
 
-/// Claims that the shear stress on the side does not exceed the Coulomb limit.
+/// Returns the claim that the shear stress on the side wall does not exceed the Coulomb limit.
 fn mobilised() -> Claim {
     claim("part of the friction of the side that is at work half-way up, friction .25", "1")
         .run(run("half", "dem"))
@@ -217,7 +217,8 @@ fn twice(tables: &mut [Table]) {
     }
 }
 
-/// Claims Janssen's law with the measured mobilised friction, because grains roll along a side as well as slide.
+/// Returns the claim that the load on the floor follows Janssen's law with the measured mobilised friction. The
+/// friction is measured, because grains not only slide but also roll along the side wall.
 fn law(variant: &'static str, about: &str) -> Claim {
     claim(format!("part of the weight on the floor, friction {about} at the side"), "1")
         .run(run(variant, "dem"))
@@ -230,7 +231,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread(TWICE, twice))
 }
 
-/// Claims that the stress saturates with depth.
+/// Returns the claim that the stress saturates with depth.
 fn saturates() -> Claim {
     claim("vertical stress a quarter up over that half-way up", "1")
         .run(run(PLAIN, "dem"))
@@ -256,11 +257,11 @@ fn saturates() -> Claim {
                 Ok(at(0.25) / at(0.5))
             },
         )
-        .within(exactly("the law's number at H = λ is 1.341, and less in a deeper column"))
+        .within(exactly("the law gives 1.341 at H = λ, and less in a deeper column"))
         .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
 }
 
-/// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same fall.
+/// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
 fn beside(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("part of the weight on the floor, friction {about} at the side");
     let because = "a filling is a random sample: 99 % interval of the difference of two fillings, from five seeds";
@@ -272,7 +273,7 @@ fn beside(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// Returns the figure of the stress over the height, with Janssen's law.
+/// Returns the figure of the stress against the height, with Janssen's law.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&run(PLAIN, "dem"))?;
     Ok(profile(&done).into_iter().collect())
@@ -303,7 +304,7 @@ fn profile(done: &FinishedRun) -> Option<Figure> {
     ))
 }
 
-/// Returns heights from the floor to the top.
+/// Returns 101 equally spaced heights from the floor to the top.
 fn heights_of(top: f64) -> impl Iterator<Item = f64> {
     (0..=100).map(move |part| top * f64::from(part) / 100.0)
 }

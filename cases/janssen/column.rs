@@ -1,4 +1,4 @@
-//! Reading of a filled cylinder, slice by slice, averaged over the snapshots of its descent.
+//! Evaluation of a filled cylinder in slices, averaged over the snapshots of its steady descent.
 
 use grainbench_fields::contact_stress::{Stress, contact_stress};
 use grainbench_fields::grid::Grid;
@@ -7,21 +7,22 @@ use grainbench_scene::record::{Partner, Snapshot};
 use grainbench_scene::scene::WallShape;
 use nalgebra::Vector3;
 
-/// Reading of the slices.
+/// Evaluation of each snapshot in horizontal slices of the silo.
 pub(super) const COLUMN: Reading = Reading { name: "slices of a silo", begin };
 
-/// Height of a slice (d), and number of slices.
+/// Height of a slice (d).
 const SLICE: f64 = 2.0;
+/// Number of slices.
 const SLICES: usize = 20;
 
 /// Time from which the column descends steadily (τ). The floor has then moved down by a sixth of a diameter.
 pub(super) const STEADY: f64 = 45.0;
 
-/// Middle height of a slice over the floor; vertical stress of the grains, normal stress and vertical shear stress on
-/// the side; weight over height. Compression and an upward force of the side are positive.
+/// Columns: height of the middle of a slice above the floor, vertical stress of the grains, normal stress and vertical
+/// shear stress on the side wall, and weight per height. Compression and an upward force of the side wall are positive.
 const COLUMNS: [&str; 5] = ["height", "vertical", "normal", "shear", "weight"];
 
-/// Returns the index of the side among the walls, its axis and its radius (d).
+/// Returns the index of the side wall, the first end of its axis and its radius (d).
 pub(super) fn side(scene: &Scene) -> (usize, Vector3<f64>, f64) {
     let round = |(number, wall): (usize, &grainbench_scene::scene::Wall)| match wall.shape {
         WallShape::Round { axis, radii } => Some((number, axis[0], radii[0])),
@@ -36,7 +37,8 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
 
 struct Column {
     scene: Scene,
-    /// Sums over snapshots and over a slice: Σ Δz F_z, normal and vertical force on the side, weight.
+    /// Sums over snapshots for each slice: Σ Δz F_z, normal force on the side wall, vertical force on the side wall,
+    /// weight.
     sums: [[f64; 4]; SLICES],
     snapshots: usize,
 }

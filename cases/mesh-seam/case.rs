@@ -1,4 +1,4 @@
-//! A sphere on triangle meshes. It rolls across seams of coplanar triangles, and touches edges and corners.
+//! A sphere on triangle meshes: it rolls across seams of coplanar triangles, and is in contact with edges and corners.
 
 #[path = "floors.rs"]
 mod floors;
@@ -38,7 +38,7 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Claims that the sphere keeps its static overlap.
+/// Returns the claim that the sphere keeps its static overlap.
 fn level(floor: &'static str) -> Claim {
     let control = match floor {
         "two-triangles" => {
@@ -62,7 +62,7 @@ fn level(floor: &'static str) -> Claim {
         .refuses(control)
 }
 
-/// Claims that the final velocity is 5/7 of the initial velocity.
+/// Returns the claim that the final velocity is 5/7 of the initial velocity.
 fn rolls(floor: &'static str) -> Claim {
     claim(format!("velocity at 1 s, {floor}"), "m/s")
         .run(Run::new(floor, "dem:lammps", STEP))
@@ -77,7 +77,8 @@ fn rolls(floor: &'static str) -> Claim {
         }))
 }
 
-/// Claims agreement with a plane. Everything is rotated, so that no coordinate of the mesh is exactly flat.
+/// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates
+/// of the flat mesh have rounding errors.
 fn as_plane(floor: &'static str) -> Claim {
     let turned_run = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
@@ -87,7 +88,7 @@ fn as_plane(floor: &'static str) -> Claim {
         .refuses(Control::scene("a step of 1e-3 R in the mesh", floors::with_a_step))
 }
 
-/// A position of the sphere at the cube, and the contact points of the surface there.
+/// A fixed position of the sphere at the cube, and its contact points on the surface of the cube.
 struct SeamPosition {
     words: &'static str,
     /// Centre (m).
@@ -108,7 +109,7 @@ const PLACES: [SeamPosition; 5] = [
     },
 ];
 
-/// Claims the force on the sphere at a fixed position.
+/// Returns the claim on the contact force on the sphere at a fixed position.
 fn held(at: &'static SeamPosition) -> Claim {
     let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
@@ -142,7 +143,7 @@ fn held(at: &'static SeamPosition) -> Claim {
         }))
 }
 
-/// Claims agreement with LIGGGHTS over the same triangles.
+/// Returns the claim that the position of the sphere agrees with LIGGGHTS on the same triangles.
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
     let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {

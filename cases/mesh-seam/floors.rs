@@ -1,11 +1,11 @@
-//! Floors of the case that are changed copies of others.
+//! Modified floors of the case, rotated or with an error for a negative control.
 
 use grainbench_scene::mesh::stl::{Facet, Place};
 use grainbench_scene::mesh::{Mesh, Reading, Surface};
 use grainbench_scene::nalgebra::{Rotation3, Unit, Vector3};
 use grainbench_scene::scene::{Scene, WallShape};
 
-/// Returns a mesh with changed triangles, or the old mesh if they no longer form one.
+/// Returns a mesh with changed triangles, or the unchanged mesh if the changed triangles do not form a surface.
 fn rebuilt(mesh: &Mesh, change: impl Fn([Vector3<f64>; 3]) -> [Vector3<f64>; 3]) -> Mesh {
     let facet = |(number, corners): (usize, &[Vector3<f64>; 3])| Facet {
         corners: change(*corners),
@@ -17,8 +17,8 @@ fn rebuilt(mesh: &Mesh, change: impl Fn([Vector3<f64>; 3]) -> [Vector3<f64>; 3])
     Surface::new(&facets, reading).map_or_else(|_| mesh.clone(), Mesh::at_rest)
 }
 
-/// Rotates everything including gravity by 20° about an axis that is not along the box, so that flat coordinates are
-/// rounded.
+/// Rotates the whole scene including gravity by 20° about an axis that is oblique to the box. The coordinates of flat
+/// floors then have rounding errors.
 pub(super) fn turned(scene: &mut Scene) {
     let axis = Unit::new_normalize(Vector3::new(0.6, 0.7, 0.2));
     let turn = Rotation3::from_axis_angle(&axis, 20.0_f64.to_radians());
@@ -35,7 +35,8 @@ pub(super) fn turned(scene: &mut Scene) {
     }
 }
 
-/// Lifts the part of a floor beyond a line on the sphere's path by a thousandth of its radius, for a control.
+/// Raises the part of a floor beyond a line on the sphere's path by a thousandth of the sphere's radius, for a negative
+/// control.
 pub(super) fn with_a_step(scene: &mut Scene) {
     let height = 1e-3 * scene.grains[0].radius;
     for wall in &mut scene.walls {
@@ -49,8 +50,8 @@ pub(super) fn with_a_step(scene: &mut Scene) {
     }
 }
 
-/// Replaces the floor by two rectangles with a gap on the sphere's path, for a control. The gap of a millionth of a metre
-/// keeps them from being joined, so the sphere has a contact with each.
+/// Replaces the floor by two rectangles with a gap on the sphere's path, for a negative control. Because of the gap of
+/// a millionth of a metre, the solver does not join the rectangles, and the sphere has a contact with each.
 pub(super) fn of_two_rectangles(scene: &mut Scene) {
     let Some(mut second) = scene.walls.first().cloned() else { return };
     second.name.push_str(", again");
@@ -61,7 +62,7 @@ pub(super) fn of_two_rectangles(scene: &mut Scene) {
     scene.walls.push(second);
 }
 
-/// Replaces the cube by the plane of its upper face, for a control.
+/// Replaces the cube by the plane of its upper face, for a negative control.
 pub(super) fn of_a_plane(scene: &mut Scene) {
     for wall in &mut scene.walls {
         wall.shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };

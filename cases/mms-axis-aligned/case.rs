@@ -9,12 +9,12 @@ const GIMP: &str = "mpm+gimp+flip";
 const SPLINES: &str = "mpm+flip";
 const HATS: &str = "mpm+linear+flip";
 /// Points per cell and axis for B-splines. The sum over moving points is a quadrature whose error does not decrease
-/// with the cell. With fewer points this error dominates (order 1.3 with four, 1.8 with six).
+/// with the cell length. With fewer points this error dominates (order 1.3 with four, 1.8 with six).
 const POINTS_OF_SPLINES: u32 = 10;
-/// Points per cell and axis for uGIMP, for the same reason.
+/// Points per cell and axis for uGIMP, enough for a small quadrature error.
 const POINTS_OF_GIMP: u32 = 4;
-/// Fraction of the Courant limit at which the error of the time step is below the error of the cell. With 0.4, both
-/// orders fall to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
+/// Courant number at which the error of the time step is below the error of the cell length. With 0.4, the orders of
+/// uGIMP and of B-splines fall to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
 const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
@@ -39,13 +39,13 @@ fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()
 }
 
-/// Returns runs with time steps so small that the error of the cell dominates.
+/// Returns runs with time steps so small that the error of the cell length dominates.
 fn in_small_steps(solver: &'static str, points: u32) -> Vec<Run> {
     let resolution = |cells| Resolution::Grid { cells, points, courant: SMALL_STEP };
     [16.0, 32.0, 64.0].map(|cells| Run::new(PLAIN, solver, resolution(cells))).to_vec()
 }
 
-/// Returns the order in the cell, fitted over three resolutions.
+/// Returns the order of convergence in the cell length, fitted over three resolutions.
 fn order(done: &[FinishedRun]) -> Result<f64, MissingData> {
     let points: Result<Vec<(f64, f64)>, MissingData> =
         done.iter().zip([16.0, 32.0, 64.0]).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();

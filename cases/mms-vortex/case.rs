@@ -16,7 +16,7 @@ const SOLVERS: [(&str, &str); 3] = [
 const KEEPS_NO_NOISE: &str = "mpm+apic";
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
-/// Returns a level with small steps, because the error of the time step must be below the error of the grid.
+/// Returns a level with time steps so small that their error is below the error of the grid.
 const fn level(name: &'static str, cells: f64) -> Level {
     Level { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
 }
@@ -37,7 +37,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Ends the run at the largest rotation.
+/// Ends the run at 0.5 s, when the rotation is largest.
 fn half(scene: &mut Scene) {
     scene.duration = Duration::Seconds(0.5);
 }
@@ -97,8 +97,9 @@ fn claims() -> Vec<Claim> {
     claims.push(off(
         "root mean square error of the displacement at the largest turn, 1/128 cells".to_owned(),
         run("mpm", LEVELS[3]).long().known(
-            "FLIP keeps velocities of the points that the grid does not resolve. With 128 cells they have grown until the \
-             largest rotation, and points have an error of eight cells. A transfer that removes them converges",
+            "with FLIP, points keep velocities that the grid does not resolve. With 128 cells these velocities grow \
+             until the largest rotation, and points have an error of eight cells. A transfer that removes these \
+             velocities converges",
         ).up_to(0.1),
         judged(0.036 / 8.0, "an eighth of the tolerance with 16 cells: at least first order in the cell"),
         Control::without_the_error("APIC", KEEPS_NO_NOISE, LEVELS[3].resolution),

@@ -19,11 +19,11 @@ use modal::{InwardDisplacements, Modal, RAMP_TIME, law};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
-/// Levels over which the order is fitted.
+/// Levels of resolution over which the order of convergence is fitted.
 const ORDER: &[Level] = &[LEVELS[0], LEVELS[1], LEVELS[2], fraction("dt=.0125", 0.0125)];
 /// Time step at which the residual oscillation of the paper's Fig. 6, 0.15 F_eq, occurs with 40 cycles at κ = 1.
 const FIGURE_STEP: Resolution = Resolution::CriticalFraction(0.0854);
-/// Number of cycles of the ramp in the plain scene.
+/// Number of calculation cycles in which the walls move, in the plain scene.
 const RAMP: u64 = 40;
 const MODAL: [&str; 3] = ["kappa-0", "kappa-2_3", "kappa-1"];
 const MODES: Source =
@@ -68,12 +68,12 @@ fn claims() -> Vec<Claim> {
     .concat()
 }
 
-/// Returns the paper as source of a printed value.
+/// Returns a statement of the paper as source.
 fn printed(what: &'static str) -> Source {
     Source::Printed(&cundall_strack_1979::WORK, what)
 }
 
-/// Claims the static forces at each named contact of the damped packing.
+/// Returns the claims on the static forces at each named contact after compression.
 fn static_forces() -> Vec<Claim> {
     type Force = fn(&Modal) -> f64;
     let contacts: [(&str, &str, Force); 6] = [
@@ -119,8 +119,9 @@ fn static_forces() -> Vec<Claim> {
     claims
 }
 
-/// Returns the error of the static forces, in units of k_n δ. The first part is the force b that rotates by (a − b)/2R
-/// with its contact, zero at κ = 0. The second is rounding of the walls' positions by ε 3R in each cycle of motion.
+/// Returns the error of the static forces, in units of k_n δ. The first part arises because the force k_n b rotates
+/// with its contact by (a − b)/2R, where a and b are the displacements of edge and corner discs; it is zero at κ = 0.
+/// The second part is the rounding of wall positions by ε 3R in each cycle of motion.
 fn left_out(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let over_radius = over_radius(variant);
@@ -130,7 +131,7 @@ fn left_out(variant: &str) -> f64 {
     0.5 * rest.corner * (rest.edge - rest.corner) * over_radius + rounding
 }
 
-/// Returns δ/R, the walls' travel over the radius, with steps of a tenth of the critical time step.
+/// Returns δ/R, the travel of the walls divided by the radius, for time steps of a tenth of the critical step.
 fn over_radius(variant: &str) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (phase, step) = (&scene.walls[0].motion.phases[0], 0.1 * scene.critical_time_step());
@@ -160,7 +161,7 @@ fn inward(done: &FinishedRun) -> Result<Vec<InwardDisplacements>, MissingData> {
     Ok(edge.zip(corner).map(|(edge, corner)| InwardDisplacements { edge, corner }).collect())
 }
 
-/// Returns value and expected value of the disc and sample with the largest error.
+/// Returns value and expected value at the sample with the largest error, over edge and corner disc.
 fn worst(
     time: &[f64],
     values: &[InwardDisplacements],
@@ -206,7 +207,7 @@ fn without_geometry(done: &[FinishedRun]) -> Result<Vec<InwardDisplacements>, Mi
     Ok((0..samples).map(limit).collect())
 }
 
-/// Claims the discrete solution of the calculation cycle, over 400 cycles.
+/// Returns the claims that the displacements over 400 cycles follow the discrete solution of the calculation cycle.
 fn discrete() -> Vec<Claim> {
     let discrete_claim = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
@@ -232,8 +233,8 @@ fn discrete() -> Vec<Claim> {
     MODAL.map(discrete_claim).to_vec()
 }
 
-/// Claims that the deviation from the linear solution is of first order in the overlap, as expected from the change of
-/// geometry.
+/// Returns the claim that the deviation from the linear solution is of first order in the overlap, as expected from the
+/// change of geometry.
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .runs(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
@@ -251,8 +252,8 @@ fn geometry() -> Claim {
         }))
 }
 
-/// Sets a ramp that lasts 40 steps of 0.1 of the critical step, for any step of the run. The run lasts ten periods of
-/// the slow mode after it.
+/// Sets a ramp of the same duration for each time step of the run: 40 steps of 0.1 of the critical step. The run ends
+/// ten periods of the slow mode after the ramp.
 fn fixed_ramp(scene: &mut Scene) {
     let modal = Modal::from_scene(scene);
     let ramp = RAMP_TIME / modal.rate.sqrt();
@@ -276,9 +277,9 @@ fn modal_error(done: &[FinishedRun]) -> Result<Measurement, MissingData> {
     worst(&done[0].series().time, &without_geometry(done)?, &exact)
 }
 
-/// Errors of the displacement at each level by the phase error of central differences, as fractions of the walls'
+/// Errors of the displacement at each level due to the phase error of central differences, as fractions of the walls'
 /// travel. The phase error grows by ω³Δt²/24 per unit of time, from the middle of the ramp to ten periods after the
-/// ramp. Values are for κ = 0, where they are largest, and rounded up.
+/// ramp. The values are for κ = 0, where they are largest, and rounded up.
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {
@@ -299,7 +300,8 @@ fn continuous() -> Vec<Claim> {
                      2.96e-3 and 7.4e-4 at κ = 0, the worst case, rounded up to include the geometry",
                 ))
                 .refuses(lighter());
-            // At coarser steps, the tolerance is the phase error of central differences, which other schemes do not have.
+            // Only the claim at the finest step is solver-independent. At coarser steps, the tolerance is the phase
+            // error of central differences, which other schemes do not have.
             claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
         }
         claims.push(
@@ -429,8 +431,8 @@ fn damping() -> Vec<Claim> {
                 )
                 .within(computed(
                     1.0 / (70.0 * PI),
-                    "the mean over 70 periods may contain a fraction of a period: 1/(70 π) of an oscillation as large \
-                     as the mean",
+                    "the mean over 70 periods may contain a fraction of a period, which adds 1/(70 π) of an \
+                     oscillation as large as the mean",
                 ))
                 .refuses(Control::scene("damping holds the walls back: a hundredth less travel", |scene| {
                     if scene.global_damping > 0.0 {
@@ -453,8 +455,8 @@ fn damping() -> Vec<Claim> {
     claims
 }
 
-/// Returns the decay rate (1/s) of the slow mode p = a + √2 b after the walls have stopped. Its distance x from the
-/// final value follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
+/// Returns the decay rate (1/s) of the slow mode p = a + √2 b after the walls have stopped. The distance x of p from
+/// its final value follows `x_{n+1} = A x_n − B x_{n−1}` with B = exp(−2γΔt), fitted by least squares over two periods.
 fn decay(done: &FinishedRun) -> Result<f64, MissingData> {
     let scene = &done.scene;
     let time_step = done.record.provenance.time_step;
@@ -479,8 +481,8 @@ const DISTORTION: [&str; 4] =
 /// Cycle at which the walls begin to rotate.
 const TURN: usize = 1500;
 
-/// Claims the number of slipping contacts in slow compression. At 15° the eight contacts at walls and corners slip, and
-/// at 30° none.
+/// Returns the claims on the number of slipping contacts in slow compression. With a friction angle of 15° the eight
+/// contacts between walls and corner discs slip, with 30° none.
 fn slip_in_compression() -> Vec<Claim> {
     let slip_claim = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {
@@ -503,17 +505,18 @@ fn slip_in_compression() -> Vec<Claim> {
     DISTORTION.map(slip_claim).to_vec()
 }
 
-/// Returns F_n between centre and edge from the cycle at which the walls begin to rotate.
+/// Returns the normal force F_n (N) between centre and edge disc, from the cycle at which the walls begin to rotate.
 fn turning(done: &FinishedRun) -> Result<&[f64], MissingData> {
     Ok(&done.column("centre-edge.normal_force")?[TURN..])
 }
 
-/// Returns the largest F_n from that cycle on (N).
+/// Returns the largest F_n from the cycle at which the walls begin to rotate (N).
 fn largest_turning(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(largest(turning(done)?.iter().copied()))
 }
 
-/// Returns the largest difference between the curves of two runs over the largest value of the first.
+/// Returns the largest difference between the F_n of two runs while the walls rotate, divided by the largest F_n of the
+/// first run.
 fn apart(a: &FinishedRun, b: &FinishedRun) -> Result<f64, MissingData> {
     let differences = turning(a)?.iter().zip(turning(b)?).map(|(a, b)| a - b);
     Ok(largest(differences) / largest_turning(a)?)
@@ -566,8 +569,8 @@ fn distortion() -> Vec<Claim> {
                 },
             )
             .within(exactly(
-                "the paper prints only a decrease: a thousandth distinguishes it from a force that grows \
-                             to the end",
+                "the paper states only a decrease; a decrease by a thousandth differs from a force that grows to the \
+                             end",
             ))
             .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
         claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
@@ -590,7 +593,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// Each constant is the formula's value, rounded up by less than 10 %.
+    /// Checks that each value of `PHASE_ERRORS` is the computed phase error, rounded up by less than 10 %.
     #[test]
     fn what_is_allowed_is_the_phase_error_rounded_up() {
         let scene = CASE.variant("kappa-0").unwrap();

@@ -1,4 +1,4 @@
-//! The discs as elastic bodies: contact force at rest, frequency of free vibration, and apparent spring stiffness.
+//! Nine elastic discs: contact force at rest, frequency of free vibration, and apparent spring stiffness.
 //!
 //! There is no friction. The walls move in by d = 0.01 R and stop: a row of three diameters is shortened by 2d in both
 //! directions. Rigid discs on springs k_n have the force k_n d/2 at all contacts and ω² = 2 k_n/m. Elastic discs have
@@ -26,7 +26,8 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
         let DiscDisplacements { u, v, w } = disc.gives(force);
         let compliance = 2.0 * u + v - w * w / (2.0 * (u - v));
         let restoring = 3.0 * PI * disc.modulus / compliance;
-        // Unit force on a disc whose displacement is x: forces at wall and neighbour, in outer rows and in middle rows.
+        // A unit net force displaces a disc by x. `outer` and `middle` are the forces at wall and neighbour, in outer
+        // rows and in middle rows.
         let x = compliance / 3.0;
         let inner = (x - (u - 0.5 * w)) / (u - v - w);
         let differs = -w / (2.0 * (u - v));
@@ -36,7 +37,8 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
         let centre = disc.stirred([middle[1]; 4]);
         // Four edge discs move along one axis, four corner discs along both.
         let stirred = (4.0 * (edge + corner) + centre) / (12.0 * x * x);
-        // The neighbour's force is half of the wall's: (1 + 1/4)/(3/2)² of both contacts, of compliance/3.
+        // The force at the neighbour is half of the force at the wall. With these forces f, the relative increase of
+        // the compliance is Σf²/(Σf)² = (1 + 1/4)/(3/2)², divided by compliance/3.
         Some(VibrationParameters { force, restoring, stirred, patch: disc.patch(force), share: 5.0 / 3.0 / compliance })
     },
     springs: 2.0,

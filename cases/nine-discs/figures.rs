@@ -58,7 +58,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(all)
 }
 
-/// Returns the force between centre and edge over its static value, by cycles from the stop of the walls.
+/// Returns the force between centre and edge disc divided by its static value, against the number of cycles since the
+/// walls stopped.
 fn after_stop(done: &FinishedRun, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
@@ -110,7 +111,8 @@ fn speed(
     ))
 }
 
-/// Returns the figure of the remaining amplitude after 40 cycles over the step, which the paper does not print.
+/// Returns the figure of the amplitude of oscillation after 40 cycles of loading, against the time step. The paper does
+/// not print its time step.
 fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
     let scene = runner.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
     let modal = Modal::from_scene(&scene);

@@ -4,19 +4,20 @@ use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 use std::f64::consts::SQRT_2;
 
-/// Duration of the walls' ramp, in units of √(m/k_n): 40 steps of a tenth of the critical one.
+/// Duration of the walls' ramp, in units of √(m/k_n): 40 steps of a tenth of the critical time step.
 pub(crate) const RAMP_TIME: f64 = 40.0 * 0.1 * 2.0;
 
-/// Closed forms for one scene.
+/// Modal solution of one scene in closed form.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Modal {
-    /// κ = k_s/k_n.
+    /// Ratio of tangential to normal stiffness, κ = k_s/k_n.
     pub(crate) kappa: f64,
-    /// k_n/m (1/s²).
+    /// Normal stiffness divided by the mass, k_n/m (1/s²).
     pub(crate) rate: f64,
 }
 
-/// Displacements of the edge disc (a) and of the corner disc along each axis (b), as fractions of the wall travel.
+/// Inward displacement of the edge disc (a) and of the corner disc along each axis (b), as fractions of the wall
+/// travel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InwardDisplacements {
     pub(crate) edge: f64,
@@ -32,14 +33,14 @@ impl Modal {
         }
     }
 
-    /// Returns the displacements at rest.
+    /// Returns the displacements at rest after compression.
     pub(crate) fn at_rest(&self) -> InwardDisplacements {
         let k = self.kappa;
         let below = 2.0 + 4.0 * k + k * k;
         InwardDisplacements { edge: (1.0 + 2.0 * k) / below, corner: (2.0 + 3.0 * k) / (2.0 * below) }
     }
 
-    /// Returns ω₋ and ω₊ (rad/s).
+    /// Returns the frequencies ω₋ and ω₊ of the two modes (rad/s).
     pub(crate) fn frequencies(&self) -> [f64; 2] {
         let k = self.kappa;
         [-1.0, 1.0].map(|sign| (self.rate * (2.0 + 2.0 * k + sign * SQRT_2 * k)).sqrt())
@@ -86,8 +87,8 @@ impl Modal {
         -((1.0 - half - beta * omega * omega * time_step) / (1.0 + half)).ln() / (2.0 * time_step)
     }
 
-    /// Returns the amplitude of the force between centre and edge after the ramp, as a fraction of its static value. It
-    /// is the sum over both modes.
+    /// Returns the amplitude of the force between centre and edge after a ramp of `ramp` cycles, as a fraction of its
+    /// static value. The amplitudes of both modes are added.
     pub(crate) fn residual(&self, ramp: u64, time_step: f64) -> f64 {
         let rest = self.at_rest();
         let parts = [rest.edge + SQRT_2 * rest.corner, rest.edge - SQRT_2 * rest.corner].map(|part| 0.5 * part);

@@ -1,4 +1,4 @@
-//! A disc hits a frictional wall at an angle and slips throughout. The final velocities have exact values.
+//! A disc hits a frictional wall at an angle and slips during the whole impact. The final velocities have exact values.
 
 use crate::exact::dashpot::lag;
 use crate::rows::incline::stronger_friction;
@@ -30,11 +30,11 @@ struct Exit {
     along: f64,
     /// Velocity across the wall (m/s).
     across: f64,
-    /// Angular velocity (rad/s).
+    /// Spin (rad/s).
     spin: f64,
 }
 
-/// Computes the exact velocities by quadrature over the closed form of the overlap (derivation).
+/// Computes the exact velocities after the impact by quadrature over the closed form of the overlap (derivation).
 fn exact(scene: &Scene) -> Exit {
     const PARTS: u32 = 100_000;
     let law = scene.laws[0].unwrap_or_default();
@@ -44,7 +44,7 @@ fn exact(scene: &Scene) -> Exit {
     let omega = (law.normal_stiffness() / grain.mass - decay * decay).sqrt();
     let interval = std::f64::consts::PI / omega / f64::from(PARTS);
     let turning = grain.mass * grain.radius * grain.radius / grain.inertia;
-    // Slip velocity, tangential spring displacement, and impulse along the wall over the mass.
+    // Slip velocity, tangential spring displacement, and impulse along the wall divided by the mass.
     let (mut slip, mut stretch, mut impulse) = (along - grain.spin.z * grain.radius, 0.0, 0.0);
     for part in 0..PARTS {
         let time = (f64::from(part) + 0.5) * interval;
@@ -65,13 +65,13 @@ fn exact(scene: &Scene) -> Exit {
     }
 }
 
-/// Errors due to finite steps and the lever arm of the torque.
+/// Error bounds due to finite time steps, and the overlap that limits the error of the lever arm.
 struct StepErrors {
-    /// Error of the normal impulse over the mass (m/s).
+    /// Error of the normal impulse, divided by the mass (m/s).
     impulse: f64,
-    /// Error of the impulse along the wall over the mass and μ (m/s).
+    /// Error of the impulse along the wall, divided by the mass and by μ (m/s).
     along: f64,
-    /// Overlap over the radius.
+    /// Largest overlap, divided by the radius.
     overlap: f64,
 }
 
@@ -84,9 +84,9 @@ fn friction(scene: &Scene) -> f64 {
     scene.laws[0].map_or(f64::NAN, |law| law.friction)
 }
 
-/// Returns the tolerance for finite steps. Contact begins and ends within a step, which adds or removes half a step of
-/// the dashpot's force each time. The dashpot is half a step late, as in the collision of two discs. The remainder is
-/// of second order.
+/// Returns the tolerance for finite steps. Contact begins and ends within a step, and each time half a step of the
+/// dashpot's force is added or lost. The dashpot is half a step late, as in the collision of two discs. The remainder
+/// is of second order.
 fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
     let step_error = |scene: Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
@@ -158,8 +158,8 @@ fn claims() -> Vec<Claim> {
                     })
                     .within(within_a_step(variant, allowed))
                     .refuses(control.clone());
-                // One claim is solver-independent. In the other claims, the results depend on the release of the
-                // dashpot and on its part in the Coulomb limit, which differ between solvers.
+                // Only this claim is solver-independent. The results of the other claims depend on the release of the
+                // dashpot and on the part of the dashpot in the Coulomb limit, in which solvers differ.
                 claims.push(if solver == "dem:lammps" && variant == "elastic" { row.fair_to_any() } else { row });
             }
         }
@@ -196,7 +196,8 @@ mod tests {
 
     use super::*;
 
-    /// Slip lasts for the whole impact: 4 − μ·2 v_n along the wall, and R ω = 2 μ·2 v_n.
+    /// Checks the velocities after slip during the whole impact: 4 − μ·2 v_n (m/s) along the wall, and R |ω| = 2 μ·2
+    /// v_n.
     #[test]
     fn the_quadrature_has_the_elastic_answer() {
         let exit = exact(&CASE.variant("elastic").unwrap());

@@ -16,7 +16,7 @@ use grainbench_scene::motion::Moment;
 use nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells("R/2", 2.0, 3)];
-/// Time step of the external solvers (s). The walls stop at the end of a step.
+/// Time step of the comparisons with LAMMPS and LIGGGHTS: 5 ms. The walls stop at the end of a step.
 const STEP: Resolution = Resolution::TimeStep(5e-3);
 
 pub(crate) static CASE: Case = Case {
@@ -28,8 +28,8 @@ pub(crate) static CASE: Case = Case {
             forces from the same start. Elastic discs, whose contacts need no stiffness, behave like discs on springs.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The photographed packing is lost. The random packings have its sizes and not its positions, so single forces \
-               cannot be compared. The range of F_H/F_V is wide, and stage A determines much of it.",
+    weakness: "The photographed packing is lost. The random packings have its grain sizes but not its positions, so \
+               single forces cannot be compared. The range of F_H/F_V is wide, and stage A determines much of it.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -37,8 +37,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Packings with the parameters of each table of the paper. Ten packings were tried, and these reach the ratio of stage
-/// A (derivation).
+/// Packings with the parameters of each table of the paper. Eleven packings were tried for each table. The lists
+/// contain those that reach F_H/F_V of stage A (derivation).
 const TABLES: [&[&str]; 3] = [
     &[
         "table-1",
@@ -55,18 +55,18 @@ const TABLES: [&[&str]; 3] = [
     &[PLAIN, "seed-2", "seed-3", "seed-4", "seed-5", "seed-6", "seed-7", "seed-8", "seed-9", "seed-11"],
     &["table-3", "table-3-seed-2", "table-3-seed-3", "table-3-seed-4", "table-3-seed-8", "table-3-seed-9"],
 ];
-/// F_H/F_V that the paper prints for stage B with the parameters of Tables 1 and 2. In its Table 3, stage A is already
-/// at 0.46.
+/// F_H/F_V that the paper prints for stage B with the parameters of Tables 1 and 2. The value of Table 3 is not
+/// compared, because its stage A is already at 0.46.
 const PRINTED: [CitedNumber; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "convergence limit of the search for the motion of the walls";
 
 fn run(variant: &'static str) -> Run {
-    // The paper's convention, with which the wall motion was found.
+    // The search for the wall motion used this solver, which has the contact convention of the paper.
     Run::new(variant, "dem:1979", LEVELS[0].resolution)
 }
 
-/// Returns stages A and B.
+/// Returns the sums over walls and contacts at stages A and B of a run.
 fn stages(done: &FinishedRun) -> Result<[Stage; 2], MissingData> {
     match &done.record.snapshots[..] {
         [_, a, b] => Ok([Stage::from_snapshot(a), Stage::from_snapshot(b)]),
@@ -77,7 +77,8 @@ fn stages(done: &FinishedRun) -> Result<[Stage; 2], MissingData> {
 /// Function that reads a value from the stages of a packing.
 type StageReader = fn(&[Stage; 2]) -> f64;
 
-/// Returns the packing value with the largest difference from `from`. NaN counts as the largest.
+/// Returns the value of `read` for the packing in which it differs most from `from`. NaN counts as the largest
+/// difference.
 fn farthest(done: &[FinishedRun], from: f64, read: StageReader) -> Result<f64, MissingData> {
     let found: Vec<Measurement> = done
         .iter()
@@ -114,7 +115,7 @@ fn further_to_b() -> Control {
     })
 }
 
-/// Claims that every packing on springs must satisfy. The worst packing decides.
+/// Returns the claims on packings of discs on springs. The packing with the largest error decides.
 fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     let growth: StageReader = |[a, b]| b.vertical / a.vertical - 1.0;
     let mut claims = equilibrium(packings, words);
@@ -128,12 +129,13 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     claims
 }
 
-/// Expects a quantity to have an imposed value, in units of a scale; the worst of several packings decides.
+/// Returns a measurement of a quantity against its imposed value, in units of a scale. The packing with the largest
+/// error decides.
 fn held(expected: f64, scale: f64, read: StageReader) -> impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> {
     move |done| Ok(Measurement::new(farthest(done, expected, read)?, expected, scale))
 }
 
-/// Claims on the equilibrium at both stages; the worst of several packings decides.
+/// Returns the claims on the equilibrium at both stages. The packing with the largest error decides.
 fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
     let quantity = |quantity: &str| claim(format!("{quantity}, {words}"), "1").runs(packings.to_vec());
     let smooth = || Control::without(Effect::Friction);
@@ -184,7 +186,7 @@ fn equilibrium(packings: &[Run], words: &str) -> Vec<Claim> {
     ]
 }
 
-/// Claims that the paper's printed value belongs to the distribution of our packings.
+/// Returns the claim that the printed value is in the interval for one more of our packings.
 fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
     claim(format!("F_H/F_V at stage B, mean of {words}"), "1")
         .runs(packings)
@@ -199,7 +201,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Claims that half the time step leads to the same stage B.
+/// Returns the claim that half the time step gives the same F_H/F_V at stage B.
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
         .runs([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])
@@ -210,12 +212,13 @@ fn step() -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Columns that compare perturbed runs and external solvers.
+/// Columns for the comparison of perturbed runs, and of our solver with LAMMPS and LIGGGHTS.
 const PARTING: DivergenceColumns = DivergenceColumns {
     columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"],
 };
 
-/// The predictability horizon (steps). Discs at first contact separate and touch many times before they carry force.
+/// Predictability horizon (steps). The horizon is late, because discs that come into contact separate and touch many
+/// times before they carry force.
 const HORIZON: u64 = 620;
 
 /// Reason why our solver cannot follow LIGGGHTS in each digit.
@@ -223,7 +226,8 @@ const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0
                              of an opened contact while the pair is on its neighbour list (plane-shear), and here \
                              contacts open and close again";
 
-/// Returns a run that both external solvers support. LIGGGHTS moves walls in three dimensions only.
+/// Returns the run of a solver in the comparison with `program`. In the comparison with LIGGGHTS the discs are one
+/// layer of spheres, because LIGGGHTS moves walls in three dimensions only.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
     let run = Run::new(variant, solver, STEP).slow();
     if program == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
@@ -237,8 +241,8 @@ fn perturbed(variant: &'static str, disc: usize) -> Run {
     })
 }
 
-/// Claims on both external solvers from the same start, with dashpots that both support. Samples are compared up to the
-/// predictability horizon, and the stages afterwards.
+/// Returns the claims that our solver agrees with LAMMPS and LIGGGHTS from the same initial state, with dashpots that
+/// both programs support. Samples are compared up to the predictability horizon, and F_H/F_V at the stages afterwards.
 fn programs() -> Vec<Claim> {
     let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
         scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
@@ -280,8 +284,8 @@ fn programs() -> Vec<Claim> {
     claims
 }
 
-/// Returns F_H/F_V from the series at the end of the first of `parts` equal parts of the run, when all discs rest. It
-/// uses the last sample before that time, because a stored run does not contain each sample.
+/// Returns F_H/F_V when all discs are at rest, at the end of the first of `parts` equal parts of the run. The last
+/// sample up to this time is used, because a stored run does not contain each sample.
 fn ratio_in(done: &FinishedRun, parts: u64) -> Result<f64, MissingData> {
     let steps = &done.series().step;
     let end = steps.last().map_or(0, |last| last / parts);
@@ -291,7 +295,8 @@ fn ratio_in(done: &FinishedRun, parts: u64) -> Result<f64, MissingData> {
     Ok((right? - left?) / (top? - bottom?))
 }
 
-/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom over the initial height.
+/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom divided by the
+/// initial height.
 fn vertical_strain(done: &FinishedRun, time: f64) -> f64 {
     let [_, _, bottom, top] = &done.scene.walls[..] else { return f64::NAN };
     let moved = |wall: &grainbench_scene::scene::Wall| wall.motion.displacement(time, 0.0).translation.y;

@@ -1,4 +1,4 @@
-//! Fifty of the discs as elastic bodies, whose contacts have no contact stiffness parameter.
+//! A packing of fifty elastic discs. Their contacts have no stiffness parameter.
 
 use super::{FOUND, IMPOSED, LEVELS, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
 use crate::stage::NEAR_IN_GROWTH;
@@ -21,7 +21,7 @@ fn alone() -> Run {
     })
 }
 
-/// Returns F_V at stages A and B.
+/// Returns the vertical wall force F_V (N/m) at stages A and B.
 fn vertical(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok(stages(done)?.map(|stage| stage.vertical))
 }
@@ -40,7 +40,10 @@ pub(super) fn claims() -> Vec<Claim> {
         claim("F_V at stage B over that at stage A, walls at rest, 50 elastic discs", "1")
             .run(
                 alone()
-                    .known("forces decay at rest, more slowly with time and with more points per cell (derivation)")
+                    .known(
+                        "contact forces decay at rest; the decay becomes slower with time and with more points per \
+                            cell (derivation)",
+                    )
                     .up_to(0.02),
             )
             .holds("the forces on elastic discs at rest do not change", |done| {

@@ -1,4 +1,4 @@
-//! Figures of the forces at both stages, and F_H/F_V over the strain.
+//! Figures of the forces at both stages, and of F_H/F_V against the strain.
 
 use super::{PAIRS, STEP, elastic, experiment, run, time_of_a, vertical_strain};
 use grainbench_fields::picture::{Shot, fringe_constant, pictures};
@@ -7,17 +7,18 @@ use grainbench_harness::figure::Field;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
 
-/// Pixels along the longer side of a picture, and number of fringes in it.
+/// Pixels along the longer side of a picture.
 const PIXELS: u32 = 900;
+/// Fringe order at the 98th percentile of the stress difference over the pixels.
 const FRINGES: f64 = 3.0;
 
-/// Returns F_H/F_V over the vertical strain (%).
+/// Returns the curve of F_H/F_V against the vertical strain (%).
 fn path(done: &FinishedRun) -> Vec<(f64, f64)> {
     let force = |name: &str| done.series().column(name).unwrap_or_default();
     let sides = force("left.force_x").iter().zip(force("right.force_x"));
     let ends = force("bottom.force_y").iter().zip(force("top.force_y"));
     let ratios = sides.zip(ends).map(|((left, right), (bottom, top))| (right - left) / (top - bottom));
-    // At first, discs reach the walls one by one and the ratio is not meaningful.
+    // At first, discs come into contact with the walls one by one, and the ratio is not meaningful.
     let bearing = force("top.force_y").last().map_or(0.0, |last| 0.02 * last);
     let times = done.series().time.iter().copied().zip(force("top.force_y"));
     let points = times.zip(ratios).filter(|((_, top), _)| **top > bearing);
@@ -37,8 +38,8 @@ fn side_by_side(springs: &FinishedRun, elastic: &FinishedRun) -> Figure {
         "fringes-elastic",
         "Fringes of fifty discs, on springs and elastic",
         &format!(
-            "The same start and the same stages: stress from contact forces of springs, and stress of material points; \
-             c = {constant:.3e} Pa."
+            "Both start from the same packing and have the same stages. The fringes show the stress from contact \
+             forces of springs, and the stress of material points; c = {constant:.3e} Pa."
         ),
         pictures(Quantity::Fringes(constant), &shots, PIXELS / 2, None),
     )
@@ -84,7 +85,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves =
         vec![Curve::new("dem", Stroke::Line, course.clone()), Curve::new("stages A and B", Stroke::Markers, stages)];
     for [_, program] in PAIRS {
-        // Without the external solver and its stored run, there is no curve.
+        // LAMMPS or LIGGGHTS has no curve if it is not installed and no run of it is stored.
         if let Ok(theirs) = runner.run(&Run::new("programs", program, STEP)) {
             let label = format!("{program}, dashpots at contacts only");
             curves.push(Curve::new(label, Stroke::Markers, path(&theirs).into_iter().step_by(10).collect()));

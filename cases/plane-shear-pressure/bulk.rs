@@ -1,5 +1,5 @@
-//! Reading of the middle of the layer, snapshot by snapshot. If a run records the grains' time-averaged stress between
-//! snapshots, the reading uses it, because the instantaneous stress fluctuates by a third.
+//! Evaluation of the middle of the layer in each snapshot. If a run records the stress averaged over the time between
+//! snapshots, this average is used, because the instantaneous stress fluctuates by a third.
 
 use grainbench_fields::contact_stress::{Stress, contact_stress, tells_interval};
 use grainbench_fields::grid::Grid;
@@ -8,14 +8,15 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
-/// Reading of the bulk.
+/// Evaluation of the bulk in each snapshot.
 pub(super) const BULK: Reading = Reading { name: "bulk of a sheared layer", begin };
 
 /// Columns: time, packing fraction, shear rate, normal and shear stress with their momentum flux, instantaneous shear
-/// stress, and the part of it from normal forces.
+/// stress, and the instantaneous shear stress without tangential forces.
 const COLUMNS: [&str; 7] = ["time", "packing", "rate", "normal", "shear", "instant", "frictionless"];
 
-/// Limits of the bulk over the initial height, away from the walls and from the layers that they order.
+/// Lower and upper limit of the bulk, as fractions of the initial height. Near the walls, the grains are ordered in
+/// layers.
 const HEIGHTS: [f64; 2] = [0.25, 0.7];
 
 fn begin(scene: &Scene) -> Box<dyn Reader> {

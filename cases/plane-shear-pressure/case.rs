@@ -34,21 +34,23 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Variants with their approximate inertial number.
+/// Variants, each with its approximate inertial number.
 const RATES: [(&str, &str); 5] =
     [("i-.003", ".003"), ("i-.01", ".01"), ("i-.03", ".03"), ("i-.1", ".1"), ("i-.3", ".3")];
 
-/// Results for packings with other random seeds, made by `examples/seeds.rs`.
+/// Table of results for packings with other random seeds, computed by `examples/seeds.rs`.
 const PACKINGS: &str = include_str!("packings.csv");
 
 /// Reason for the tolerances.
 const BECAUSE: &str =
     "a sheared packing is a random sample: 99 % interval of the difference of two packings, from four seeds";
 
-/// Part of the run after which the flow is steady, because the walls have accelerated the middle of the layer (derivation).
+/// Fraction of the run after which the flow is steady. By then the moving walls have accelerated the middle of the
+/// layer (derivation).
 const STEADY: f64 = 0.25;
 
-/// Ratio of the lid's pressure in the comparison runs. The speed of their walls is larger by its square root.
+/// Factor by which the pressure of the lid is increased in the comparison runs. The wall speed is larger by the square
+/// root of this factor, so that the inertial number is unchanged.
 const PRESSED: f64 = 4.0;
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
@@ -64,7 +66,7 @@ fn average(scene: &mut Scene) {
     scene.columns = Columns { chosen: vec![Chosen::Contacts, Chosen::MeanVirial], digits: None, mean_every: 10 };
 }
 
-/// Returns the run at the same inertial number and four times the pressure.
+/// Returns the run at four times the pressure and the same inertial number.
 fn pressed(variant: &'static str) -> Run {
     run(variant, "dem").adjusted("four times the pressure, twice the speed", |scene| {
         average(scene);
@@ -119,8 +121,8 @@ fn series(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     mean(times, done.column(name)?, from).ok_or_else(|| MissingData(format!("samples of `{name}`")))
 }
 
-/// Returns the mean of the finite values. An external solver may omit the contacts of a step, which then has no stress;
-/// at least 98 % must have one.
+/// Returns the mean of the finite values from the time `from` (s) on. A value is not finite if a program outputs no
+/// contacts at this step. `None` if less than 98 % of the values are finite.
 fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
     let steady: Vec<f64> =
         times.iter().zip(values).filter(|(time, _)| **time >= from).map(|(_, value)| *value).collect();
@@ -129,7 +131,7 @@ fn mean(times: &[f64], values: &[f64], from: f64) -> Option<f64> {
     enough.then(|| finite.iter().sum::<f64>() / finite.len() as f64)
 }
 
-/// Returns the ratio of shear to normal stress in the bulk.
+/// Returns the ratio of shear to normal stress in the bulk, averaged over the steady flow.
 fn friction(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(bulk(done, "shear")? / bulk(done, "normal")?)
 }
@@ -168,7 +170,7 @@ fn claims() -> Vec<Claim> {
     all
 }
 
-/// Claims the lid's mean equilibrium: the layer carries its pressure.
+/// Returns the claim that the mean normal stress in the layer equals the pressure of the lid.
 fn normal(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
     let allowed = apart(PACKINGS, &quantity);
@@ -181,10 +183,11 @@ fn normal(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
 }
 
-/// Claims that shear stress is uniform through the layer.
+/// Returns the claim that the mean shear stress in the layer equals the shear stress on the walls.
 fn shear(variant: &'static str, about: &str) -> Claim {
-    // Reverses the shear stress from tangential forces, for a control. In fast flow, its omission would change the
-    // result only by the difference of two packings. The reversal changes it by twice as much.
+    // Reverses the part of the shear stress that comes from tangential forces, for a negative control. In fast flow,
+    // its omission would change the result only by the difference of two packings. The reversal changes the result by
+    // twice as much.
     fn turned(tables: &mut [Table]) {
         for table in tables {
             let part = |name: &str| table.column(name).map(<[f64]>::to_vec);
@@ -210,7 +213,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread("tangential forces with the wrong sign in the stress", turned))
 }
 
-/// Claims that four times the pressure and twice the speed change nothing.
+/// Returns the claim that a quantity does not change with four times the pressure and twice the wall speed.
 fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     const LAW: &str =
         "the run at four times the pressure and twice the speed: rigid grains depend on I alone (derivation)";
@@ -223,9 +226,10 @@ fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
         .refuses(wrongly_pressed(about.starts_with(".0"), name == INERTIA.0))
 }
 
-/// Returns a negative control. If the quantity depends on the inertial number, the pressure is four times as large at
-/// the same speed. If it hardly depends on it, there is no friction. If the spread of packings is half of the inertial
-/// number, the speed makes that number four times as large.
+/// Returns a negative control of [`scales`], which changes only the run at four times the pressure. In fast flow, the
+/// wall speed of this run is not increased. In slow flow, friction and packing fraction hardly depend on the inertial
+/// number, so this run has no friction between grains. The inertial number of slow flow has a spread over packings of
+/// half its value, so its control has four times this number, by a higher wall speed.
 fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     let is_pressed = |scene: &mut Scene| pistons(scene).any(|piston| piston.force > 40.0);
     if is_slow && is_inertia {
@@ -249,7 +253,7 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     })
 }
 
-/// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same start.
+/// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
 fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
@@ -261,13 +265,14 @@ fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     })
 }
 
-/// Returns the tolerance from the spread of a quantity over packings, in units of its mean, and the mean.
+/// Returns a tolerance and the mean of a quantity over the packings. The tolerance follows from the spread, in units of
+/// the mean.
 fn of_draws(quantity: &str) -> (Tolerance, f64) {
     let mean = mean_of(PACKINGS, quantity);
     (computed(apart(PACKINGS, quantity) / mean, format!("{BECAUSE}; in units of the mean of the packings")), mean)
 }
 
-/// Returns the figures of friction and packing fraction over the inertial number, for ours and for LAMMPS.
+/// Returns the figures of friction and packing fraction against the inertial number, for our solver and for LAMMPS.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (solver, stroke) in [("dem", Stroke::MarkedLine), ("lammps", Stroke::Markers)] {

@@ -21,8 +21,9 @@ pub(crate) static CASE: Case = Case {
             stress and coordination.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The references are other programs and not an exact solution, so a common error is invisible. After the horizon \
-               the packing is still accelerating. Only differences between runs are statistics, and not the means.",
+    weakness: "The references are other programs and not an exact solution, so a common error is invisible. After the \
+               horizon the packing is still accelerating. Therefore only differences between runs are judged \
+               statistically, not the means.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
@@ -30,14 +31,15 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Kinetic energy of translation.
+/// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";
 
 const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> Sum {
     Sum { column, words, unit, logarithm: false }
 }
 
-/// Quantities whose time averages are compared after the horizon. The energy varies by factors when shear waves pass.
+/// Quantities whose time averages are compared after the horizon. For the energy, the logarithm is averaged, because
+/// the energy varies by factors when shear waves pass.
 const SUMS: [Sum; 5] = [
     Sum { logarithm: true, ..sum(ENERGY, "logarithm of the kinetic energy", "1") },
     sum("packing.sigma_xx", "stress σ_xx", "Pa"),
@@ -50,12 +52,12 @@ const SUMS: [Sum; 5] = [
 const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 keeps the tangential spring displacement of an opened contact while the pair is on \
                              its neighbour list, and continues with it when the contact closes again (derivation)";
 
-/// Returns the run of the beginning, with a fine step.
+/// Returns a short run with a fine time step.
 fn short(solver: &'static str) -> Run {
     Run::new(PLAIN, solver, LEVELS[1].resolution)
 }
 
-/// Returns the run up to the first contact that closes again, with frequent samples.
+/// Returns the run that ends before a contact closes again, with frequent samples.
 fn first(solver: &'static str) -> Run {
     Run::new("first", solver, LEVELS[1].resolution)
 }
@@ -65,7 +67,7 @@ fn long(solver: &'static str) -> Run {
     Run::new("long", solver, LEVELS[0].resolution)
 }
 
-/// Columns that compare perturbed runs of our solver in the convention of LAMMPS.
+/// Columns for the comparison of perturbed runs of our solver in the convention of LAMMPS.
 const PARTING: DivergenceColumns = DivergenceColumns { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
@@ -95,10 +97,10 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// The predictability horizon (steps of 1e-3).
+/// Predictability horizon (number of steps of 1e-3 s).
 const HORIZON: u64 = 800;
 
-/// Claims the kinetic energy over the first steps, before motion becomes chaotic.
+/// Returns the claim on the kinetic energy over the first steps, before motion becomes chaotic.
 fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
     let allowed = rounding(
         2.0,
@@ -117,7 +119,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut courses = Vec::new();
     for [ours, program] in PAIRS {
         let ours = runner.run(&long(ours))?;
-        // Without the external solver and its stored run, there is no curve.
+        // LAMMPS or LIGGGHTS has no curve if it is not installed and no run of it is stored.
         if let Ok(theirs) = runner.run(&long(program)) {
             courses.push((program.to_owned(), Stroke::Markers, theirs.clone()));
             partings.push((format!("{program} and ours"), ours.clone(), theirs));

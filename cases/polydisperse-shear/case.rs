@@ -22,7 +22,7 @@ mod yielding;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
-/// Returns a grid with `cells` cells across the slab and two points a cell and axis, as in the paper.
+/// Returns a resolution with `cells` cells across the slab and two points per cell and axis, as in the paper.
 const fn grid(cells: f64) -> Resolution {
     Resolution::Grid { cells, points: 2, courant: 0.4 }
 }
@@ -42,9 +42,10 @@ pub(crate) static CASE: Case = Case {
             flow and friction, with very little numerical loss.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),
-    weakness: "The packing of the paper is not printed. Ours has its sizes, and packings differ by factors of two to three, so \
-               ratios are compared. The long tier tests findings of the paper on half of its grid and over five packings. \
-               Grains two cells across do not resolve their internal stress.",
+    weakness: "The packing of the paper is not printed. Our packing has the printed sizes. Results differ between \
+               packings by factors of two to three, so ratios are compared. The long tier tests findings of the paper \
+               on half of its grid and over five packings. Grains two cells across do not resolve their internal \
+               stress.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
@@ -56,12 +57,12 @@ fn claims() -> Vec<Claim> {
     [coarse::claims(), springs::claims(), paper::claims(), yielding::claims()].concat()
 }
 
-/// Number of snapshots during the run, every 2.5 % of shear.
+/// Number of snapshots during the run: one every 2.5 % of shear.
 const FRAMES: u32 = 31;
 /// Mean shear at which the paper shows force chains.
 const CHAINS: [f64; 2] = [0.63, 0.71];
 
-/// Returns the run up to a mean shear, with a number of snapshots during it.
+/// Returns a run that ends at a mean shear, with `snapshots` equally spaced snapshots.
 fn to_shear(run: Run, shear: f64, snapshots: u32) -> Run {
     run.adjusted(&format!("to {:.0} % shear", 100.0 * shear), move |scene| sheared(scene, shear, snapshots))
 }
@@ -73,7 +74,8 @@ fn time_of(scene: &Scene, shear: f64) -> f64 {
     shear * width / speed
 }
 
-/// Ends the run at a mean shear. With snapshots, it adds those of the paper's force chains.
+/// Ends the run at a mean shear. If `snapshots` is not zero, adds snapshots at the mean shears for which the paper
+/// shows force chains.
 fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
     scene.duration = Duration::Seconds(time_of(scene, shear));
     scene.snapshots = snapshots;
@@ -92,7 +94,8 @@ fn gained(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     Ok(column[column.len() - 1] - column[0])
 }
 
-/// Compares the change of momentum with the impulse, in units of the largest impulse.
+/// Compares the change of momentum with the impulse of the grains with prescribed motion, in units of the largest
+/// impulse.
 fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let budget_column = |name: &str| done.column(&format!("budget.{name}"));
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

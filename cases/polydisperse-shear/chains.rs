@@ -1,10 +1,10 @@
 //! Force chains: quasi-linear rows of grains that carry more than the mean stress, after Peters, Muthuswamy, Wibowo &
 //! Tordesillas, Physical Review E 72 (2005) 041307.
 //!
-//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, with r from its centre. A grain is stressed if its
-//! largest principal compression exceeds the mean over all grains. Two stressed grains in contact are linked if the
-//! line between them is within 45° of the direction of this compression in both. A chain is a connected group of three
-//! or more grains.
+//! The stress of a grain is σ = (1/πR²) Σ r ⊗ f over its contacts, where r is the vector from the centre of the grain
+//! to the contact. A grain is stressed if its largest principal compression exceeds the mean over all grains. Two
+//! stressed grains in contact are linked if, for both, the line between their centres is within 45° of the direction of
+//! this compression. A chain is a connected group of three or more grains.
 
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 /// Force chains of a snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chains {
-    /// Part of the grains that are stressed.
+    /// Fraction of the grains that are stressed.
     pub(crate) stressed: f64,
     /// Number of grains in each chain.
     pub(crate) lengths: Vec<usize>,
@@ -24,7 +24,7 @@ pub(crate) struct Chains {
 }
 
 impl Chains {
-    /// Returns the part of the links that still exist in another snapshot.
+    /// Returns the fraction of these chain links that also exist in a later snapshot.
     pub(crate) fn surviving(&self, later: &Self) -> f64 {
         self.links.intersection(&later.links).count() as f64 / self.links.len() as f64
     }
@@ -92,7 +92,7 @@ pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
     }
 }
 
-/// Returns the root of the group of each of `count` grains (union-find).
+/// Returns the root of the group of each of `count` grains, by union-find.
 fn groups(count: usize, links: &[(u32, u32)]) -> Vec<usize> {
     let mut roots: Vec<usize> = (0..count).collect();
     let find = |roots: &[usize], mut at: usize| {
@@ -116,7 +116,8 @@ mod tests {
     use grainbench_scene::record::{ContactState, GrainState};
     use grainbench_scene::scene::Grain;
 
-    /// A row of four discs compressed along its axis, and one disc that leans on it with a small force.
+    /// Checks that a row of four compressed discs is a chain, and that a disc that leans on the row with a small force
+    /// is not part of it.
     #[test]
     fn a_pressed_row_is_a_chain() {
         let grain = |id: u32, x: f64, y: f64| {

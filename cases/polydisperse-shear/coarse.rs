@@ -8,16 +8,17 @@ use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::record::Partner;
 use grainbench_scene::scene::Duration;
 
-/// Cells across the slab.
+/// Number of cells across the slab.
 const CELLS: f64 = 75.0;
 /// Mean shear of the coarse slab.
 const SHEAR: f64 = 0.08;
 /// Number of steps to the shear [`SHEAR`]. In one step, a wave of 3356 m/s travels 0.4 of a cell, and the side moves at
 /// 100 m/s.
 const STEPS: f64 = SHEAR * CELLS * 3356.0 / (0.4 * 100.0);
-/// Mean shear after which two slabs that must agree are compared.
+/// Mean shear at which two slabs that must agree are compared.
 const BEGINNING: f64 = 0.01;
-/// Shift of all grains along the periodic axis, as a fraction of the period. 1/3 is 25 cells, so the grid is unchanged.
+/// Shift of all grains along the periodic axis, as a fraction of the period. A third of the period is 25 cells, so the
+/// grains keep their positions relative to the grid.
 const MOVED: f64 = 1.0 / 3.0;
 
 pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains \
@@ -28,7 +29,8 @@ fn slab(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(CELLS)), SHEAR, 0).slow()
 }
 
-/// Returns the law and the two constants of the von Mises law in the scene without the control.
+/// Returns the material and the two constants of its von Mises law (Pa). They belong to the scene of the case, also
+/// under a negative control.
 fn yielding(done: &FinishedRun) -> Result<(Deformable, f64, f64), MissingData> {
     let deformable = done.scene.deformable.first().copied().flatten();
     match deformable.map(|deformable| (deformable, deformable.constitutive)) {
@@ -39,12 +41,13 @@ fn yielding(done: &FinishedRun) -> Result<(Deformable, f64, f64), MissingData> {
     }
 }
 
-/// Returns a change of the material of all grains.
+/// Returns a change of the material of all deformable grains.
 fn made_of(change: impl Fn(&mut Deformable) + Copy) -> impl Fn(&mut Scene) + Copy {
     move |scene| scene.deformable.iter_mut().flatten().for_each(change)
 }
 
-/// Returns a change that also shortens the run, because its effect is visible long before the end.
+/// Returns a change of the scene that also shortens the run to 0.4 of its duration, because its effect is visible long
+/// before the end.
 fn early(change: impl Fn(&mut Scene) + Send + Sync + 'static) -> impl Fn(&mut Scene) + Send + Sync + 'static {
     move |scene| {
         change(scene);
@@ -64,8 +67,9 @@ fn with_yield(
     })
 }
 
-/// Compares the work of the walls with the energy balance, over the work. Elastic and plastic energy come from the
-/// state of each point with the constants of the scene: s:s/4G + σ_m²/2K and Y ε_p + H ε_p²/2 per volume.
+/// Compares the sum of all entries of the energy balance with the work of the walls, in units of this work. Elastic and
+/// plastic energy are computed from the state of each point and the constants of the scene: s:s/4G + σ_m²/2K and Y
+/// ε_p + H ε_p²/2 per volume.
 fn unaccounted(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let (deformable, yield_stress, hardening) = yielding(done)?;
     let snapshot = measures::end(done)?;
@@ -88,7 +92,7 @@ fn unaccounted(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(sum - work, 0.0, work))
 }
 
-/// Claims that the energy balance accounts for the work of the walls, in units of the work.
+/// Returns the claim that the energy balance accounts for the work of the walls.
 pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control) -> Claim {
     claim(quantity, "J")
         .run(run)
@@ -100,7 +104,7 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
         .refuses(control)
 }
 
-/// Claims that the increase of kinetic, elastic and plastic energy does not exceed the work of the walls.
+/// Returns the claim that the increase of kinetic, elastic and plastic energy does not exceed the work of the walls.
 pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
         .run(run)
@@ -128,7 +132,8 @@ fn overlaps(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok([overlaps.iter().copied().fold(0.0, f64::max), overlaps.iter().sum::<f64>() / overlaps.len() as f64])
 }
 
-/// Returns the largest ratio of shear to normal force, over the contacts between grains with more than the mean normal force.
+/// Returns the largest ratio of shear to normal force, over contacts between grains whose normal force exceeds the
+/// mean.
 fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));
@@ -138,7 +143,8 @@ fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     steepest.ok_or_else(|| MissingData("contacts between grains".to_owned()))
 }
 
-/// Returns the largest von Mises stress over the flow stress Y + H ε_p, of points with a plastic strain above 0.01.
+/// Returns the largest ratio of the von Mises stress to the flow stress Y + H ε_p, over points with a plastic strain
+/// above 0.01.
 fn on_the_yield_surface(done: &FinishedRun) -> Result<f64, MissingData> {
     let (_, yield_stress, hardening) = yielding(done)?;
     let flowed = measures::end(done)?.points.iter().filter(|point| point.plastic_strain > 0.01);
@@ -147,8 +153,8 @@ fn on_the_yield_surface(done: &FinishedRun) -> Result<f64, MissingData> {
     ratio.reduce(f64::max).ok_or_else(|| MissingData("points that have flowed".to_owned()))
 }
 
-/// Returns the mean over the points of the volume change without a pressure change, |ln J − σ_m/K| with J = V/V₀.
-/// Plastic flow does not change the volume.
+/// Returns the mean over the points of the volume change that the pressure does not explain, |ln J − σ_m/K| with J =
+/// V/V₀. Plastic flow does not change the volume, so this mean should vanish.
 fn volume(done: &FinishedRun) -> Result<f64, MissingData> {
     let (deformable, ..) = yielding(done)?;
     let points = with_their_start(done, measures::end(done)?)?;
@@ -158,7 +164,7 @@ fn volume(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(off.sum::<f64>() / points.len() as f64)
 }
 
-/// Moves all grains along the periodic axis.
+/// Moves all grains along the periodic axis by [`MOVED`] periods.
 fn moved(scene: &mut Scene) {
     let Some(domain) = scene.domain else { return };
     let (low, length) = (domain.low.y, domain.high.y - domain.low.y);
@@ -167,7 +173,7 @@ fn moved(scene: &mut Scene) {
     }
 }
 
-/// Returns the plastic strain at the end.
+/// Returns the mean plastic strain of the free grains at the end.
 fn yielded(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(plastic_strain(done, measures::end(done)?))
 }

@@ -1,4 +1,4 @@
-//! Graphs of grains on springs, and in the long tier also of plastic grains.
+//! Graphs of grains on springs and, in the long tier, of plastic grains.
 
 use super::chains::{Chains, chains};
 use super::measures;
@@ -18,7 +18,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(all)
 }
 
-/// Returns the figure of displacement profiles across the slab, with one colour for each mean shear.
+/// Returns the figure of displacement profiles across the slab, with one curve for each mean shear.
 fn displacement(slabs: &[Slab]) -> Figure {
     let mut curves = vec![Curve::new("uniform shear", Stroke::Dashed, vec![(0.0, 0.0), (1.0, 1.0)])];
     for (words, done) in slabs.iter().filter(|slab| pictures::has_friction(slab)) {
@@ -39,7 +39,7 @@ fn displacement(slabs: &[Slab]) -> Figure {
     )
 }
 
-/// Returns the figures of quantities over the mean shear, for each slab.
+/// Returns the figures of quantities against the mean shear, with one curve for each slab.
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     let graph =
         |name: &str, title: &str, caption: &str, label: &str, value: &dyn Fn(&FinishedRun, &Snapshot) -> f64| {
@@ -119,7 +119,7 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     all
 }
 
-/// Returns the figures of force chains over the mean shear.
+/// Returns the figures of force chains against the mean shear.
 fn of_chains(done: &FinishedRun) -> [Figure; 3] {
     let looked: Vec<(f64, Chains)> = done
         .record

@@ -1,5 +1,5 @@
-//! Measurements on a sheared slab. Except for voids and plastic strain, they use only grains, so they are the same for
-//! all methods.
+//! Measurements on a sheared slab. Most measurements use only grains, so they apply to all methods. Voids and plastic
+//! strain also use material points.
 
 use grainbench_fields::overlap::disc_in_box;
 use grainbench_harness::prelude::{FinishedRun, MissingData};
@@ -29,7 +29,7 @@ pub(crate) fn shear(done: &FinishedRun, time: f64) -> f64 {
     speed(done) * time / width(done)
 }
 
-/// Returns the snapshot at a mean shear, within 0.005.
+/// Returns the snapshot nearest to a mean shear; an error if it differs by 0.005 or more.
 pub(crate) fn at(done: &FinishedRun, wanted: f64) -> Result<&Snapshot, MissingData> {
     let off = |snapshot: &Snapshot| (shear(done, snapshot.time) - wanted).abs();
     let nearest = done.record.snapshots.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
@@ -56,13 +56,14 @@ pub(crate) fn plastic_strain(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     grains.iter().map(|grain| grain.plastic_strain * grain.mass).sum::<f64>() / mass
 }
 
-/// Returns the area of a disc about `x` between two lines across the slab (m²).
+/// Returns the area (m²) of the part of a disc, centred at `x`, between two lines of constant x (`edges`).
 fn between(edges: [f64; 2], x: f64, radius: f64) -> f64 {
     disc_in_box(radius, [edges[0] - x, -radius], [edges[1] - x, radius])
 }
 
-/// Returns for each column its middle over the width, and the displacement of grains along the slab over the
-/// displacement of the moving side. The mean in a column is weighted by the area of grains in it.
+/// Returns a pair for each column: its middle divided by the width, and the mean displacement of grains along the slab
+/// divided by the displacement of the moving side. The mean in a column is weighted by the area of grains in the
+/// column.
 pub(crate) fn profile(done: &FinishedRun, snapshot: &Snapshot) -> Vec<(f64, f64)> {
     let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
     let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
@@ -87,14 +88,14 @@ pub(crate) fn profile(done: &FinishedRun, snapshot: &Snapshot) -> Vec<(f64, f64)
         .collect()
 }
 
-/// Returns the width of the shear band over the width of the slab: twice the mean of the profile. It is 1 for uniform
-/// shear, and b for a profile that rises linearly over the part b at the moving side.
+/// Returns the width of the shear band divided by the width of the slab: twice the mean of the profile. It is 1 for
+/// uniform shear, and b for a profile that rises linearly over a fraction b of the width at the moving side.
 pub(crate) fn band(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let profile = profile(done, snapshot);
     2.0 * profile.iter().map(|(_, displacement)| displacement).sum::<f64>() / profile.len() as f64
 }
 
-/// Returns the part of the displacement that occurs in the half of the slab at the moving side.
+/// Returns the fraction of the displacement that occurs in the half of the slab at the moving side.
 pub(crate) fn at_the_moving_side(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     let profile = profile(done, snapshot);
     profile[COLUMNS - 1].1 - 0.5 * (profile[COLUMNS / 2 - 1].1 + profile[COLUMNS / 2].1)
@@ -113,9 +114,9 @@ const CELLS: usize = 150;
 /// Number of cells across a large void.
 const VOID: usize = 5;
 
-/// Counts the large voids. A large void is an empty square of five cells (40 µm) of the paper's grid, at any position
-/// of this grid within the slab. A square is empty if no material point lies in it, or no disc covers the centre of one
-/// of its cells. Squares may overlap.
+/// Returns the number of large voids. A large void is an empty square of five by five cells (40 µm) of the paper's
+/// grid, at any position of this grid within the slab. If the snapshot has material points, a cell is empty if no point
+/// is in it; otherwise, if no disc covers its centre. Squares may overlap.
 pub(crate) fn large_voids(done: &FinishedRun, snapshot: &Snapshot) -> usize {
     let empty = empty_cells(done, snapshot);
     let is_void =
@@ -123,7 +124,7 @@ pub(crate) fn large_voids(done: &FinishedRun, snapshot: &Snapshot) -> usize {
     (0..CELLS).map(|row| (0..=CELLS - VOID).filter(|&column| is_void(column, row)).count()).sum()
 }
 
-/// Returns a flag for each cell of the paper's grid, row by row along the slab: true if the cell is empty.
+/// Returns a list of the cells of the paper's grid, row by row along the slab: true for an empty cell.
 fn empty_cells(done: &FinishedRun, snapshot: &Snapshot) -> Vec<bool> {
     let low = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.low.y]);
     let cells = [width(done), period(done)].map(|length| length / CELLS as f64);
@@ -141,7 +142,7 @@ fn empty_cells(done: &FinishedRun, snapshot: &Snapshot) -> Vec<bool> {
         return empty;
     }
     for grain in &snapshot.grains {
-        // Range of cells with their centre between two lines through the disc.
+        // Range of cells whose centres are at most `half` from `middle`.
         let between = |axis: usize, middle: f64, half: f64| {
             let at = |place: f64| (place - low[axis]) / cells[axis] - 0.5;
             at(middle - half).ceil() as i64..=at(middle + half).floor() as i64
@@ -155,10 +156,10 @@ fn empty_cells(done: &FinishedRun, snapshot: &Snapshot) -> Vec<bool> {
     empty
 }
 
-/// Mean shear before which time averages omit the data.
+/// Mean shear from which time averages are taken.
 const STARTED: f64 = 0.2;
 
-/// Returns the standard deviation over the mean of a force, for example on the fixed side, in blocks of 0.5 % of shear.
+/// Returns the standard deviation of a force divided by its mean, for means over blocks of 0.5 % of shear.
 pub(crate) fn fluctuation(done: &FinishedRun, force: &str) -> Result<f64, MissingData> {
     let (mut blocks, mut from) = (vec![Vec::new()], STARTED);
     for (&time, force) in done.series().time.iter().zip(done.column(force)?) {
@@ -199,7 +200,7 @@ pub(crate) fn with_their_start<'a>(
     done: &'a FinishedRun,
     snapshot: &'a Snapshot,
 ) -> Result<Vec<(&'a PointState, &'a PointState)>, MissingData> {
-    // Initial positions are exact to rounding, and the distance of points is a thousand times this pitch.
+    // Initial positions are exact to rounding. The pitch of the keys is a thousandth of the distance of points.
     let pitch = 1e-6 * width(done);
     let key = |point: &PointState| {
         let start = (point.position - point.displacement) / pitch;
@@ -208,7 +209,7 @@ pub(crate) fn with_their_start<'a>(
     let first = done.record.snapshots.first().ok_or_else(|| MissingData("snapshot".to_owned()))?;
     let at_start: HashMap<_, _> = first.points.iter().map(|point| (key(point), point)).collect();
     let found: Vec<_> = snapshot.points.iter().filter_map(|point| Some((point, *at_start.get(&key(point))?))).collect();
-    // Rounding may move a few points to the next key.
+    // Because of rounding, a few points may have a neighbouring key.
     if found.len() * 100 < snapshot.points.len() * 99 || found.is_empty() {
         return Err(MissingData("material points of the start".to_owned()));
     }

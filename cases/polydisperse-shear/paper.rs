@@ -1,5 +1,5 @@
-//! Results of the paper, for five packings to the end of shear. The grains are on springs, or plastic on a grid with
-//! half of the paper's cells.
+//! Claims on results of the paper, over five packings up to the end of shear. The grains are on springs, or plastic on
+//! a grid with half as many cells per axis as the paper's.
 
 use super::chains::chains;
 use super::coarse::MAKES_ENERGY;
@@ -13,7 +13,7 @@ use grainbench_harness::statistics::interval;
 use grainbench_scene::record::Snapshot;
 
 const PACKINGS: [&str; 5] = ["seed-1", "seed-2", "seed-3", "seed-4", "seed-5"];
-// The paper states the results in words. The bounds are our own interpretation.
+// The paper states these results in words. The bounds of the claims are our own interpretation.
 pub(super) const FIGURE_6: Source = Source::Printed(
     &PAPER,
     "Fig. 6, 75 % shear: extensive plastic deformation and large voids without slip, fairly little plastic \
@@ -24,7 +24,7 @@ const FIGURE_7: Source =
 const FIGURE_8: Source =
     Source::Printed(&PAPER, "Fig. 8: motion of the grains is concentrated near the moving boundary");
 
-/// Moves the other side instead, for a control.
+/// Moves the fixed side instead of the moving side, for a negative control.
 fn other_side(scene: &mut Scene) {
     let velocity = scene.driven[1].velocity;
     for (driven, velocity) in scene.driven.iter_mut().zip([velocity, velocity * 0.0]) {
@@ -33,7 +33,7 @@ fn other_side(scene: &mut Scene) {
     }
 }
 
-/// Stops the walls and enlarges the grains slightly, for a control with constant chains.
+/// Stops the walls and enlarges the grains slightly, for a negative control in which the force chains do not change.
 fn swollen(scene: &mut Scene) {
     Effect::MovingWalls.switch_off(scene);
     for grain in &mut scene.grains {
@@ -41,31 +41,31 @@ fn swollen(scene: &mut Scene) {
     }
 }
 
-/// Enlarges deformable grains for the same control. Their sides are open, so they fly apart unless they come to rest
-/// within 1 % of the time.
+/// Applies [`swollen`] and a strong damping to deformable grains, for a negative control. Without damping these grains
+/// fly apart, because their sides are open.
 fn at_rest(scene: &mut Scene) {
     swollen(scene);
     scene.global_damping = 1e7;
 }
 
-/// Returns the lower end of the confidence interval of a value over packings.
+/// Returns the lower end of the 99 % confidence interval of the mean over packings.
 fn lower(values: &[f64]) -> Result<f64, MissingData> {
     let (mean, half) = interval(values).ok_or_else(|| MissingData("packings enough for an interval".to_owned()))?;
     Ok(mean - half)
 }
 
-/// Returns the lower end of the confidence interval of a ratio over packings. It is the interval of the logarithm,
-/// because a ratio is positive and symmetric to its inverse.
+/// Returns the lower end of the confidence interval of a mean ratio over packings. The interval is computed for the
+/// logarithm, so that a ratio and its inverse are treated alike.
 fn lower_of_ratios(ratios: &[f64]) -> Result<f64, MissingData> {
     Ok(lower(&ratios.iter().map(|ratio| ratio.ln()).collect::<Vec<f64>>())?.exp())
 }
 
-/// Returns the smallest of the values over packings.
+/// Returns the smallest value over packings.
 fn least(values: &[f64]) -> Result<f64, MissingData> {
     Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }
 
-/// Returns the part of the force chain links that no longer exist in a later snapshot.
+/// Returns the fraction of force chain links that no longer exist in a later snapshot.
 fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, MissingData> {
     let first = chains(first);
     if first.links.is_empty() {
@@ -74,16 +74,16 @@ fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, MissingData> {
     Ok(1.0 - first.surviving(&chains(second)))
 }
 
-/// Returns the part of the links that disappear between the moments that the paper shows.
+/// Returns the fraction of links that disappear between the two mean shears at which the paper shows force chains.
 fn gone_in_the_paper(done: &FinishedRun) -> Result<f64, MissingData> {
     gone(at(done, CHAINS[0])?, at(done, CHAINS[1])?)
 }
 
-/// Mean shear after which the links are counted again.
+/// Increase of the mean shear after which surviving links are counted.
 const LIFE: f64 = 0.075;
 
-/// Returns the part of the links that disappear over a shear of [`LIFE`], averaged over all times from 20 % of shear
-/// on.
+/// Returns the fraction of links that disappear over a shear of [`LIFE`], averaged over all snapshots from 20 % of
+/// shear on.
 fn gone_in_the_mean(done: &FinishedRun) -> Result<f64, MissingData> {
     let snapshots = &done.record.snapshots;
     let started = snapshots.iter().filter(|snapshot| shear(done, snapshot.time) >= 0.2);
@@ -92,25 +92,22 @@ fn gone_in_the_mean(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(gone.iter().sum::<f64>() / gone.len() as f64)
 }
 
-/// Function that reduces the values of all packings to the value compared with the bound, and the reason.
+/// Function that reduces the values of all packings to the value that is compared with the bound, and the reason of the
+/// tolerance.
 type PackingReduction = (fn(&[f64]) -> Result<f64, MissingData>, &'static str);
 const VALUES: PackingReduction = (
     lower,
-    "the lower end of the 99 % interval (Student's t) over the packings meets the bound; the bound is our \
-             choice",
+    "the lower end of the 99 % interval (Student's t) over the packings must meet the bound; the bound is our choice",
 );
-const EACH: PackingReduction = (
-    least,
-    "each packing meets the bound, which is our choice; permanent chains would lose \
-                                        no link",
-);
+const EACH: PackingReduction =
+    (least, "each packing must meet the bound, which is our choice; permanent chains would lose no link");
 const RATIOS: PackingReduction = (
     lower_of_ratios,
-    "the lower end of the 99 % interval (Student's t, of logarithms) over the packings meets the bound; the bound is \
-     our choice",
+    "the lower end of the 99 % interval (Student's t, of logarithms) over the packings must meet the bound; the bound \
+     is our choice",
 );
 
-/// Claims a bound on the reduced value over all packings.
+/// Returns the claim that the reduced value over all packings is at least `bound`.
 fn over_packings(
     (quantity, source): (&str, Source),
     runs: Vec<Run>,
@@ -129,20 +126,20 @@ fn over_packings(
         .refuses(control)
 }
 
-/// Claims that force chains form and disappear.
+/// Returns the claim that force chains form and disappear.
 fn chains_go_on(runs: Vec<Run>, words: &str, control: Control) -> Claim {
     let quantity =
         format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{words}");
     over_packings((&quantity, FIGURE_7), runs, VALUES, 0.4, control, |done| gone_in_the_mean(&done[0]))
 }
 
-/// Claims that the force chains differ between the paper's moments.
+/// Returns the claim that the force chains differ between the two mean shears at which the paper shows them.
 fn chains_of_the_paper(runs: Vec<Run>, words: &str, control: Control) -> Claim {
     let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{words}, least");
     over_packings((&quantity, FIGURE_7), runs, EACH, 0.2, control, |done| gone_in_the_paper(&done[0]))
 }
 
-/// Returns the band width at the end of the first run over the band width at the end of the second run.
+/// Returns the band width at the end of the first run, divided by the band width at the end of the second run.
 pub(super) fn bands(done: &[FinishedRun]) -> Result<f64, MissingData> {
     Ok(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?))
 }
@@ -183,7 +180,7 @@ fn on_springs() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on plastic grains.
+/// Returns the claims on plastic grains, most of them over five packings.
 fn yielding() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| whole(packing, "mpm")).to_vec();
     let beside = |pair: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(pair).collect::<Vec<Run>>();
@@ -191,7 +188,7 @@ fn yielding() -> Vec<Claim> {
     let friction_first = |packing| [whole(packing, "mpm"), whole(packing, "mpm:no-slip")];
     let on_approach = |packing| {
         let run = to_shear(Run::new(packing, "mpm:2000", grid(75.0)), 0.2, FRAMES).long();
-        // At −1 there is no plastic strain without slip.
+        // The relative error is −1 if there is no plastic strain without slip.
         [run.known(MAKES_ENERGY).up_to(1.0), whole(packing, "mpm:no-slip").aside()]
     };
     let glued = || Control::solver("contacts glued", "mpm:no-slip");

@@ -10,23 +10,25 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::record::{GrainState, Owner, Record, Snapshot};
 use std::sync::Arc;
 
-/// Mean shear of the paper's profiles.
+/// Mean shears at which the paper shows displacement profiles.
 pub(super) const PROFILES: [f64; 3] = [0.25, 0.5, 0.75];
 const PIXELS: u32 = 400;
 const FILM_PIXELS: u32 = 300;
 /// Range of rotations in the colour scale (rad).
 const TURNED: (f64, f64) = (-2.0, 2.0);
 
-/// Size of the averaging cells (m), and colour ranges of pressure (Pa) and shear rate (1/s).
+/// Size of the averaging cells (m).
 const CELL: f64 = 2e-4;
+/// Colour range of pressure (Pa).
 const PRESSURES: (f64, f64) = (0.0, 1e8);
+/// Colour range of the shear rate (1/s).
 const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 
 /// A slab with a description of its grains.
 pub(super) type Slab = (&'static str, FinishedRun);
 
-/// Returns the slab of grains on springs; in the long tier also those of plastic grains, with friction and without
-/// slip.
+/// Returns the slab of grains on springs. In the long tier, also returns the slabs of plastic grains, with friction and
+/// without slip.
 pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
     if runner.is_thorough() {
@@ -46,7 +48,7 @@ fn shots<'a>(slabs: &[&'a Slab], shears: &[f64]) -> Vec<Shot<'a>> {
     slabs.iter().flat_map(|slab| shears.iter().filter_map(move |&shear| shot(slab, shear))).collect()
 }
 
-/// Returns snapshots at equal steps of shear.
+/// Returns snapshots at equal steps of shear, with their mean shear.
 fn frames(done: &FinishedRun) -> Vec<(f64, &Snapshot)> {
     let shears = (0..=FRAMES + 1).map(|frame| 0.8 * f64::from(frame) / f64::from(FRAMES + 1));
     shears.filter_map(|shear| Some((shear, at(done, shear).ok()?))).collect()
@@ -57,7 +59,7 @@ pub(super) fn has_friction((words, _): &Slab) -> bool {
     !words.contains("no slip")
 }
 
-/// Returns the slab without grains that have been pushed out between the cut grains at its sides.
+/// Returns a copy of the slab without the grains that have been pushed out between the cut grains at its sides.
 fn within((words, done): &Slab) -> Slab {
     let mut record = Record::clone(&done.record);
     let [low, high] = done.scene.domain.map_or([0.0; 2], |domain| [domain.low.x, domain.high.x]);
@@ -123,7 +125,8 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     figures
 }
 
-/// Returns figures of averages over cells, the same for points and for grains, at a shear of 0.5.
+/// Returns figures of averages over cells at a shear of 0.5. The averages have the same definition for points and for
+/// grains.
 fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     const SHEAR: f64 = 0.5;
     let shots: Vec<element_picture::Shot<'_>> = slabs
@@ -158,7 +161,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     ]
 }
 
-/// Returns the animation of the rotations.
+/// Returns an animation with grains coloured by rotation.
 fn moving(slabs: &[&Slab]) -> Figure {
     let clock: Vec<f64> = frames(&slabs[0].1).into_iter().map(|(shear, _)| shear).collect();
     let shots: Vec<Shot<'_>> = slabs

@@ -1,8 +1,9 @@
 //! Closed sides for grains on springs.
 //!
 //! A side of the slab consists of cut grains with pores between them, through which other grains are pushed out. The
-//! paper's grid ends at the sides, so nothing passes there. Here frictionless walls replace the end of the grid. Cut
-//! grains overlap the walls from the start, so they have copies of the materials without a contact law with the walls.
+//! grid of the paper ends at the sides, so nothing passes there. Here, frictionless walls replace the end of the grid.
+//! The cut grains at the sides overlap these walls from the start. They are therefore given copies of the materials
+//! without a contact law with the walls.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::motion::Motion;
@@ -13,7 +14,7 @@ use nalgebra::Vector3;
 pub(super) fn close(scene: &mut Scene) {
     let Some(domain) = scene.domain else { return };
     let count = scene.materials.len() as u16;
-    // One copy of each material for grains with prescribed motion, and the walls' material.
+    // Materials: the original ones, one copy of each for grains with prescribed motion, and one for the walls.
     let side = 2 * count;
     let wrapped = |material: u16| material % count;
     let law = |a: u16, b: u16| -> Option<ContactLaw> {

@@ -1,4 +1,4 @@
-//! Claims on the slab with grains on springs. They test its energy budget and compare it with external solvers.
+//! Claims on the slab with grains on springs: energy budget, momentum, and comparison with LAMMPS and LIGGGHTS.
 
 use super::{entry, gained, measures, to_shear};
 use crate::rows::programs::{PAIRS, row};
@@ -6,13 +6,14 @@ use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
-/// Time step of the pointwise comparison with external solvers, and the mean shear at its end. LIGGGHTS differs once a
-/// contact closes again, because it keeps the tangential displacement of opened contacts (derivation of `plane-shear`).
-/// Up to this shear, sixteen digits agree.
+/// Time step of the comparison with LAMMPS and LIGGGHTS at each sample.
 const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
+/// Mean shears up to which our solver is compared with LAMMPS and with LIGGGHTS; up to there, sixteen digits agree.
+/// LIGGGHTS differs once a contact closes again, because it keeps the tangential displacement of opened contacts
+/// (derivation of `plane-shear`).
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
 
-/// Returns the run of a packing of grains on springs with closed sides, to a mean shear.
+/// Returns the run of a packing of grains on springs with closed sides, up to a mean shear.
 pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
     let name = format!("sides closed, to {:.0} % shear", 100.0 * shear);
     Run::new(packing, "dem", STEP).adjusted(&name, move |scene| {
@@ -21,13 +22,13 @@ pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
     })
 }
 
-/// Returns the run of the first packing to the end.
+/// Returns the run of the first packing up to 80 % shear.
 pub(super) fn slab() -> Run {
     to("seed-1", 0.8, super::FRAMES)
 }
 
-/// Compares the momentum increase of the grains along the slab with the impulse of the grains with prescribed motion.
-/// The masses are those of the scene without the control.
+/// Compares the increase of the grains' momentum along the slab with the impulse of the grains with prescribed motion.
+/// The masses belong to the scene of the case, also under a negative control.
 fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let start: f64 = done.scene.grains.iter().map(|grain| grain.mass * grain.velocity.y).sum();
     let masses = done.scene.grains.iter().map(|grain| grain.mass);

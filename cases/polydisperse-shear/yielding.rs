@@ -1,5 +1,5 @@
-//! Claims on one packing of plastic grains, sheared as far as in the paper. They concern energy, other contact methods,
-//! and a finer grid.
+//! Claims on one packing of plastic grains, sheared as far as in the paper: energy, other contact methods, and finer
+//! grids.
 
 use super::coarse::{accounted, makes_none};
 use super::measures::{at, end, large_voids, plastic_strain, rotation_deg};
@@ -21,19 +21,19 @@ const OWN_NORMALS: &str = "each body has its own normal (2001): the impulses of 
 const PATCHES: &str = "grains yield at their contacts, in regions of one or two cells. A finer grid increases the plastic \
                        strain by 24 % from 75² to 150² and by 16 % from 150² to 300², and the motion is chaotic";
 
-/// Returns the run of a packing to the end on half of the paper's grid.
+/// Returns the run of a packing up to 80 % shear, on a grid with half as many cells per axis as the paper's.
 pub(super) fn whole(packing: &'static str, solver: &'static str) -> Run {
     to_shear(Run::new(packing, solver, grid(75.0)), 0.8, FRAMES).long()
 }
 
-/// Returns the run to the end on the paper's own grid, with a snapshot every 5 % of shear.
+/// Returns the run up to 80 % shear on the grid of the paper, with a snapshot every 5 % of shear.
 fn on_the_papers_grid() -> Run {
     to_shear(Run::new("seed-1", "mpm", grid(150.0)), 0.8, 15).long()
 }
 
 type SnapshotValue = fn(&FinishedRun, &Snapshot) -> f64;
 
-/// Returns a quantity of the first run at a mean shear, over the quantity of the second run.
+/// Returns a quantity of the first run at a mean shear, divided by the same quantity of the second run.
 pub(super) fn over(done: &[FinishedRun], shear: f64, value: SnapshotValue) -> Result<f64, MissingData> {
     let ratio_at = |done: &FinishedRun| Ok(value(done, at(done, shear)?));
     Ok(ratio_at(&done[0])? / ratio_at(&done[1])?)
@@ -43,8 +43,8 @@ fn voids(done: &FinishedRun, snapshot: &Snapshot) -> f64 {
     large_voids(done, snapshot) as f64
 }
 
-/// Reduces every second of the larger free grains to a tenth of its area, for a control. Smaller grains would then be
-/// smaller than a cell.
+/// Reduces every second of the larger free grains to a tenth of its area, for a negative control. Smaller grains are
+/// left unchanged, because they would become smaller than a cell.
 fn shrunk(scene: &mut Scene) {
     const LARGER: f64 = 2.6e-5;
     let groups = scene.driven_group_of_grains();
@@ -55,22 +55,22 @@ fn shrunk(scene: &mut Scene) {
     }
 }
 
-/// Claims the number of voids without slip.
+/// Returns the claim on the number of large voids without slip, compared with the number with friction.
 fn pores() -> Claim {
     claim("large voids without slip over those with friction, or one, 80 % shear", "1")
-        // At −1 there is no void.
+        // The relative error is −1 if there is no void.
         .runs([whole("seed-1", "mpm:no-slip").known(NO_VOIDS).up_to(1.0), whole("seed-1", "mpm").aside()])
         .at_least(5.0, FIGURE_6, |done| Ok(voids(&done[0], end(&done[0])?) / voids(&done[1], end(&done[1])?).max(1.0)))
         .within(exactly("'large voids' is read as five times as many, required before the solver was written"))
         .refuses(Control::scene("every second of the larger grains a tenth as large, so that there are voids", shrunk))
 }
 
-/// Claims on other contact methods instead of springs between surfaces.
+/// Returns the claims on other contact methods than springs between surfaces.
 fn other_contacts() -> Vec<Claim> {
     let excess = 0.5 * (prototype::PLASTIC_STRAIN_RATIO_OF_2001.value - 1.0);
     vec![
         claim("plastic strain without slip over that with friction, 80 % shear", "1")
-            // At −1 there is no plastic strain without slip.
+            // The relative error is −1 if there is no plastic strain without slip.
             .runs([whole("seed-1", "mpm:2001").known(REACHES).up_to(1.0), whole("seed-1", "mpm:no-slip").aside()])
             .at_least(5.0, FIGURE_6, |done| Ok(1.0 / over(done, 0.8, plastic_strain)?))
             .within(exactly(
@@ -91,7 +91,7 @@ fn other_contacts() -> Vec<Claim> {
     ]
 }
 
-/// Claims on the energy balance to the end.
+/// Returns the claims on the energy balance up to 80 % shear.
 fn energy() -> Vec<Claim> {
     const APPROACH: &str = "contact on approach (2000), which makes energy";
     let makes_energy = || Control::solver(APPROACH, "mpm:2000");
@@ -112,7 +112,7 @@ fn energy() -> Vec<Claim> {
     ]
 }
 
-/// Claims on the shear band and on the force chains.
+/// Returns the claims on the shear band and on stressed grains.
 fn motion() -> Vec<Claim> {
     let band_at = |variant| to_shear(Run::new(variant, "mpm", grid(75.0)), 0.25, 0).long();
     vec![
@@ -145,12 +145,12 @@ fn motion() -> Vec<Claim> {
                 },
             )
             .within(exactly("a uniformly distributed load has half of the grains above the mean"))
-            // A single velocity field for all bodies has no contacts to read.
+            // A single velocity field for all bodies has no contacts, so the control fails by an error.
             .breaks(Control::solver("contacts glued: nothing is pressed", "mpm:no-slip")),
     ]
 }
 
-/// Claims on the effect of a finer grid.
+/// Returns the claims on the effect of a finer grid.
 fn refined() -> Vec<Claim> {
     type Quantity = (&'static str, SnapshotValue, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =

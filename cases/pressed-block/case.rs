@@ -7,14 +7,19 @@ use grainbench_scene::material::{Constitutive, Deformable};
 const COARSE: Resolution = Resolution::Grid { cells: 4.0, points: 2, courant: Resolution::COURANT };
 const LEVELS: &[Level] = &[cells("L/8", 8.0, 2), cells("L/16", 16.0, 2)];
 
-/// Bulk and shear modulus, yield stress, hardening modulus (Pa), density (kg/m³), speed of the ram (m/s) and time (s)
-/// of the scene. Tolerances need them before a scene exists.
+/// Bulk modulus of the scene (Pa). The tolerances need this and the next values before a scene exists.
 const BULK: f64 = 80.0;
+/// Shear modulus (Pa).
 const SHEAR: f64 = 40.0;
+/// Yield stress (Pa).
 const YIELD: f64 = 0.4;
+/// Hardening modulus (Pa).
 const HARDENING: f64 = 8.0;
+/// Density (kg/m³).
 const DENSITY: f64 = 1.0;
+/// Speed of the ram (m/s).
 const SPEED: f64 = 0.001;
+/// Duration of the run (s).
 const TIME: f64 = 20.0;
 
 pub(crate) static CASE: Case = Case {
@@ -68,7 +73,7 @@ impl MiddleMeans {
         (2.0 * SHEAR * self.strain - YIELD) / (3.0 * SHEAR + HARDENING)
     }
 
-    /// Returns the flow stress Y + H ε_p of the measured plastic strain (Pa).
+    /// Returns the flow stress Y + H ε_p for the measured plastic strain (Pa).
     fn yielded(&self) -> f64 {
         YIELD + HARDENING * self.plastic
     }
@@ -133,8 +138,8 @@ fn claims() -> Vec<Claim> {
             )
             .within(computed(
                 1e-5,
-                "volumes are multiplied and strains added: e/2N in N steps, 2e-6 of .0202 in 4600; five times that for \
-                 the mean over points of a logarithm",
+                "volumes are multiplied and strains are added, with an error of e/2N in N steps: 2e-6 of .0202 in \
+                 4600. Five times this error is allowed for the mean of a logarithm over points",
             ))
             .refuses(
                 Control::scene(
@@ -168,10 +173,11 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Claims that the strain of the middle follows the displacement of the ram.
+/// Returns the claim that the strain in the middle follows the displacement of the ram.
 fn follows_the_ram(level: &Level) -> Claim {
-    const LAG: &str = "springs yield at the face, and its tracers sink into the block if the face moves a quarter of a cell \
-                       from its initial nodes: by 0.008 of a cell with eight cells, and by 0.05 with sixteen";
+    const LAG: &str = "the contact springs at the face are compressed, and its tracers sink into the block when the \
+                       face has moved a quarter of a cell from its initial nodes: by 0.008 of a cell with eight cells, \
+                       and by 0.05 with sixteen";
     let run = Run::new(PLAIN, "mpm", level.resolution).known(LAG).up_to(0.2);
     claim(format!("strain of the middle over the way of the ram, {} cells", level.name), "1")
         .run(if *level == LEVELS[0] { run } else { run.slow() })
@@ -184,10 +190,11 @@ fn follows_the_ram(level: &Level) -> Claim {
         )
         .within(judged(
             0.03,
-            "springs a quarter as soft as ours yield by F/κ, 2e-4 of 2e-2, and tracers penetrate as much again",
+            "springs with a quarter of our compliance shorten by F/κ, 2e-4 of 2e-2, and tracers penetrate by the same \
+             amount",
         ))
         .refuses(Control::without_the_error("springs four times as stiff", STIFF, LEVELS[0].resolution))
 }
 
-/// Springs between surfaces that are four times as stiff.
+/// Solver with springs between surfaces that are four times as stiff.
 const STIFF: &str = "mpm+penalty=10.4";

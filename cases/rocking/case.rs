@@ -1,4 +1,5 @@
-//! A sphere rolls to rest and rocks on its rolling spring. A disc rocks between two others that continue to spin.
+//! A sphere rolls to rest and rocks on its rolling spring. In two further variants, a disc rocks between two discs that
+//! continue to spin.
 
 use grainbench_harness::prelude::*;
 
@@ -25,9 +26,9 @@ struct RollToRest {
     radius: f64,
     /// Angle at which the rolling spring yields (rad).
     yields: f64,
-    /// Rolling distance (m).
+    /// Distance that the sphere rolls until it first stops (m).
     way: f64,
-    /// Largest relative errors of the rocking and of the distance.
+    /// Largest relative errors of the way back 2Rθ_y, and of the distance `way`.
     off: [f64; 2],
 }
 
@@ -43,13 +44,13 @@ impl RollToRest {
         let swing =
             2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
         let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
-        // A sample is taken every ten steps; an oscillation of 2Rθ is read at its ends.
+        // Samples are ten steps apart, so the turning points of the oscillation, 2Rθ apart, lie between samples.
         let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
         Self { radius, yields, way, off: [soft + phase + swing * way / (radius * yields), 2.0 * swing + soft] }
     }
 }
 
-/// Returns the largest position, and the smallest one after it (m).
+/// Returns the largest position, and the smallest later position (m).
 fn turning_points(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     let places = done.column("grain.x")?;
     let farthest = (0..places.len()).max_by(|&a, &b| places[a].total_cmp(&places[b])).unwrap_or(0);
@@ -101,7 +102,8 @@ fn way() -> Claim {
         .fair_to_any_springs()
 }
 
-/// Returns the frequency of the disc's rocking between two others (rad/s), and the largest relative error of the spin.
+/// Returns the frequency of the disc's rocking between two other discs (rad/s), and the largest relative error of the
+/// spin.
 fn rocks(scene: &Scene) -> [f64; 2] {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
     let each = |other: &grainbench_scene::scene::Grain| {

@@ -1,4 +1,4 @@
-//! A ball rolls off a fixed ball. The claims are about its position and spin at separation.
+//! A ball rolls off a fixed ball: its spin and velocity after separation, and the angle of separation.
 
 use grainbench_harness::prelude::*;
 
@@ -20,20 +20,20 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Parameters of the balls.
+/// Fixed ball and rolling ball.
 struct Balls {
     gravity: f64,
     friction: f64,
     radius: f64,
     /// Distance of the centres in contact (m).
     distance: f64,
-    /// Angle at the start (rad).
+    /// Initial angle of the line of centres from the vertical (rad).
     angle: f64,
     /// Largest relative error of the velocity.
     off: f64,
 }
 
-/// Angle (rad), velocity v (m/s) and velocity of the surface ωR (m/s).
+/// Angle of the line of centres (rad), velocity v (m/s) and surface speed ωR (m/s).
 type State = [f64; 3];
 
 impl Balls {
@@ -50,7 +50,7 @@ impl Balls {
         Self { gravity, friction: law.friction, radius: ball.radius, distance, angle, off }
     }
 
-    /// Returns the normal force over the mass (m/s²).
+    /// Returns the normal force divided by the mass (m/s²).
     fn press(&self, [angle, speed, _]: State) -> f64 {
         self.gravity * angle.cos() - speed * speed / self.distance
     }
@@ -104,7 +104,8 @@ fn off(variant: &str, times: f64) -> Tolerance {
     )
 }
 
-/// Claims that the rough ball leaves at cos θ = (10/17) cos θ₀: ω²R² = g d cos θ.
+/// Returns the claim that the rough ball leaves at cos θ = (10/17) cos θ₀. The spin gives the angle, because ω²R² = g d
+/// cos θ.
 fn angle() -> Claim {
     claim("cosine of the angle at which the rough ball leaves, from its spin", "1")
         .run(Run::new("rough", "dem", STEP.resolution))
@@ -152,7 +153,7 @@ mod tests {
 
     use super::*;
 
-    /// The integration reproduces the closed form of the rough ball.
+    /// Checks that the integration reproduces the closed form of the rough ball.
     #[test]
     fn the_rough_ball_leaves_at_ten_seventeenths() {
         let balls = Balls::from_scene(&CASE.variant("rough").unwrap());

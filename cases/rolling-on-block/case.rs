@@ -25,9 +25,10 @@ pub(crate) static CASE: Case = Case {
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement of the converged elastic disc on a rigid plane over the rigid one, minus one.
+    /// Displacement of the converged elastic disc on a rigid plane, divided by the displacement of a rigid disc, minus
+    /// one.
     reference: CitedNumber,
-    /// Deviations by level that were required before the solver existed.
+    /// Largest deviations at each level, required before the solver existed.
     allowed: [f64; 3],
 }
 
@@ -36,7 +37,7 @@ const SLOPES: [Slope; 2] = [
     Slope { variant: "30deg-mu.5", reference: elastic_disc::ROLLS_30_MU_5, allowed: [0.05, 0.02, 0.005] },
 ];
 
-/// Returns the displacement over (1/3) g t² sin θ, minus one.
+/// Returns the displacement divided by (1/3) g t² sin θ, minus one.
 fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, x) = (&done.series().time, done.column("grain.x")?);
     let end = x.len() - 1;
@@ -62,7 +63,7 @@ fn claims() -> Vec<Claim> {
                 .run(Run::new(slope.variant, "mpm:2000", LEVELS[1].resolution).known(
                     "nodal contact supports the disc over a region of about √(2Rh), like a flat side: it rolls too little",
                 )
-                // At −1 the disc does not move.
+                // The relative error is −1 if the disc does not move.
                 .up_to(1.0))
                 .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                 .within(required(slope.allowed[1] + slope.reference.uncertainty, ASKED))
@@ -77,7 +78,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     for slope in SLOPES {
         for solver in ["mpm", "mpm:gap", "mpm:2000"] {
             let mut points = Vec::new();
-            // Claims need the finest runs of the other two.
+            // Claims use the finest runs of `mpm` and `mpm:2000`, so these need no additional run.
             let levels = if solver == "mpm:gap" && !runner.is_thorough() { 2 } else { 3 };
             for cells in [2.0, 4.0, 8.0].into_iter().take(levels) {
                 let done = runner.run(&Run::new(slope.variant, solver, Resolution::grid(cells, 3)));

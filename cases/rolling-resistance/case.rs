@@ -1,5 +1,4 @@
-//! Rolling resistance. The claims are about deceleration on a flat plane, and about the largest slope at which a grain
-//! rests.
+//! Rolling resistance: deceleration on a flat plane, and the largest slope at which a grain rests.
 
 use crate::exact::one_grain::{OneGrain, State, course};
 use crate::rows::incline::wrong_inertia;
@@ -40,7 +39,7 @@ fn acceleration(scene: &Scene) -> f64 {
 fn claims() -> Vec<Claim> {
     let rigid = claim("refusal of rolling resistance", "1")
         .run(Run::new(FLAT[0], "rigid", rigid::DEFAULT))
-        .refused("rapier has no resistance against rolling", Control::without(Effect::RollingResistance));
+        .refused("rapier has no rolling resistance", Control::without(Effect::RollingResistance));
     let lammps =
         claim("refusal of a damped rolling spring", "1").run(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
             "LAMMPS limits the sum of spring and dashpot; LIGGGHTS and `dem` limit the spring alone",
@@ -51,7 +50,7 @@ fn claims() -> Vec<Claim> {
     ours.chain(FLAT.into_iter().flat_map(beside_programs)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
 }
 
-/// Claims agreement with LAMMPS and LIGGGHTS.
+/// Returns the claims of agreement with LAMMPS and LIGGGHTS.
 fn beside_programs(variant: &'static str) -> Vec<Claim> {
     let time_step: f64 = 2e-5;
     let ahead = computed(
@@ -60,8 +59,9 @@ fn beside_programs(variant: &'static str) -> Vec<Claim> {
             frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(&scene)
                 / scene.grains[0].radius
         }),
-        "its evaluation at the start counts one step of rolling as done. The moment k_r ωΔt decelerates by ω_r² v Δt \
-         for half a step or a whole step. A grain that starts at rest (the slopes) is not affected; in units of R",
+        "the program counts one step of rolling in its evaluation of forces at the start. The moment k_r ωΔt then \
+         decelerates by ω_r² v Δt for half a step or a whole step. A grain that starts at rest (on the slopes) is not \
+         affected; in units of R",
     );
     programs::rolling(variant, Resolution::TimeStep(time_step), &ahead)
 }
@@ -108,7 +108,7 @@ fn slowing(done: &FinishedRun, of_spin: bool) -> Result<f64, MissingData> {
     Ok((speed(end) - speed(half)) / (end.0 - half.0))
 }
 
-/// Returns the run on a slope of `factor` times the threshold, at the static overlap.
+/// Returns the run on a slope with tan θ = `factor` μ_r. The grain starts at its static overlap.
 fn tilted(variant: &'static str, factor: f64) -> Run {
     Run::new(variant, "dem", STEP.resolution).adjusted(&format!("tan θ = {factor} μ_r"), move |scene| {
         let angle = (factor * rolling_friction(scene)).atan();

@@ -1,5 +1,5 @@
-//! Two thousand spheres settle in a column. Walls and floor carry the weight, and the packing agrees with both external
-//! solvers.
+//! Two thousand spheres settle in a column. Walls and floor carry the weight, and the packing agrees with LAMMPS and
+//! LIGGGHTS.
 
 use crate::rows::programs::PAIRS;
 use grainbench_harness::prelude::*;
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Our columns that give the spread.
+/// Variants with columns from different random seeds. The spread between them gives the tolerances.
 const COLUMNS: [&str; 4] = [PLAIN, "seed-12", "seed-13", "seed-14"];
 
 fn run(solver: &'static str) -> Run {
@@ -91,7 +91,7 @@ fn claims() -> Vec<Claim> {
             let columns = COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside());
             claims.push(
                 claim(format!("{quantity}, against {program}"), "1")
-                    // The five runs take one to two seconds each.
+                    // Each of our five runs takes one to two seconds.
                     .runs([run(ours).slow(), run(program)])
                     .runs(columns)
                     .agrees(Source::Program, move |done| {
@@ -117,7 +117,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let pairs = if runner.is_thorough() { &PAIRS[..] } else { &PAIRS[..1] };
     for &[ours, program] in pairs {
         runs.push((ours, Stroke::Line, runner.run(&run(ours))?));
-        // Without the external solver and its stored run, there is no curve.
+        // LAMMPS or LIGGGHTS has no curve if it is not installed and no run of it is stored.
         if let Ok(theirs) = runner.run(&run(program)) {
             runs.push((program, Stroke::Markers, theirs));
         }

@@ -29,10 +29,11 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Variants: the silo with the small orifice, and a lower filling for the time step.
+/// Variant with the small orifice.
 const SMALL: &str = "small";
+/// Variant with a lower filling, for the effect of the time step.
 const LOW: &str = "low";
-/// The lower filling with five random seeds.
+/// Variants with the lower filling, from five random seeds.
 const FILLINGS: [&str; 5] = [LOW, "low-2", "low-3", "low-4", "low-5"];
 /// Time at which discharged grains are counted (s of flow).
 const COUNTED: f64 = 2.0;
@@ -40,7 +41,7 @@ const COUNTED: f64 = 2.0;
 const BOTH: [f64; 2] = [0.5, 2.0];
 /// Largest relative error of rates.
 const ALLOWED: f64 = 0.05;
-const BECAUSE: &str = "required in advance: 5 %, the stated difference between the codes of the paper";
+const BECAUSE: &str = "required in advance: 5 %, the difference between codes that the paper states";
 
 fn of_paper(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).paper_size().kept()
@@ -58,7 +59,7 @@ fn half_the_step() -> Run {
     Run::new(LOW, "dem:liggghts", LEVELS[1].resolution).long().kept().aside()
 }
 
-/// Returns the time at which the flow begins (s).
+/// Returns the time at which the plug is removed and the flow begins (s).
 fn begins(scene: &Scene) -> Option<f64> {
     scene.walls.iter().find_map(|wall| wall.until)
 }
@@ -67,8 +68,8 @@ fn begins(scene: &Scene) -> Option<f64> {
 /// is negligible.
 const SLACK: f64 = 1e-5;
 
-/// Returns the number of remaining grains at a time of flow, which begins when the plug is removed; interpolated
-/// between samples.
+/// Returns the number of remaining grains at a time of flow (s), interpolated between samples. The time of flow starts
+/// when the plug is removed.
 fn left(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
     let begun = begins(&done.scene).ok_or_else(|| MissingData("plug".to_owned()))?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
@@ -85,7 +86,8 @@ fn rate(done: &FinishedRun, [from, to]: [f64; 2]) -> Result<f64, MissingData> {
     Ok((left(done, from)? - left(done, to)?) / (to - from) / 1e3)
 }
 
-/// Returns the rate of steady flow, up to the end if the run is shorter.
+/// Returns the discharge rate of steady flow in thousands of grains per second. If the run ends before the end of this
+/// interval, the rate is evaluated up to the end of the run.
 fn steady(done: &FinishedRun) -> Result<f64, MissingData> {
     let end = done.series().time.last().copied().unwrap_or_default() - begins(&done.scene).unwrap_or_default();
     rate(done, [STEADY[0], STEADY[1].min(end)])
@@ -148,12 +150,12 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the runs of the small silo by our solver and by LIGGGHTS.
+/// Returns the runs of the small silo by our solver `ours` and by LIGGGHTS.
 fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
     [ours, "liggghts"].map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
 
-/// Expects the value of a work, within the tolerance of rates.
+/// Returns the expectation that a quantity equals a published value within [`ALLOWED`].
 fn near(
     quantity: grainbench_harness::claim::Quantity,
     cited: CitedNumber,
@@ -173,7 +175,7 @@ fn smooth() -> Control {
     })
 }
 
-/// Returns the figure of remaining grains over time, with the results of two codes, for stored or complete runs.
+/// Returns the figure of the number of remaining grains over time, with the results of two codes.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let published = course(SILO).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
     let small = |time: f64| (time, FILLED - dosta::SILO_SMALL_RATE.value * time);

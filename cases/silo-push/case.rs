@@ -1,4 +1,4 @@
-//! The deposit of the wide silo with half of its floor pushed up, read as granular elements.
+//! The deposit of the wide silo with half of its floor pushed up, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
@@ -10,7 +10,7 @@ use grainbench_harness::source::CitedNumber;
 
 pub(crate) static CASE: Case = Case {
     name: "silo-push",
-    title: "Wide silo, pushed from below: spheres read as granular elements",
+    title: "Wide silo, pushed from below: averages over granular elements",
     claim: "Elements of 2.5 d in a pushed deposit have the friction and the packing fraction of an independent \
             prototype, and of LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
@@ -25,7 +25,7 @@ pub(crate) static CASE: Case = Case {
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
 
-/// Packing fractions in the first bins of |I₀|, for the figure.
+/// Packing fractions of the prototype in the first bins of |I₀|, for the figure.
 static BINS: &[CitedNumber] =
     &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3];
 

@@ -1,4 +1,4 @@
-//! A tall silo that drains through a slit, read as granular elements.
+//! A tall silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
@@ -10,7 +10,7 @@ use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = Case {
     name: "silo-tall",
-    title: "Tall silo, drained: spheres read as granular elements",
+    title: "Tall silo, drained: averages over granular elements",
     claim: "Dilation, shear and stress of elements of 2.5 d in a draining silo agree with an independent prototype, \
             and with LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),

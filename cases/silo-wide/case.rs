@@ -1,4 +1,4 @@
-//! A wide silo that drains through a slit, read as granular elements.
+//! A wide silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
 use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, WEAKNESS};
@@ -10,7 +10,7 @@ use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = Case {
     name: "silo-wide",
-    title: "Wide silo, drained: spheres read as granular elements",
+    title: "Wide silo, drained: averages over granular elements",
     claim: "Elements of 2.5 d in a wide draining silo lie on the curves of the tall silo, as in an independent \
             prototype, and in LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),
@@ -61,7 +61,7 @@ fn full_size() -> PaperSize {
             onset: DRAINED.onset,
             // Up to 14 τ, 33 elements have been in the last bin, so its mean is uncertain by at least 0.003.
             bins: 9,
-            // The comparison of its curves with other flows is in the case of the tall silo.
+            // The case `silo-tall` compares the curves of this silo with other flows.
             beside: None,
             others: &collapse::BESIDE_WIDE,
         }),

@@ -21,7 +21,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Returns the height (m), and the settlement of its top under its weight without the initial stress, ρgH²/2M (m).
+/// Returns the height of the soil (m), and the settlement of its top, ρgH²/2M (m), if the soil starts without stress.
 fn soil(scene: &Scene) -> Option<[f64; 2]> {
     let body = scene.bodies.first()?;
     let BlockShape::Box { low, high } = body.shape else { return None };

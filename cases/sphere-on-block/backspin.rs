@@ -1,4 +1,4 @@
-//! The 2001 paper's sphere on a deformable plane with backspin: it slides, loses its spin, and rolls.
+//! A sphere with backspin on a deformable plane (Bardenhagen et al. 2001): it slides, loses its spin, and rolls.
 
 use super::{AT_REST, FLAT, LEVELS, set_down};
 use crate::rows::elastic_backspin::{excess, sphere};
@@ -8,7 +8,7 @@ const VARIANT: &str = "backspin";
 
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
-    // Deviations at R/4 and R/8 that were required before the solver existed.
+    // Largest relative errors of the displacement at cells of R/4 and R/8, required before the solver existed.
     for (level, asked) in LEVELS[1..].iter().zip([0.03, 0.01]) {
         let run = Run::new(VARIANT, "mpm", level.resolution).long();
         claims.extend(sphere(level.name, asked, run));

@@ -10,7 +10,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 
 const LEVELS: &[Level] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/8", 8.0, 2)];
-/// Largest error of nodal contact: at −1 the sphere does not move.
+/// Largest relative error of nodal contact: the displacement has the error −1 if the sphere does not move.
 const AT_REST: f64 = 1.0;
 
 const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a region of about √(2Rh), along each \
@@ -35,11 +35,13 @@ pub(crate) static CASE: Case = Case {
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement of the converged elastic sphere on a rigid plane after one second over the rigid one, minus one.
+    /// Displacement after one second of the converged elastic sphere on a rigid plane, divided by the displacement of a
+    /// rigid sphere, minus one.
     reference: CitedNumber,
-    /// Largest deviations at R/4 and R/8.
+    /// Largest deviations at cells of R/4 and R/8.
     allowed: [f64; 2],
-    /// Results of the 2000 and the 2001 contact at R/4, initially in contact.
+    /// Results at cells of R/4 with the contacts of Bardenhagen, Brackbill & Sulsky (2000) and Bardenhagen et al. (2001),
+    /// for a sphere that starts in contact.
     papers: [(&'static str, CitedNumber); 2],
 }
 
@@ -58,18 +60,18 @@ const SLOPES: [Slope; 2] = [
     },
 ];
 
-/// Returns the displacement over the displacement of a rigid sphere, minus one.
+/// Returns the last displacement divided by that of a rigid sphere, minus one.
 fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }
 
-/// Returns the run without relaxation: initially in contact and released, as in the paper.
+/// Returns the run without relaxation. As in Bardenhagen et al. (2001), the sphere starts in contact and is released.
 fn set_down(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[1].resolution).adjusted("set down", |scene| scene.start.settle = None)
 }
 
-/// Sets the tier of a run: standard for a few claims that take seconds, otherwise long.
+/// Sets the tier of a run: standard if `quick`, otherwise long.
 fn in_set(run: Run, quick: bool) -> Run {
     if quick { run.slow() } else { run.long() }
 }
@@ -99,7 +101,7 @@ fn claims() -> Vec<Claim> {
                     .equals_cited(cited, 1.0, |done| excess(&done[0]))
                     .within(judged(
                         0.07,
-                        "two implementations of one method at the same resolution, with other material points",
+                        "two implementations of one method at the same resolution, with different material points",
                     ))
                     .refuses(Control::solver("springs at the surface", "mpm")),
             );

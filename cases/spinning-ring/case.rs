@@ -26,14 +26,14 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// A rotating ring.
+/// Ring that rotates about its centre.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
     /// Inner and outer radius (m).
     radii: [f64; 2],
     /// E/(1 − ν²) (Pa) and ν/(1 − ν).
     plane: [f64; 2],
-    /// ρΩ² (N/m⁴).
+    /// Centrifugal load ρΩ² (N/m⁴).
     load: f64,
 }
 
@@ -79,7 +79,7 @@ fn growth(snapshot: &Snapshot) -> f64 {
     now / second_moment(snapshot.points.iter().map(|point| point.position - point.displacement)) - 1.0
 }
 
-/// Returns the mean of this increase over the run, with a Hann window.
+/// Returns the mean over the run of the relative increase of the second moment, weighted with a Hann window.
 fn mean_growth(done: &FinishedRun) -> Result<f64, MissingData> {
     let snapshots = &done.record.snapshots;
     let end = snapshots.last().map(|last| last.time).filter(|_| snapshots.iter().all(|now| !now.points.is_empty()));
@@ -133,7 +133,7 @@ fn claims() -> Vec<Claim> {
 mod tests {
     use super::*;
 
-    /// Lamé's displacement satisfies the equation in the ring, and σ_rr = 0 at both edges.
+    /// Checks that Lamé's displacement satisfies the equation in the ring, and that σ_rr = 0 at both edges.
     #[test]
     fn the_displacement_solves_the_equation() {
         let ring = Ring { radii: [0.5, 1.0], plane: [1e6 / 0.91, 0.3 / 0.7], load: 9e3 };

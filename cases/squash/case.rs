@@ -1,4 +1,5 @@
-//! The worked example of Cundall & Strack (1979): exact values of the calculation cycle.
+//! The worked example of Cundall & Strack (1979): two discs between two walls, with exact values of the calculation
+//! cycle.
 
 #[path = "elastic.rs"]
 mod elastic;
@@ -8,8 +9,8 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
-/// Rounding of forces in units of k v Δt: the rounding of positions up to 4 R over the displacement of a wall in a
-/// step, 1e-3 R.
+/// Rounding error of forces, in units of k v Δt. It is the rounding error of positions up to 4 R, divided by the
+/// displacement of a wall in a step, 1e-3 R.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
 const FORCES: ClaimFigure = ClaimFigure {
@@ -42,7 +43,7 @@ fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)
 }
 
-/// Returns q = kΔt²/m and the unit of force k v Δt, from the scene and the time step of the run.
+/// Returns q = kΔt²/m and the unit of force k v Δt (N), from the scene and the time step of the run.
 fn units(done: &FinishedRun) -> (f64, f64) {
     let stiffness = done.scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
     let time_step = done.record.provenance.time_step;

@@ -1,5 +1,5 @@
-//! Target quantity of accuracy. It is the motion of the disc between the walls in continuous time, without the paper's
-//! finite time step.
+//! Target quantity of the cost study: the motion of a disc between the walls in continuous time, without the finite
+//! time step of the paper.
 //!
 //! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W =
 //! √(3k/m).
@@ -11,7 +11,7 @@ use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
 use grainbench_scene::solver::Method;
 use std::sync::Arc;
 
-/// Duration of several periods of the pair (s); the period is 2π/√3 = 3.63 s.
+/// Duration of the run (s), several periods of the pair of discs. The period is 2π/√3 = 3.63 s.
 const SECONDS: f64 = 20.0;
 
 pub(crate) fn subjects() -> Vec<TargetQuantity> {

@@ -1,10 +1,10 @@
-//! The discs as elastic bodies: force at the walls, frequency of free vibration and apparent spring stiffness.
+//! Two elastic discs: force at the walls, frequency of free vibration and apparent spring stiffness.
 //!
 //! The walls move in by d = 0.01 R and stop. By symmetry, the plane between the discs acts as another wall, and the
 //! diameter of each disc is shortened by d. A rigid disc on springs k_n has the wall force F = (2/3) k_n d and ω² = 3
 //! k_n/m. An elastic disc has F(d) in closed form. During vibration, the force at one contact increases by as much as
-//! it decreases at the other. The disc's mean moves by x, where ΔF (u + v)/(πE') = x. Hence ω² = 2πE'/(m (u + v)),
-//! reduced by the added mass of the deformation.
+//! it decreases at the opposite contact. The disc's mean moves by x, where ΔF (u + v)/(πE') = x. Hence ω² = 2πE'/(m (u
+//! + v)), reduced by the added mass of the deformation.
 
 use crate::rows::elastic::{DiscDisplacements, PressedDisc};
 use crate::rows::ringing::{FreeVibration, VibrationParameters};
@@ -27,7 +27,8 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
         let force = disc.force(squeeze);
         let DiscDisplacements { u, v, .. } = disc.gives(force);
         let restoring = 2.0 * PI * disc.modulus / (u + v);
-        // Each disc has half of the springs between the discs: (1 + 1/2)/2² of both contacts, of (u + v)/2.
+        // Each disc has half of the springs between the discs. With equal forces at both contacts, the relative
+        // increase of the compliance is (1 + 1/2)/2², divided by (u + v)/2.
         let stirred = disc.stirred([1.0, -1.0, 0.0, 0.0]) / (u + v).powi(2);
         Some(VibrationParameters { force, restoring, stirred, patch: disc.patch(force), share: 0.75 / (u + v) })
     },

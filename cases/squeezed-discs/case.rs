@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
 const WALLS: [&str; 4] = ["left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
-/// The grid shifted by zero, a quarter and half of a cell.
+/// Solvers with a grid that is shifted by zero, a quarter and half of a cell.
 const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
-/// Springs twice as stiff, which slow rolling on a coarse grid.
+/// Solver with contact springs that are twice as stiff.
 const STIFF: &str = "mpm+penalty=5.2";
 const SOURCE: Source = Source::Derived(
     "Johnson, Contact Mechanics, line contact, with the expansion by the transverse pair of forces \
@@ -42,13 +42,14 @@ fn squeeze(scene: &Scene) -> f64 {
     }
 }
 
-/// Returns the contact force (N per metre) in closed form: both walls shorten a row of three diameters.
+/// Returns the contact force (N per metre) in closed form. Two opposite walls shorten a row of three diameters by twice
+/// the squeeze.
 fn exact(scene: &Scene) -> f64 {
     PressedDisc::from_scene(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
 
-/// Returns the mean contact force at the walls (N per metre), with three discs on each. The mean is over the last
-/// quarter of the run, because material points continue to oscillate by one per cent.
+/// Returns the mean contact force at the walls (N per metre). Each wall is in contact with three discs. The mean is
+/// over the last quarter of the run, because material points continue to oscillate by one per cent.
 fn mean_force(done: &FinishedRun) -> Result<f64, MissingData> {
     let mut sum = 0.0;
     for wall in WALLS {
@@ -59,8 +60,8 @@ fn mean_force(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(sum / 12.0)
 }
 
-/// Returns the number of contacts, and the largest deviation of a contact force from the mean. It covers the last
-/// quarter of the run, which all snapshots except the first belong to.
+/// Returns the number of contacts, and the largest relative deviation of a contact force from the mean. All snapshots
+/// except the first are used; they are in the last quarter of the run.
 fn spread(done: &FinishedRun) -> Result<(usize, f64), MissingData> {
     let late = done.record.snapshots.iter().filter(|snapshot| snapshot.time > 0.0);
     let mut forces: BTreeMap<(u32, String), f64> = BTreeMap::new();
@@ -78,7 +79,7 @@ fn phases(level: Level) -> [Run; 3] {
     PHASES.map(|solver| Run::new(PLAIN, solver, level.resolution))
 }
 
-/// Returns the mean over the shifts of the grid.
+/// Returns the mean contact force over the shifts of the grid.
 fn over_phases(done: &[FinishedRun]) -> Result<f64, MissingData> {
     let forces: Result<Vec<f64>, MissingData> = done.iter().map(mean_force).collect();
     Ok(forces?.iter().sum::<f64>() / done.len() as f64)

@@ -1,6 +1,6 @@
-//! Stored results of runs that take minutes or hours, in the folder of their case. They are the tables read from
-//! snapshots, the time series and their provenance. The main CI job evaluates claims on them without the run. Commands
-//! that select the tier of a run repeat the run.
+//! Stored results of runs that take minutes or hours. Each case folder contains the results of its own runs: tables
+//! computed from snapshots, time series and provenance. The main CI job evaluates claims on stored results. A run is
+//! repeated only by commands that select its tier.
 
 use crate::registry::CASES;
 use crate::solvers::is_program;
@@ -25,11 +25,12 @@ use std::path::{Path, PathBuf};
 const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series";
 const ENDING: &str = ".csv.gz";
-/// Significant digits of numbers in tables. Tables average many grains, so a rounding error of 1e-6 is negligible.
+/// Significant digits of numbers in tables. The rounding error is at most 5e-6 of a value. It is negligible, because
+/// tables contain averages over many grains.
 const DIGITS: usize = 6;
 
-/// Returns the hash of the sources of a solver that this program is built from. For an external program it is the hash of
-/// the sources that write its input. Comments do not count.
+/// Returns the hash of the source files of a solver in this build; `None` for an unknown solver. For LAMMPS and
+/// LIGGGHTS it is the hash of the code that writes their input. Comments do not change the hash.
 #[must_use]
 pub fn sources(solver: &str) -> Option<String> {
     let hash = match solver.split([':', '+']).next() {
@@ -46,33 +47,33 @@ pub fn sources(solver: &str) -> Option<String> {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Name and version of the program that made it.
+    /// Name and version of the program that computed the result.
     pub program: String,
     /// Commit that the program was built from.
     pub commit: String,
     /// Date (YYYY-MM-DD).
     pub date: String,
-    /// Description of the run.
+    /// Case, scene, solver and resolution of the run.
     pub title: String,
-    /// Description of the reading of its snapshots.
+    /// Name of the evaluation of the snapshots; empty if the result has time series only.
     pub reading: String,
-    /// BLAKE3 hash of everything in the scene that the run depends on, by [`scene_hash_by_bits`]. Older results have a
-    /// hash over the decimal digits of the grains.
+    /// BLAKE3 hash of all scene data that affect the run, by [`scene_hash_by_bits`]. In older results, the hash uses
+    /// the decimal digits of the grains instead of their bits.
     pub scene: String,
-    /// Hash of the sources of the solver, by [`sources`]. Older results have none.
+    /// Hash of the solver's source files, by [`sources`]; absent for LAMMPS, for LIGGGHTS and in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sources: Option<String>,
-    /// Command that makes the result again.
+    /// Command that repeats the run and stores its result.
     pub command: String,
-    /// BLAKE3 hash of each file, by file name.
+    /// BLAKE3 hash of each table file, by file name.
     pub blake3: BTreeMap<String, String>,
-    /// Summary of the run.
+    /// Solver, resolution, time step and options, as in the record of the run.
     pub run: RecordProvenance,
     /// Cost of the run.
     pub cost: Cost,
 }
 
-/// A run of a claim whose tables are stored: the run itself or its negative control.
+/// A run whose result is stored for a claim: the run of the claim, or the run of its negative control.
 #[derive(Clone)]
 pub struct StorableRun {
     /// Case of the claim.
@@ -100,7 +101,7 @@ impl StorableRun {
         folder(self.case, &self.id)
     }
 
-    /// Returns true if the stored result belongs to the present scene.
+    /// Returns true if there is a readable stored result for this scene and the time step and evaluation of the run.
     #[must_use]
     pub fn is_there(&self, given: &Scene) -> bool {
         let control = self.wrong.then_some(self.claim.control.name);
@@ -108,7 +109,8 @@ impl StorableRun {
     }
 }
 
-/// Returns all stored runs that claims of a case read, each once.
+/// Returns all runs of a case whose results are stored in its folder, each once. Runs of negative controls are included
+/// if the control changes the run.
 #[must_use]
 pub fn all(case: &'static Case) -> Vec<StorableRun> {
     let mut all: Vec<StorableRun> = Vec::new();
@@ -141,8 +143,8 @@ pub fn cases() -> Vec<&'static Case> {
         .collect()
 }
 
-/// Returns the folder name of a run under a control of this name: scene, solver, resolution and control in letters,
-/// digits, `.` and `-`.
+/// Returns the folder name of a run, or of its negative control with this name. Scene, solver, resolution and control
+/// are joined by `-` in lower case, with letters, digits and `.` only.
 fn id(run: &Run, control: Option<&str>) -> String {
     let words = format!("{} {} {} {}", run.scene_words(), run.solver, run.resolution, control.unwrap_or_default());
     let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
@@ -154,7 +156,7 @@ fn folder(case: &Case, id: &str) -> PathBuf {
     case.directory().join("kept").join(id)
 }
 
-/// Reads the stored result of a run of a scene, under a control of this name; `None` if there is none.
+/// Reads the stored result of a run, or of its negative control with this name; `None` if there is no stored result.
 #[must_use]
 pub(crate) fn load(
     case: &Case,
@@ -179,7 +181,7 @@ pub(crate) fn load(
 
 /// Reason why a stored result cannot be used.
 enum StoredResultError {
-    /// The result belongs to another scene or another reading.
+    /// The result belongs to another scene, time step or evaluation of snapshots.
     Stale(String),
     /// A file is missing, damaged or changed.
     Broken(String),
@@ -237,7 +239,7 @@ fn table(folder: &Path, file: &str, expected: &str) -> Result<Table, String> {
     Ok(Table { name: name.to_owned(), columns, values })
 }
 
-/// Returns the time series of a record from its table.
+/// Converts a stored table to a time series. Columns that the record of the scene lacks are dropped.
 fn series(scene: &Scene, table: &Table) -> Series {
     let values = |name: &str| table.column(name).map(<[f64]>::to_vec).unwrap_or_default();
     let mut series = Series {
@@ -254,7 +256,7 @@ fn series(scene: &Scene, table: &Table) -> Series {
     series
 }
 
-/// Returns name and bytes of each file that stores a finished run.
+/// Returns name and bytes of each file that stores a finished run. `made` contains the commit and the date.
 ///
 /// # Errors
 /// When the provenance cannot be serialised. The error is a message.

@@ -11,28 +11,28 @@ use nalgebra::Vector3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Name of a case and the function that returns its target quantities of accuracy.
+/// Name of a case and the function in its `cost.rs`, which returns the target quantities of the cost study.
 type TargetFunction = (&'static str, fn() -> Vec<TargetQuantity>);
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
-/// Folders of the cases and their reader of grains.
+/// Folder of the cases, function that reads their grain files, and cache of their scenes.
 pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains, made: Some(&MADE) };
 static MADE: SceneCache = SceneCache::new(Vec::new());
 
-/// Returns the case of a name.
+/// Returns the case with this name.
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static Case> {
     CASES.iter().copied().find(|case| case.name == name)
 }
 
-/// Returns a runner of a case with the solvers of the registry.
+/// Returns a runner of a case with the solvers of [`crate::solvers::Registry`].
 #[must_use]
 pub fn runner(case: &'static Case) -> Runner {
     Runner::new(case, Arc::new(crate::solvers::Registry))
 }
 
-/// Returns the target quantities that measure accuracy in a case: its own list, or the quantities of its claims.
+/// Returns the target quantities of a case for the cost study: those of its `cost.rs`, or else those of its claims.
 #[must_use]
 pub fn subjects(case: &'static Case) -> Vec<TargetQuantity> {
     match COSTS.iter().find(|(name, _)| *name == case.name) {
@@ -49,10 +49,11 @@ pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
     Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
 }
 
-/// Returns the scene of a source whose grains are in LAMMPS data files, given as name and text.
+/// Returns the scene of a source that reads its grains from LAMMPS data files. `files` contains the name and the text
+/// of each data file.
 ///
 /// # Errors
-/// When the scene or a data file is wrong. The message gives the place in the file.
+/// When the scene or a data file is invalid, or `files` lacks a data file. The message gives the place in the file.
 pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<Scene, String> {
     let read = |path: &Path| {
         let named = files.iter().find(|(name, _)| path.ends_with(name));

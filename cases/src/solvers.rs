@@ -26,36 +26,37 @@ pub fn all() -> Vec<Box<dyn Solver>> {
     dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).chain(mpm).collect()
 }
 
-/// Returns all external solvers, installed or not.
+/// Returns the solvers that run LAMMPS and LIGGGHTS, whether or not these programs are installed.
 #[must_use]
 pub fn programs() -> Vec<Box<dyn Solver>> {
     Program::ALL.into_iter().map(|program| Box::new(LiveProgram::find(program)) as Box<dyn Solver>).collect()
 }
 
-/// Returns the names of our solvers and of the external solvers.
+/// Returns the names of our solvers, of LAMMPS and of LIGGGHTS.
 #[must_use]
 pub fn names() -> Vec<String> {
     all().iter().chain(&programs()).map(|solver| solver.name()).collect()
 }
 
-/// Former names that are still accepted, each with the present name.
+/// Former solver names that are still accepted, each with the present name.
 const EARLIER_NAMES: [(&str, &str); 1] = [("dem:no-tension", "dem")];
 
-/// Returns the present name of a renamed solver.
+/// Returns the present name of a renamed solver; `None` if the name is no former name.
 #[must_use]
 pub fn renamed(name: &str) -> Option<&'static str> {
     EARLIER_NAMES.into_iter().find(|(earlier, _)| *earlier == name).map(|(_, now)| now)
 }
 
-/// Returns the solver of a present or former name. Words after the name change the setting of the material point
-/// method, for example `mpm+quadratic+apic`.
+/// Returns the solver with a present or former name; `None` if there is none. Words after `+` change settings of the
+/// material point method, as in `mpm+quadratic+apic`.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     let name = renamed(name).unwrap_or(name);
     all().into_iter().chain(programs()).find(|solver| solver.name() == name).or_else(|| varied::by_name(name))
 }
 
-/// Returns each of our solvers with its conformance properties, in scenes that take less than a second.
+/// Returns each of our solvers with the conformance properties that it must satisfy. MPM is checked in two dimensions
+/// only, so that each scene takes less than a second.
 #[must_use]
 pub fn with_terms() -> Vec<(Box<dyn Solver>, Terms)> {
     let dem = Convention::ALL.into_iter().map(|convention| {
@@ -118,7 +119,7 @@ impl Solvers for Registry {
     }
 }
 
-/// Returns true if a name belongs to an external solver.
+/// Returns true for the solver names `lammps` and `liggghts`.
 #[must_use]
 pub fn is_program(name: &str) -> bool {
     Program::by_name(name).is_some()

@@ -1,4 +1,4 @@
-//! Works that expected values come from: one handle for each folder of references with a provenance.
+//! Works that give expected values: one module for each reference folder with a `provenance.toml`.
 
 #![allow(clippy::excessive_precision, reason = "numbers stand as the works give them")]
 

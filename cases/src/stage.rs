@@ -3,12 +3,13 @@
 use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
-/// Largest deviation of F_H/F_V from its target at stage A, at which the search for the wall motion of
-/// `photoelastic-packing` stops.
+/// Tolerance of the search for the wall motion of `photoelastic-packing`: largest deviation of F_H/F_V from its target
+/// at stage A.
 pub const NEAR_IN_RATIO: f64 = 0.004;
-/// Largest deviation of mean overlap / mean radius from its target at stage A, at which the search stops.
+/// Tolerance of the search for the wall motion: largest deviation of mean overlap / mean radius from its target at
+/// stage A.
 pub const NEAR_IN_OVERLAP: f64 = 8e-6;
-/// Largest deviation of F_V at stage B / F_V at stage A from its target, at which the search stops.
+/// Tolerance of the search for the wall motion: largest deviation of F_V at stage B / F_V at stage A from its target.
 pub const NEAR_IN_GROWTH: f64 = 1e-4;
 
 /// Sums over walls and contacts of one snapshot. The walls are planes normal to the axes.
@@ -18,25 +19,25 @@ pub struct Stage {
     pub horizontal: f64,
     /// F_V: half of the sum of the normal forces on the walls across y (N; N/m for discs).
     pub vertical: f64,
-    /// Mean approach over the mean radius. The mean is over all contacts, including contacts at walls. The approach is
-    /// the distance of undeformed grains in contact minus the distance of their centres. It is the overlap of rigid
-    /// grains on springs, and the flattening of deformable grains.
+    /// Mean approach divided by the mean radius. The mean is over all contacts, including contacts at walls. The
+    /// approach is the distance of centres in undeformed contact minus the present distance of centres. It is the
+    /// overlap of rigid grains on springs, and the flattening of deformable grains.
     pub overlap: f64,
-    /// Largest resultant force on a grain over the largest contact force.
+    /// Largest resultant force on a grain, divided by the largest contact force.
     pub unbalanced: f64,
-    /// Larger component of the sum of the forces on all walls, with friction, over the largest force on a wall.
+    /// Largest component of the total force on all walls, including friction, divided by the largest force on one wall.
     pub residual: f64,
 }
 
 impl Stage {
-    /// Evaluates a snapshot.
+    /// Computes the sums of a snapshot. A sum is NaN if the solver reports no forces.
     #[must_use]
     pub fn from_snapshot(snapshot: &Snapshot) -> Self {
         let (grains, contacts, walls) = (&snapshot.grains, snapshot.told_contacts(), &snapshot.walls);
         let unknown = Vector3::repeat(f64::NAN);
         let on_wall = |wall: &WallState| wall.force.unwrap_or(unknown);
         let largest = |forces: &mut dyn Iterator<Item = f64>| forces.fold(0.0, f64::max);
-        // The second corner of a plane is its normal, into the packing.
+        // The second corner of a plane is its normal, which points into the packing.
         let carried = |axis: usize| -> f64 {
             walls.iter().filter_map(|wall| Some(-0.5 * on_wall(wall)[axis] * wall.corners.get(1)?[axis])).sum()
         };
@@ -54,15 +55,15 @@ impl Stage {
         }
     }
 
-    /// Returns F_H/F_V.
+    /// Returns the ratio F_H/F_V of horizontal to vertical wall force.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         self.horizontal / self.vertical
     }
 }
 
-/// Returns the approach at a contact (m): how much closer the centre is to the partner's centre, or to a plane, than in
-/// undeformed contact.
+/// Returns the approach at a contact (m): the distance from the grain's centre to the partner's centre, or to a plane,
+/// in undeformed contact, minus the present distance. For a body or another wall, returns the recorded overlap.
 fn approach(snapshot: &Snapshot, contact: &ContactState) -> f64 {
     let grain = &snapshot.grains[contact.grain as usize - 1];
     match contact.partner {

@@ -1,4 +1,4 @@
-//! Stored runs of external solvers that claims read, by the names of their folders.
+//! Stored runs of LAMMPS and LIGGGHTS that claims read, by the names of their folders.
 
 use crate::registry::CASES;
 use grainbench_harness::case::{Case, PLAIN};
@@ -10,25 +10,25 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::RunError;
 
-/// A run of an external solver that a claim reads, stored or not.
+/// A run of LAMMPS or LIGGGHTS that a claim reads, stored or not.
 #[derive(Clone)]
 pub struct Reference {
     /// Case of the claims that read the run.
     pub case: &'static Case,
     /// Scene, variant and resolution of the run.
     pub run: Run,
-    /// External solver of the run.
+    /// Program of the run: LAMMPS or LIGGGHTS.
     pub program: Program,
     /// Name of the folder of the stored run.
     pub id: String,
 }
 
-/// Returns all runs of external solvers that claims read, in the order of the registry, each once.
+/// Returns all runs of LAMMPS and LIGGGHTS that claims read, in the order of the registry, each once.
 #[must_use]
 pub fn all() -> Vec<Reference> {
     let mut all: Vec<Reference> = Vec::new();
     for &case in CASES {
-        // `kept` makes the runs that are stored in the folder of their case.
+        // The module `kept` handles runs whose results are stored in the folder of their case.
         for run in (case.claims)().into_iter().flat_map(|claim| claim.runs).filter(|run| !run.kept) {
             let Some(program) = Program::by_name(run.solver).filter(|_| run.standing != ExpectedOutcome::Refused)
             else {
@@ -56,7 +56,7 @@ impl Reference {
         Ok(scene)
     }
 
-    /// Returns a title of the run: case, variant and adjustment.
+    /// Returns a title of the run: case, variant, adjustment and resolution.
     #[must_use]
     pub fn title(&self) -> String {
         let mut title = self.case.name.to_owned();
@@ -70,7 +70,7 @@ impl Reference {
     }
 }
 
-/// Returns the folder name of a run: case, variant and adjustment in letters, digits, `.` and `-`.
+/// Returns the folder name of a run: case, variant and adjustment in lower case, joined by `-`.
 #[must_use]
 pub fn id(case: &Case, run: &Run) -> String {
     let variant = if run.variant == PLAIN { "" } else { run.variant };
@@ -81,13 +81,13 @@ pub fn id(case: &Case, run: &Run) -> String {
     words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// Returns true if a run has a folder.
+/// Returns true if there is a folder with the stored run.
 #[must_use]
 pub fn exists(case: &Case, run: &Run) -> bool {
     Program::by_name(run.solver).is_some_and(|program| folder(program, &id(case, run)).is_dir())
 }
 
-/// Reads the stored record of a run of an external solver; `None` if nothing is stored.
+/// Reads the stored record of a run of LAMMPS or LIGGGHTS; `None` for another solver or if no run is stored.
 pub(crate) fn record(case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
     let program = Program::by_name(run.solver)?;
     let folder = folder(program, &id(case, run));

@@ -1,5 +1,5 @@
-//! Numerical uncertainties of claims, estimated once from three levels of resolution and stored with their provenance.
-//! `grainbench reference uncertainty` makes them.
+//! Numerical uncertainties of claims. Each is estimated once from runs at three resolutions and stored with its
+//! provenance. The command `grainbench reference uncertainty` computes them.
 
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
@@ -19,14 +19,14 @@ pub struct StoredEstimates {
     pub commit: String,
     /// Date (YYYY-MM-DD).
     pub date: String,
-    /// Rule of the estimation.
+    /// Rule by which the estimates are computed from the three resolutions.
     pub rule: String,
     /// One estimate for each claim with an estimated tolerance.
     #[serde(default)]
     pub estimate: Vec<Estimate>,
 }
 
-/// Returns the file with the estimates of a case.
+/// Returns the path of the file with the estimates of a case.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
     Path::new(grainbench_reference::FOLDER).join("uncertainty").join(format!("{case}.toml"))
@@ -38,7 +38,7 @@ fn load(case: &str) -> StoredEstimates {
     toml::from_str(&text).unwrap_or_default()
 }
 
-/// Returns the stored estimate of a claim.
+/// Returns the stored estimate of a claim; `None` if none is stored or the claim reads more than one run.
 #[must_use]
 pub fn find(case: &Case, claim: &Claim) -> Option<Estimate> {
     static CASES: OnceLock<BTreeMap<&'static str, StoredEstimates>> = OnceLock::new();

@@ -1,5 +1,5 @@
-//! The material point method with settings in its name, such as `mpm+quadratic+apic`, for claims that need other
-//! settings.
+//! Material point method with settings in its name, such as `mpm+quadratic+apic`, for claims that need other settings
+//! than the defaults.
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;
@@ -8,7 +8,7 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
 
-/// Returns the solver of a name such as `mpm+apic`; `None` if a word is unknown.
+/// Returns the solver with a name such as `mpm+apic`; `None` if the name or a word after `+` is unknown.
 pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     let (base, words) = name.split_once('+')?;
     let mut mpm = Mpm::named(base)?;
@@ -18,7 +18,7 @@ pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     Some(Box::new(VariedMpm { name: name.to_owned(), mpm }))
 }
 
-/// Changes a setting by a word; `None` if the word is unknown.
+/// Changes the setting that a word of the solver name selects; `None` if the word is unknown.
 fn change(setting: &mut Setting, word: &str) -> Option<()> {
     match word {
         "linear" => setting.basis = Basis::Linear,

@@ -10,7 +10,7 @@ const STEP: Level = LEVELS[1];
 
 pub(crate) static CASE: Case = Case {
     name: "turning-walls",
-    title: "Grains ride on walls that turn",
+    title: "Grains on rotating walls",
     claim: "Grains at rest relative to rotating walls stay at rest relative to them: friction, tangential springs and \
             rolling resistance include the spin of the walls.",
     scene: include_str!("scene.toml"),
@@ -33,7 +33,7 @@ fn turned(scene: &Scene) -> f64 {
     spin(scene).norm() * scene.duration.seconds().unwrap_or(f64::NAN)
 }
 
-/// Returns a number of a variant without a control.
+/// Returns a number computed from the scene of a variant as the case defines it, also under a negative control.
 fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
     CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
 }
@@ -44,7 +44,7 @@ fn scheme(scene: &Scene) -> f64 {
     (spin(scene).norm() * step * (1.0 + turned(scene))).powi(2)
 }
 
-/// Returns the overlap with the drum (m).
+/// Returns the overlap of the sphere with the drum (m).
 fn in_drum(scene: &Scene) -> f64 {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
     let force = grain.mass * spin(scene).norm_squared() * grain.position.norm();
@@ -107,7 +107,8 @@ fn softness(scene: &Scene) -> f64 {
     1.0 / law.tangential_stiffness() + radius * radius / rolling
 }
 
-/// Returns the largest error of the disc's position over Rφ: lever arms, and the oscillation on the springs.
+/// Returns the largest error of the disc's position divided by Rφ, due to lever arms and the oscillation on the
+/// springs.
 fn tray_off(scene: &Scene) -> f64 {
     let grain = &scene.grains[0];
     let (weight, angle) = (grain.mass * scene.gravity.norm(), turned(scene));
@@ -141,7 +142,7 @@ fn frequency(scene: &Scene) -> f64 {
     scene.laws[0].map_or(f64::NAN, |law| (2.0 * law.tangential_stiffness() / scene.grains[0].mass).sqrt())
 }
 
-/// Returns the component of a position across the axis, in which the clamped sphere rotates.
+/// Returns the component of a position across the z axis, about which the clamped sphere rotates.
 fn across(place: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(place.x, place.y, 0.0)
 }

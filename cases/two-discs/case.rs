@@ -25,8 +25,8 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Courant number: time step over the transit time of a wave through a cell. It is smaller than usual, for contact
-/// springs and waves of an impact.
+/// Courant number: time step divided by the transit time of a wave through a cell. It is smaller than usual because of
+/// the contact springs and the waves of an impact.
 const COURANT: f64 = 0.3;
 
 const fn grid(cells: f64) -> Resolution {
@@ -37,14 +37,14 @@ fn speed(done: &FinishedRun) -> f64 {
     done.scene.grains[0].velocity.norm()
 }
 
-/// Returns the speed along the line of approach after the impact over the speed before.
+/// Returns the speed along the line of approach after the impact, divided by the speed before.
 fn restitution(done: &FinishedRun) -> Result<f64, MissingData> {
     let velocity = done.scene.grains[0].velocity;
     let (vx, vy) = (done.last("left.vx")?, done.last("left.vy")?);
     Ok(-(vx * velocity.x + vy * velocity.y) / velocity.norm_squared())
 }
 
-/// Returns the total energy at the end over the initial energy.
+/// Returns the total energy at the end, divided by the initial energy.
 fn energy(done: &FinishedRun) -> Result<f64, MissingData> {
     let energy = done.column("all.total_energy")?;
     Ok(done.last("all.total_energy")? / energy[0])
@@ -102,7 +102,7 @@ fn claims() -> Vec<Claim> {
                 ))
                 .refuses(Control::scene("one disc faster by a millionth", |scene| {
                     scene.grains[0].velocity *= 1.0 + 1e-6;
-                    // The sum of the impulses is wrong from the start.
+                    // The sum of the impulses is wrong from the start, so a shorter run is enough.
                     if let Duration::Seconds(time) = &mut scene.duration {
                         *time *= 0.1;
                     }
@@ -122,8 +122,8 @@ fn claims() -> Vec<Claim> {
     claims.push(
         claim("energy after over before, manufactured by the 2000 criterion", "1")
             .run(run("head-on", "mpm:2000").known(
-                "lower than the lowest of six results of the prototype: it depends on the position of the discs on the grid, \
-                 which is not reported",
+                "the energy is lower than the lowest of six results of the prototype. It depends on the position of \
+                 the discs on the grid, which the paper does not report",
             )
             .up_to(0.05))
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
@@ -134,7 +134,7 @@ fn claims() -> Vec<Claim> {
         claim("energy after over before", "1")
             .run(
                 run("head-on", "mpm:2000")
-                    .known("contact ends on separation, for any traction: each release adds energy")
+                    .known("contact ends as soon as the bodies separate, for any traction: each release adds energy")
                     .up_to(0.2),
             )
             .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
@@ -151,8 +151,8 @@ fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(f64::hypot(x, y), 0.0, scale))
 }
 
-/// Claims on three discs that collide at one point. Contacts act in pairs, independent of the number of bodies at a
-/// node.
+/// Returns the claims on three discs that collide at one point. Contacts must act in pairs, independent of the number
+/// of bodies at a node.
 fn three() -> Vec<Claim> {
     let momentum_claim = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")
@@ -177,7 +177,7 @@ fn three() -> Vec<Claim> {
     claims
 }
 
-/// Claims on the spin by friction.
+/// Returns the claims on the spin due to friction.
 fn oblique() -> Vec<Claim> {
     let spin_claim = |run: Run, quantity: &str, because, control| {
         claim(quantity, "1")
@@ -195,8 +195,8 @@ fn oblique() -> Vec<Claim> {
         ),
         spin_claim(
             Run::new("oblique", "mpm", grid(16.0)).slow().known(
-                "the points' own spin, without resistance from neighbours, lets the surface layer yield along the contact: the \
-                 spin does not converge to the reference",
+                "the spin of single points meets no resistance from their neighbours and lets the surface layer yield \
+                 along the contact, so the spin of the disc does not converge to the reference",
             )
             .up_to(0.05),
             "ΩR/v₀ after an oblique impact, μ = .9, 16 cells a radius",
@@ -206,14 +206,16 @@ fn oblique() -> Vec<Claim> {
     ]
 }
 
-/// Claims on position and time of the first contact in Sulsky's scene.
+/// Returns the claims on position and time of the first contact in Sulsky's scene.
 fn touching() -> Vec<Claim> {
     const SURFACES_MEET: Source = Source::Derived(
         "centres √2 (.6 − .2 t) apart, as in Sulsky, Chen & Schreyer 1994, touch at t = 3 − √2 (derivation)",
     );
-    /// Cell of R/8 (m), time step (s) with c = 1.160239 m/s, and closing velocity of the centres (m/s).
+    /// Cell length R/8 (m).
     const CELL: f64 = 0.025;
+    /// Time step (s) with the wave speed c = 1.160239 m/s.
     const STEP: f64 = COURANT * CELL / 1.160_239;
+    /// Closing velocity of the centres (m/s).
     const CLOSING: f64 = SQRT_2 * 0.2;
     vec![
         claim("gap at first contact", "m")

@@ -1,5 +1,5 @@
-//! A small grain hits a large one at an angle and slips throughout. The velocities and spins of both grains have exact
-//! values.
+//! A small grain hits a large one at an angle and slips during the whole impact. The velocities and spins of both
+//! grains have exact values.
 
 use crate::rows::incline::stronger_friction;
 use grainbench_harness::prelude::*;
@@ -29,9 +29,11 @@ struct Impact {
     before: [f64; 2],
     /// Impulse along the normal and along the tangent (N s).
     impulse: [f64; 2],
-    /// Masses (kg), radii (m) and moments of inertia (kg m²).
+    /// Masses of the small and the large grain (kg).
     masses: [f64; 2],
+    /// Radii (m).
     radii: [f64; 2],
+    /// Moments of inertia (kg m²).
     inertias: [f64; 2],
     /// Largest relative error of an impulse or a spin.
     off: f64,
@@ -63,7 +65,8 @@ impl Impact {
     }
 }
 
-/// A quantity: its name, unit, column and exact value, and the part of it that the impulse causes.
+/// Measured quantity with its name, unit, column and exact value. `given` returns the change due to the impulse, to
+/// which errors are relative.
 struct Quantity {
     name: &'static str,
     unit: &'static str,

@@ -57,7 +57,7 @@ pub(crate) static CASE: Case = Case {
     home: &crate::registry::HOME,
 };
 
-/// Returns ω (rad/s) and the mean initial velocity (m/s).
+/// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
 pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
     let bar = &scene.bodies[0];
     let wave = bar.wave.map_or((f64::NAN, f64::NAN), |wave| (wave.wave_number, wave.amplitude));
@@ -82,7 +82,7 @@ fn slower(wave_number_squared: f64) -> f64 {
     (25.0 / 96.0 - Resolution::COURANT.powi(2) / 24.0) * wave_number_squared
 }
 
-/// Returns the remainder after this decrease: the next power of (kh)², and ε² of the law at a strain ε.
+/// Returns the relative error that remains after the correction by [`slower`]: (kh)⁴, and ε² of the law at a strain ε.
 fn rest(squared: f64, strain: f64) -> f64 {
     squared * squared + strain * strain
 }
@@ -130,7 +130,7 @@ impl DampedMode {
     }
 }
 
-/// Returns the largest error of the mode over `time` (s), in units of the initial amplitude (derivation).
+/// Returns the largest error of the damped mode over `time` (s), in units of the initial amplitude (derivation).
 fn damped_off(resolution: Resolution, scene: &Scene, time: f64) -> f64 {
     let ((squared, strain), DampedMode { frequency, decay, .. }) = (small(resolution), DampedMode::from_scene(scene));
     let step = resolution.steps_on_grid(scene).map_or(f64::NAN, |(step, _)| step);
@@ -156,7 +156,7 @@ fn triangle(scene: &Scene, time: f64) -> f64 {
     stress / mass * transit * wave
 }
 
-/// Returns the claims on the viscous bar and on the stretched one.
+/// Returns the claims on the bar of viscous material and on the bar with an initial stress.
 fn of_others() -> Vec<Claim> {
     let at = LEVELS[1];
     let time = 20.0;

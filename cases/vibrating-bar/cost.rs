@@ -1,4 +1,5 @@
-//! Target quantity of accuracy: the exact period of the bar. The effect of the grid counts as an error.
+//! Target quantity of the cost study: the period of the bar, compared with the exact period. The effect of the grid
+//! counts as an error.
 
 use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use crate::registry;

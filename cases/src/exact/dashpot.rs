@@ -1,10 +1,11 @@
-//! Restitution of a contact with a dashpot, and the effect of a time step on it.
+//! Coefficient of restitution of a contact with a dashpot, and its error due to the time step.
 
 use std::f64::consts::PI;
 
-/// Returns the relative decrease of restitution over the step, (Δe/e)/(ωΔt), if the dashpot uses the velocity half a
-/// step earlier. The velocity v − ½Δt dv/dt makes spring and dashpot stiffer by 1 + ζωΔt each. The damping ratio ζ is
-/// then larger by 1 + ζωΔt/2. With e = exp(−πζ/√(1 − ζ²)), dln e/dζ = −π/(1 − ζ²)^{3/2}. Source: the damped oscillator.
+/// Returns the relative decrease of the restitution coefficient e per phase of a step, (Δe/e)/(ωΔt), if the dashpot
+/// uses the velocity half a step earlier. The velocity v − ½Δt dv/dt makes spring and dashpot stiffer by the factor 1 +
+/// ζωΔt each. The damping ratio ζ is then larger by the factor 1 + ζωΔt/2. With e = exp(−πζ/√(1 − ζ²)), dln e/dζ =
+/// −π/(1 − ζ²)^{3/2}. Source: the damped oscillator.
 #[must_use]
 pub fn lag(damping_ratio: f64) -> f64 {
     0.5 * PI * damping_ratio * damping_ratio / (1.0 - damping_ratio * damping_ratio).powf(1.5)

@@ -3,7 +3,7 @@
 use grainbench_harness::prelude::{FinishedRun, MissingData};
 use grainbench_scene::manufactured::Medium;
 
-/// Returns the root mean square, over the material points, of the error of the final displacement (m).
+/// Returns the error of the final displacement (m): the root mean square over the material points, weighted by volume.
 ///
 /// # Errors
 /// When the record has no material points or the scene has no manufactured motion.

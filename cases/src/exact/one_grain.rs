@@ -1,4 +1,4 @@
-//! One grain on a plane: closed forms, and scenes at a stated static overlap.
+//! One grain on a plane: closed forms, and scenes with a prescribed static overlap.
 //!
 //! With `i = I/(mR²)` (1/2 for a disc, 2/5 for a sphere), gravity along the plane g_t and onto it g_n, friction μ:
 //!
@@ -7,10 +7,10 @@
 //! rolling   a = g_t/(1+i)                            slipping   a = g_t − μ g_n,   R dΩ/dt = μ g_n/i
 //! ```
 //!
-//! An elastic tangential spring k_t first sticks and oscillates. With slip u = v − ΩR, F = k_t ∫u dt and
-//! du/dt = g_t − (F/m)(1 + 1/i). Hence F/m = f g_t (1 − cos ωt) with ω² = (k_t/m)(1 + 1/i), until it reaches μ g_n.
-//! Sources: Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26. The compliant forms are
-//! derived here.
+//! An elastic tangential spring k_t first sticks and oscillates. With slip velocity u = v − ΩR, F = k_t ∫u dt and du/dt
+//! = g_t − (F/m)(1 + 1/i). Hence F/m = f g_t (1 − cos ωt) with ω² = (k_t/m)(1 + 1/i), until F/m reaches μ g_n. Sources:
+//! Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26. The compliant forms are derived
+//! here.
 
 use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_scene::contact_law::Springs;
@@ -24,7 +24,7 @@ pub struct OneGrain {
     pub radius: f64,
     /// Mass m (kg).
     pub mass: f64,
-    /// I/(mR²).
+    /// Inertia factor i = I/(mR²): 1/2 for a disc, 2/5 for a sphere.
     pub inertia_factor: f64,
     /// Gravity along the plane g_t (m/s²), down the slope.
     pub along: f64,
@@ -38,18 +38,18 @@ pub struct OneGrain {
     pub spin: f64,
     /// Static overlap divided by the radius.
     pub overlap_ratio: f64,
-    /// Normal stiffness about the static overlap (N/m).
+    /// Normal stiffness at the static overlap (N/m).
     pub normal_stiffness: f64,
-    /// Tangential damping over the mass γ_t (1/s), of the part of the damping that is proportional to the mass.
+    /// Tangential damping divided by the mass, γ_t (1/s), without the damping that is proportional to the stiffness.
     pub tangential_damping: f64,
 }
 
-/// Displacement (m), velocity (m/s) and spin in the rolling direction (rad/s).
+/// Motion of the grain down the slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Displacement down the slope (m).
     pub x: f64,
-    /// Velocity (m/s).
+    /// Velocity down the slope (m/s).
     pub v: f64,
     /// Spin in the direction of rolling down (rad/s).
     pub omega: f64,
@@ -79,7 +79,7 @@ impl OneGrain {
         }
     }
 
-    /// Returns f = i/(1+i), the friction force of a rolling grain over the gravity force along the plane.
+    /// Returns f = i/(1+i), the friction force on a rolling grain divided by the gravity force along the plane.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.inertia_factor / (1.0 + self.inertia_factor)
@@ -116,14 +116,14 @@ impl OneGrain {
         PI / self.tangential_frequency() + PI / (self.normal_stiffness / self.mass).sqrt()
     }
 
-    /// Returns the amplitude of slip velocity (m/s) of an undamped spring about rolling, under a force per mass a
-    /// (m/s²): a/ω.
+    /// Returns the amplitude a/ω (m/s) of the slip velocity of a rolling grain on an undamped tangential spring, for a
+    /// force per mass a (m/s²).
     #[must_use]
     pub fn ringing(&self, acceleration: f64) -> f64 {
         acceleration / self.tangential_frequency()
     }
 
-    /// Returns the spring displacement (m) under a force per mass a (m/s²): m a/k_t.
+    /// Returns the displacement of the tangential spring (m) under a force per mass a (m/s²): m a/k_t.
     #[must_use]
     pub fn stretch(&self, acceleration: f64) -> f64 {
         self.mass * acceleration / self.tangential_stiffness
@@ -152,7 +152,7 @@ impl OneGrain {
         State { x: 2.0 * velocity, v: velocity, omega: late / t }
     }
 
-    /// Returns the remaining fraction of a slip velocity after t (s), when tangential spring and dashpot oscillate
+    /// Returns the fraction of a slip velocity that remains after t (s), while tangential spring and dashpot oscillate
     /// about rolling: e^{−λt}. λ is the slower rate of s″ + 2b s′ + ω² s = 0, 2b = γ_t (1 + 1/i).
     #[must_use]
     pub fn rung(&self, t: f64) -> f64 {
@@ -175,16 +175,17 @@ impl OneGrain {
     }
 
     /// Returns the remaining fraction of the initial acceleration of a grain on a critically damped rolling spring,
-    /// averaged from t to 2t. With v = a t e^{−ω_r t}, it is at most e^{−ω_r t}. The time is reduced by 1/λ because
-    /// friction follows with this delay.
+    /// averaged from t to 2t. With v = a t e^{−ω_r t}, the average is at most e^{−ω_r t}. The time is reduced by 1/λ,
+    /// the delay of the friction force behind the slip velocity.
     #[must_use]
     pub fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
         (-self.rolling_frequency(rolling_friction) * (t - 1.0 / self.settling_rate())).exp()
     }
 
-    /// Returns the lag (m) of a grain at the end of sliding, if the dashpot force counts in the Coulomb limit. Below
-    /// the slip velocity s_c = γ_t μ g_n (1 + 1/i)/(k_t/m), the spring can no longer follow and friction falls below
-    /// its limit. The remaining slip has ∫s dt < s_c γ_t/(k_t/m). The grain loses the share f of it.
+    /// Returns the lag (m) of a grain behind the rigid solution at the end of sliding, if the dashpot force counts in
+    /// the Coulomb limit. Below the slip velocity s_c = γ_t μ g_n (1 + 1/i)/(k_t/m), the spring grows too slowly and
+    /// friction falls below its limit. The remaining slip has ∫s dt < s_c γ_t/(k_t/m). The lag is the fraction f of
+    /// this integral.
     #[must_use]
     pub fn tail(&self) -> f64 {
         let follows = self.tangential_damping * self.mass / self.tangential_stiffness;
@@ -230,14 +231,14 @@ impl OneGrain {
         }
     }
 
-    /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm `a` instead of
-    /// R. v(1 + i(R/a)²) = g_t t follows from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
+    /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm a (`arm`)
+    /// instead of R. v(1 + i(R/a)²) = g_t t follows from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
     #[must_use]
     pub fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
         self.along * t / (1.0 + self.inertia_factor * (self.radius / arm).powi(2))
     }
 
-    /// Returns the final velocity after backspin with the lever arm `a` (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
+    /// Returns the final velocity after backspin with the lever arm a (`arm`) (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
     #[must_use]
     pub fn backspin_velocity(&self, arm: f64) -> f64 {
         let moment = self.inertia_factor * self.radius * self.radius;
@@ -287,7 +288,7 @@ pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
     });
 }
 
-/// Returns time and state (displacement, velocity and rolling spin) of the probe `grain` at each sample.
+/// Returns time (s) and state of the probe `grain` at each sample.
 ///
 /// # Errors
 /// When the record lacks the probe.
@@ -302,7 +303,7 @@ pub fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
     Ok(samples.map(|(((&t, x), &v), omega)| (t, State { x: x - start, v, omega: sign * omega })).collect())
 }
 
-/// Returns time and state of the last sample.
+/// Returns time (s) and state of the last sample.
 ///
 /// # Errors
 /// When the record lacks the probe.
@@ -310,10 +311,10 @@ pub fn last(done: &FinishedRun) -> Result<(f64, State), MissingData> {
     course(done)?.last().copied().ok_or_else(|| MissingData("samples".to_owned()))
 }
 
-/// Returns time and state of the sample nearest to a moment (s).
+/// Returns time (s) and state of the sample nearest to the time `moment` (s).
 ///
 /// # Errors
-/// When there are no samples.
+/// When the record lacks the probe `grain` or has no samples.
 pub fn nearest(done: &FinishedRun, moment: f64) -> Result<(f64, State), MissingData> {
     let course = course(done)?;
     let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
@@ -341,7 +342,8 @@ mod tests {
         }
     }
 
-    /// The closed form of the undamped spring reaches nearly the bound of `compliance` and does not exceed it.
+    /// Checks that the closed form of the undamped spring nearly reaches the bound of `compliance` and does not exceed
+    /// it.
     #[test]
     fn an_undamped_spring_takes_no_more_than_compliance_says() {
         let worst = |grain: OneGrain, component: fn(State) -> f64| {
@@ -360,8 +362,8 @@ mod tests {
         }
     }
 
-    /// Integrates s″ + 2b s′ + ω² s = 0. The slip velocity decays at the slower rate. At the end of a slide, the lag of
-    /// the grain is between a third of the bound and the bound.
+    /// Integrates s″ + 2b s′ + ω² s = 0 for the slip velocity s, which decays at the slower rate. At the end of a
+    /// slide, the lag of the grain is between a third of the bound and the bound.
     #[test]
     fn the_end_of_a_slide_is_that_of_a_damped_spring() {
         let grain = disc();
@@ -385,8 +387,8 @@ mod tests {
         assert!(lacks < grain.tail() && lacks > grain.tail() / 3.0, "{lacks} of {}", grain.tail());
     }
 
-    /// Integrates a grain that comes to rest on both of its springs. The remainder is between half of the bound and the
-    /// bound.
+    /// Integrates a grain that comes to rest on its tangential spring and its rolling spring. The remaining
+    /// acceleration is between half of the bound and the bound.
     #[test]
     fn a_grain_comes_to_rest_on_its_rolling_spring() {
         let (grain, rolling_friction, half, step) = (disc(), 0.05, 2.0, 1e-5);

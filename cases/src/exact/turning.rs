@@ -24,7 +24,7 @@ pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64
 /// Returns the error (m) of a second-order scheme for a mass at a distance d (m) from the axis.
 ///
 /// The rotation of the frame gives d (ΩΔt)² (1 + Ωt)². The oscillation on the spring, of amplitude 2 d (Ω/ω)², is
-/// multiplied by its phase error ωt (ωΔt)²/24.
+/// multiplied by its phase error ωt (ωΔt)²/24, at most 2.
 #[must_use]
 pub fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
     let phase = frequency * time * (frequency * step).powi(2) / 24.0;

@@ -2,16 +2,16 @@
 
 use serde::Deserialize;
 
-/// Contents of the file.
+/// Contents of `claims.toml`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClaimsFile {
     /// Title of the case.
     pub(super) title: String,
-    /// Claim of the case as a whole.
+    /// Statement that the case tests as a whole; empty by default.
     #[serde(default)]
     pub(super) claim: String,
-    /// Limitations of the test.
+    /// Limitations of the test; empty by default.
     #[serde(default)]
     pub(super) weakness: String,
     /// Tables `[[claims]]` of the file.
@@ -26,18 +26,18 @@ pub(super) struct ClaimEntry {
     pub(super) quantity: String,
     /// Unit of the quantity.
     pub(super) unit: String,
-    /// Variant of the scene.
+    /// Variant of the scene; the scene without a variant by default.
     pub(super) variant: Option<String>,
-    /// Name of the solver.
+    /// Name of the solver; `dem` by default.
     #[serde(default = "dem")]
     pub(super) solver: String,
-    /// Resolution of the solver.
+    /// Parameters of the resolution; defaults for parameters that are not given.
     #[serde(default)]
     pub(super) resolution: ResolutionParameters,
     /// Tier of the claim: `quick`, or `standard` if its run takes more than a few seconds.
     #[serde(default)]
     pub(super) tier: Tier,
-    /// Expression over columns of the record.
+    /// Arithmetic expression over columns of the record and numbers of the scene, with at least one column.
     pub(super) value: String,
     /// Time (s) at which the value is read; the end of the run by default.
     pub(super) at: Option<f64>,
@@ -46,21 +46,24 @@ pub(super) struct ClaimEntry {
     /// Expected value, which may contain the time `t`. A claim has exactly one of `equals`, `follows`, `at_least`,
     /// `at_most` and `between`.
     pub(super) equals: Option<Formula>,
-    /// Expected curve in a table.
+    /// Expected curve, given as a table in a file.
     pub(super) follows: Option<CourseFile>,
-    /// Lower bound.
+    /// Lower bound of the value.
     pub(super) at_least: Option<Formula>,
+    /// Upper bound of the value.
     pub(super) at_most: Option<Formula>,
+    /// Lower and upper bound of the value.
     pub(super) between: Option<[Formula; 2]>,
-    /// Scale that divides the difference; the expected value by default.
+    /// Scale that divides the error. Default: the absolute expected value; for a curve, its largest absolute value.
     pub(super) scale: Option<Formula>,
-    /// Equation or law of the expected value. A claim has exactly one of `derived`, `printed` and `measured`.
+    /// Equation or law from which the expected value is derived. A claim has exactly one of `derived`, `printed`,
+    /// `measured` and `prototype`.
     pub(super) derived: Option<String>,
-    /// Printed work and place in it.
+    /// Publication that prints the expected value, and the place in it.
     pub(super) printed: Option<Place>,
-    /// Measurement on real grains.
+    /// Publication of a measurement on real grains, and the place in it.
     pub(super) measured: Option<Place>,
-    /// Result of an independent program other than the solver.
+    /// Independent program, other than the solver, that gives the expected value, and the place in its results.
     pub(super) prototype: Option<Place>,
     /// Largest error that passes, in units of the scale.
     pub(super) allowed: Formula,
@@ -70,14 +73,14 @@ pub(super) struct ClaimEntry {
     pub(super) control: ControlEntry,
 }
 
-/// Solver of claims that name none.
+/// Solver of claims that do not name one.
 pub(super) const DEM: &str = "dem";
 
 fn dem() -> String {
     DEM.to_owned()
 }
 
-/// Number, or arithmetic over numbers of the scene.
+/// Number, or arithmetic expression over numbers of the scene. In `equals` the expression may contain the time `t`.
 #[derive(Deserialize)]
 #[serde(untagged)]
 pub(super) enum Formula {
@@ -89,14 +92,15 @@ pub(super) enum Formula {
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Tier {
-    /// `run` judges the claim.
+    /// The command `run` evaluates the claim without options.
     #[default]
     Quick,
-    /// The tests and `run --levels all` judge the claim.
+    /// Only the tests and `run --levels all` evaluate the claim.
     Standard,
 }
 
-/// Parameters of the resolution.
+/// Parameters of the resolution. Each method accepts only its own: DEM `time_step_fraction` or `time_step` (s), MPM
+/// `cells`, `points` and `courant`, rigid bodies `substeps` and `iterations`.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ResolutionParameters {
@@ -109,7 +113,7 @@ pub(super) struct ResolutionParameters {
     pub(super) iterations: Option<u32>,
 }
 
-/// Reduction over the samples.
+/// Reduction of the samples of a run to one number or one comparison.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum SampleReduction {
@@ -119,11 +123,11 @@ pub enum SampleReduction {
     Max,
     /// Smallest sample.
     Min,
-    /// Mean over time.
+    /// Time average.
     Mean,
 }
 
-/// Curve in a table.
+/// Expected curve in a table, a file in the folder of the claims.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CourseFile {
@@ -135,7 +139,7 @@ pub(super) struct CourseFile {
     pub(super) value: String,
 }
 
-/// Place in a work.
+/// Cited statement: a work and a place in the work.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Place {
@@ -151,6 +155,6 @@ pub(super) struct Place {
 pub(super) struct ControlEntry {
     /// Description of the wrong physics.
     pub(super) name: String,
-    /// Keys of the scene with the wrong values.
+    /// Keys of the scene file and their wrong values.
     pub(super) set: toml::Table,
 }

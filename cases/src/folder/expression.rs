@@ -3,14 +3,15 @@
 //! Operators are `+ - * /` and `^`. `^` binds more tightly than a sign before it and associates to the right: −2^2 =
 //! −4, 2^3^2 = 512. There are parentheses, `pi` and named functions. A name is a path of keys such as
 //! `grains.ball.radius`; a name with other characters is in braces, `{contacts.ball-plane.friction}`. Angles are in
-//! radians. We use no crate for this, because those that we tried read −2^2 as 4 or cannot read `1e-3`.
+//! radians. No crate is used, because the crates that we tried read −2^2 as 4 or cannot read `1e-3`.
 
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Largest depth of nesting.
+/// Largest depth of nested parentheses, signs and powers.
 const DEEPEST: usize = 100;
-/// Largest number of numbers and names. The depth of a chain of operators equals its length.
+/// Largest count of numbers and names in an expression. It also limits the recursion depth, because a chain of
+/// operators gives a tree as deep as the chain is long.
 const MOST_TERMS: usize = 1000;
 
 /// Arithmetic expression of a claim or sweep file.
@@ -43,7 +44,7 @@ pub enum Operator {
     Power,
 }
 
-/// Function: its name, its number of arguments and its value.
+/// Named function, such as `sin`, with the number of its arguments.
 #[derive(Clone, Copy)]
 pub struct Function {
     name: &'static str,
@@ -51,7 +52,7 @@ pub struct Function {
     of: fn(&[f64]) -> f64,
 }
 
-/// Shows the name only, because the address of the function differs from process to process.
+/// Prints only the name, because the address of the function differs from process to process.
 impl fmt::Debug for Function {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.name)
@@ -160,7 +161,7 @@ impl Reader<'_> {
         self.rest().chars().next()
     }
 
-    /// Consumes the next non-blank character if it is this one.
+    /// Consumes the next non-blank character and returns true if it equals `letter`.
     fn takes(&mut self, letter: char) -> bool {
         let is_there = self.next() == Some(letter);
         if is_there {
@@ -181,7 +182,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Parses left-associative operators of one precedence.
+    /// Parses operators of one precedence, which associate to the left.
     fn operators(
         &mut self,
         rank: &[(char, Operator)],
@@ -194,7 +195,7 @@ impl Reader<'_> {
         Ok(left)
     }
 
-    /// Parses a power with signs before it.
+    /// Parses a power with optional minus signs before it.
     fn signed(&mut self) -> Result<Expression, String> {
         self.depth += 1;
         if self.depth > DEEPEST {

@@ -1,7 +1,7 @@
-//! A case without Rust: a folder with `scene.toml` and `claims.toml`, in the registry or of a user.
+//! Cases without Rust code: a folder with `scene.toml` and `claims.toml`, in the registry or of a user.
 //!
-//! A claim states the quantity, the expected value and its source, the tolerance and its reason, and the negative
-//! control. It has the same parts as a claim in Rust. Expected values are arithmetic over the numbers of the scene.
+//! A claim in a file has the same parts as a claim in Rust: quantity, expected value and its source, tolerance and its
+//! reason, negative control. Expected values are arithmetic over the numbers of the scene.
 
 mod claims_file;
 mod expression;
@@ -28,11 +28,11 @@ use row::Reader;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Scene file.
+/// Name of the scene file.
 const SCENE: &str = "scene.toml";
-/// File of claims.
+/// Name of the file with the claims.
 pub const CLAIMS: &str = "claims.toml";
-/// Derivation of the expected values; optional.
+/// Name of the optional file with the derivation of the expected values.
 const DERIVATION: &str = "derivation.md";
 
 /// Error in the folder of a case: file, place in it, expected and found text.
@@ -47,7 +47,7 @@ pub struct CaseFolderError {
 enum ClaimError {
     /// Error in a key: the key and the message.
     Key(String, String),
-    /// Error in another file of the folder; the message names the place.
+    /// Error in the scene or in a table file; the message names the place.
     Scene(String),
 }
 
@@ -55,7 +55,7 @@ fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> Cl
     ClaimError::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
 }
 
-/// Leaks a text, so that it lives as long as the program. The command line names only few cases.
+/// Leaks a text to obtain a static lifetime. The leak is small, because a command reads few cases.
 fn kept(text: String) -> &'static str {
     text.leak()
 }
@@ -102,7 +102,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     })))
 }
 
-/// Values of a case in the registry whose claims are in a file, except its texts and claims.
+/// Default values for a case in the registry whose claims are in a file. The case replaces the texts and the claims.
 pub(crate) const EMPTY: Case = Case {
     name: "",
     title: "",
@@ -117,8 +117,8 @@ pub(crate) const EMPTY: Case = Case {
     home: &HOME,
 };
 
-/// Returns the claims of a case in the registry from the text of its file. An invalid file yields one claim, which is
-/// red.
+/// Returns the claims of a case in the registry from the text of its file. An invalid file gives one claim, which
+/// fails.
 pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
     let claims = toml::from_str(text).map_err(|error| error.message().replace('\n', " "));
@@ -127,7 +127,7 @@ pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     read.unwrap_or_else(|reason| vec![unreadable(format!("{}: {reason}", folder.join(CLAIMS).display()))])
 }
 
-/// Returns a claim that needs no run and always ends with an error.
+/// Returns a claim that needs no run and always fails with this reason.
 fn unreadable(reason: String) -> Claim {
     claim("claims that can be read", "1")
         .holds("the file of claims is valid", move |_| Err(MissingData(format!("claims that can be read: {reason}"))))
@@ -150,10 +150,10 @@ fn rows(claims: Vec<ClaimEntry>, reader: &Reader<'_>) -> Result<Vec<Claim>, Stri
     claims.into_iter().enumerate().map(row).collect()
 }
 
-/// Returns the files that the results of the case in a folder depend on: scene, claims, and the files that they name.
+/// Returns the files on which the results of a case folder depend: scene, claims, and the files named in these two.
 ///
 /// # Errors
-/// When one of the two files cannot be read.
+/// When the scene file or the claims file is invalid or cannot be read.
 pub fn files(folder: &Path) -> Result<Vec<PathBuf>, CaseFolderError> {
     let (scene, claims) = (folder.join(SCENE), folder.join(CLAIMS));
     let no_case = |file: &Path, what: String| CaseFolderError { file: file.to_owned(), what };
@@ -167,7 +167,7 @@ pub fn files(folder: &Path) -> Result<Vec<PathBuf>, CaseFolderError> {
     Ok([scene, claims].into_iter().chain(files).collect())
 }
 
-/// Reads the text of a file.
+/// Reads a text file of the case folder.
 fn text_of(file: &Path) -> Result<String, CaseFolderError> {
     let case_error = |(expected, found)| CaseFolderError {
         file: file.to_owned(),
@@ -182,7 +182,7 @@ mod tests {
     use crate::registry::{CASES, runner};
     use grainbench_harness::verdict::Outcome;
 
-    /// If the claims file of a case cannot be read, the case has a red result.
+    /// If the claims file of a case cannot be read, the case has one result, which fails.
     #[test]
     fn claims_that_cannot_be_read_are_red() {
         let case = CASES[0];

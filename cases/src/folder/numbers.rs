@@ -1,5 +1,5 @@
-//! Names of numbers in a claim: keys of the scene file, and `scene.` followed by keys of the resolved scene that
-//! external solvers get.
+//! Names of numbers in a claim. A name is a key of the scene file, or `scene.` followed by a key of the resolved scene
+//! that external solvers receive.
 
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::outside::{DiscretizedScene, Resolved};
@@ -8,14 +8,14 @@ use toml::{Table, Value};
 
 /// Name of the time in expressions.
 pub(super) const TIME: &str = "t";
-/// Prefix of numbers that the scene resolves: masses, moments of inertia, spring stiffnesses from restitution.
+/// Prefix of numbers of the resolved scene, such as masses, moments of inertia and spring stiffnesses from restitution.
 const DEFINITE: &str = "scene.";
 
-/// Numbers by their names.
+/// Named numbers of a scene and of its file.
 pub struct Numbers {
     file: Value,
     definite: Value,
-    /// Columns of the record.
+    /// Names of the columns of the record.
     pub columns: Vec<String>,
 }
 
@@ -25,7 +25,7 @@ impl Numbers {
     /// # Errors
     /// When the scene cannot be serialised. The error is a message.
     pub fn new(file: Table, scene: &Scene) -> Result<Self, String> {
-        // Steps belong to a run and not to a claim, so they are removed below.
+        // The number of steps depends on the resolution of a run, so these placeholder steps are removed below.
         let stepping = Stepping { time_step: 1.0, steps: 1, interval: 1 };
         let resolved = Resolved::new(&DiscretizedScene { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
@@ -36,13 +36,13 @@ impl Numbers {
         Ok(Self { file: Value::Table(file), definite, columns })
     }
 
-    /// Returns true if a name belongs to the record and not to the scene. A name with no column and no number in the
-    /// scene is a missing column.
+    /// Returns true if a name belongs to the record and not to the scene. A name that is neither a column nor a number
+    /// of the scene counts as a missing column.
     pub fn is_of_record(&self, name: &str) -> bool {
         name != TIME && (self.columns.iter().any(|column| column == name) || self.get(name).is_none())
     }
 
-    /// Returns the number of a name: a path of keys, with list indices from 0.
+    /// Returns the number with this name. A name is a path of keys; list indices start at 0.
     pub fn get<'n>(&'n self, name: &str) -> Option<f64> {
         let (root, path) = match name.strip_prefix(DEFINITE) {
             Some(path) => (&self.definite, path),

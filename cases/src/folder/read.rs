@@ -1,4 +1,4 @@
-//! Reads a number from a record. The number is read at one time, reduced over the samples, or read at each sample.
+//! Evaluation of an expression on a record: at one time, reduced over the samples, or at each sample.
 
 use super::claims_file::SampleReduction;
 use super::expression::Expression;
@@ -10,23 +10,23 @@ use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::source::Source;
 use std::sync::Arc;
 
-/// Function that reads time and value of samples.
+/// Function that returns time (s) and value of each sample of a run.
 type Samples = Arc<dyn Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync>;
 
-/// Reading of a number from a record.
+/// Expression that is evaluated on a record.
 pub struct RecordExpression {
     /// Expression over columns of the record and numbers of the scene.
     pub value: Expression,
     /// Numbers of the scene.
     pub numbers: Arc<Numbers>,
-    /// Time (s) of the reading; with neither `at` nor `over`, the end of the run.
+    /// Time (s) of the evaluation; the end of the run if `at` and `over` are both absent.
     pub at: Option<f64>,
     /// Reduction over the samples.
     pub over: Option<SampleReduction>,
 }
 
 impl RecordExpression {
-    /// Returns time and value of each sample.
+    /// Returns time (s) and value of each sample.
     fn all(&self, done: &FinishedRun) -> Result<Points, MissingData> {
         let series = done.series();
         for name in self.value.names() {
@@ -45,10 +45,10 @@ impl RecordExpression {
         if points.is_empty() { Err(MissingData("sample".to_owned())) } else { Ok(points) }
     }
 
-    /// Returns one value and its time.
+    /// Returns the time (s) and the value of the expression. The time of a reduction is the end of the run.
     ///
     /// # Errors
-    /// When the record has no such column.
+    /// When the record lacks a column, has no samples, or has no sample near the time `at`.
     pub fn one(&self, done: &FinishedRun) -> Result<(f64, f64), MissingData> {
         let points = self.all(done)?;
         let end = points[points.len() - 1];
@@ -68,7 +68,7 @@ impl RecordExpression {
             (Some(value), _) => Ok((end.0, value)),
             (None, None) => Ok(end),
             (None, Some(moment)) => {
-                // A sample counts as taken at the moment if it is within half the largest sampling interval of it.
+                // The nearest sample is used if it differs from `moment` by at most half the largest sampling interval.
                 let apart = points.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
                 let nearest =
                     points.iter().copied().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
@@ -78,7 +78,7 @@ impl RecordExpression {
         }
     }
 
-    /// Returns the value as a function for a bound.
+    /// Returns a function that reads the value from finished runs, for a claim with a bound.
     pub(super) fn bounded(
         self,
     ) -> Result<impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static, ClaimError> {
@@ -88,7 +88,7 @@ impl RecordExpression {
         Ok(move |done: &[FinishedRun]| Ok(self.one(&done[0])?.1))
     }
 
-    /// Returns each sample, or the samples between two times.
+    /// Returns a function that reads each sample, or the samples between two times (s).
     pub(super) fn samples(self, within: Option<[f64; 2]>) -> Samples {
         Arc::new(move |done| {
             let mut points = self.all(done)?;
@@ -99,7 +99,8 @@ impl RecordExpression {
     }
 }
 
-/// Expects each sample to follow a curve, in units of the scale or of the largest expected value.
+/// Returns the expectation that each sample follows a curve. Errors are in units of the scale; without a scale, in
+/// units of the largest expected value.
 pub(super) fn follow(
     quantity: Quantity,
     source: Source,

@@ -26,13 +26,14 @@ use grainbench_scene::text::tamed;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Files that a claim in a file refers to.
+/// Data for the conversion of claims: the case folder and its scene file.
 pub(super) struct Reader<'a> {
     /// Folder of the case.
     pub(super) folder: &'a Path,
     /// Scene file.
     pub(super) source: &'a SceneSource,
-    /// True if claims over a course are plotted. Cases of the registry have too many for one page.
+    /// True if claims that compare each sample get a figure. The registry sets it to false, because its cases have too
+    /// many such claims for one page.
     pub(super) plots: bool,
 }
 
@@ -55,7 +56,7 @@ impl Reader<'_> {
         let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
         let run = if matches!(claimed.tier, Tier::Standard) { run.slow() } else { run };
         let course = claimed.follows.as_ref().map(|file| self.course(file, &scene)).transpose()?;
-        // The claim covers only the times of the table, and its result states these times.
+        // The claim covers only the times of the table, so its quantity states the first and the last time.
         let words = match course.as_deref() {
             Some([(first, _), .., (last, _)]) => format!("{}, {first} to {last} s", claimed.quantity),
             _ => claimed.quantity.clone(),
@@ -80,11 +81,12 @@ impl Reader<'_> {
             }
             _ => claim,
         };
-        // External solvers can run a claim of `dem`, because the name `dem` implies no contact convention of a program.
+        // External solvers with the contact springs of the scene can also run a claim of `dem`, because the name `dem`
+        // selects no contact convention of LAMMPS or LIGGGHTS.
         Ok(if claimed.solver == DEM { claim.fair_to_any_springs() } else { claim })
     }
 
-    /// Returns the points of a curve in a table. All times must lie within the run.
+    /// Reads an expected curve from a table. The times must increase and lie within the run.
     fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, ClaimError> {
         let table = read_table(&self.folder.join(&file.file)).map_err(|error| ClaimError::Scene(error.to_string()))?;
         let column = |key: &'static str, name: &str| {
@@ -106,7 +108,8 @@ impl Reader<'_> {
     }
 }
 
-/// Adds the expectation to a claim.
+/// Adds expected value and source to a claim. `knows_columns` is true if a name that is neither a column nor a number
+/// of the scene is an error.
 fn expecting(
     quantity: Quantity,
     claimed: &ClaimEntry,
@@ -118,10 +121,10 @@ fn expecting(
     let unknown = value.names().into_iter().find(is_new);
     if let Some(unknown) = unknown.filter(|_| knows_columns) {
         let columns = numbers.columns.join(", ");
-        return Err(wrong("value", format!("columns of the record, among {columns}"), quoted(unknown)));
+        return Err(wrong("value", format!("one of the columns of the record, {columns}"), quoted(unknown)));
     }
     if !value.names().iter().any(|name| numbers.is_of_record(name)) {
-        return Err(wrong("value", "a column of the record", "none, because it would be the same for every run"));
+        return Err(wrong("value", "a column of the record", "no column, so the value would be the same in each run"));
     }
     let source = source(claimed)?;
     let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;
@@ -130,7 +133,7 @@ fn expecting(
     }
     let over = claimed.over;
     if over.is_some() && claimed.at.is_some() {
-        return Err(wrong("at", "a moment, or a reading `over` samples", "both"));
+        return Err(wrong("at", "only one of `at` and `over`", "both"));
     }
     let read = RecordExpression { value, numbers: Arc::clone(numbers), at: claimed.at, over };
     let ClaimEntry { equals, at_least, at_most, between, .. } = claimed;
@@ -140,7 +143,7 @@ fn expecting(
             check_names("equals", &exact, numbers, matches!(over, None | Some(SampleReduction::Course)))?;
             let at = |t: f64| value_at(&exact, numbers, t);
             if over != Some(SampleReduction::Course) && scale.is_none() && at(1.0) == 0.0 {
-                return Err(wrong("scale", "a number, because the expected value is zero", "none"));
+                return Err(wrong("scale", "a number that scales the error, because the exact value is zero", "none"));
             }
             let of_scene = Arc::clone(numbers);
             let exact = move |t: f64| value_at(&exact, &of_scene, t);
@@ -209,7 +212,7 @@ fn check_names(
     }
 }
 
-/// Returns a finite number of the scene.
+/// Evaluates a formula over numbers of the scene. The result must be finite.
 fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, ClaimError> {
     let expression = formula_of(key, formula)?;
     check_names(key, &expression, numbers, false)?;
@@ -222,7 +225,7 @@ fn tolerance(claimed: &ClaimEntry, numbers: &Numbers) -> Result<Tolerance, Claim
     if allowed < 0.0 {
         return Err(wrong("allowed", "zero or more", allowed.to_string()));
     }
-    // A plain number is engineering judgement. A formula over numbers of the scene can be computed again.
+    // A tolerance without names is engineering judgement. A formula over numbers of the scene is computed.
     let follows = !formula_of("allowed", &claimed.allowed)?.names().is_empty();
     Ok(match &claimed.allowed {
         Formula::Text(formula) if follows => computed(allowed, format!("{formula}: {}", claimed.because)),

@@ -1,5 +1,6 @@
-//! Claims on a bulk of grains. Comparison with an external solver uses one grain until rounding errors have grown, and
-//! time averages afterwards. Comparison with codes that share one packing uses the mean over our own packings.
+//! Claims on many grains. Our solver is compared with LAMMPS or LIGGGHTS: by the position of one grain until rounding
+//! errors have grown, and by time averages afterwards. Published results of two codes on one packing are compared with
+//! the mean over our own packings.
 
 use crate::rows::programs::row;
 use grainbench_harness::claim::ClaimWithTolerance;
@@ -9,7 +10,7 @@ use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use grainbench_reference::round_robin::Spread;
 
-/// Claims the position of the probe `one`, in units of the first grain's radius.
+/// Returns the claim on the position of the grain that the probe `one` records, in units of the first grain's radius.
 pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
     let allowed = judged(
         1e-11,
@@ -23,7 +24,8 @@ pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
     })
 }
 
-/// Claims the time average of a column from a time on (s), in units of half the confidence interval of the difference.
+/// Returns the claim on the time average of a column from the time `from` (s) to the end. The error is in units of half
+/// the 99 % confidence interval of the difference.
 pub(crate) fn mean(
     quantity: &str,
     unit: &'static str,
@@ -43,9 +45,9 @@ pub(crate) fn mean(
     })
 }
 
-/// Claims the mean over our own packings, one run each, against two codes on one packing. The unit is the allowed error
-/// 2 √(s_code² + s_own² (1/m + 1)). s_code is half the difference of the codes, times √2. s_own is the standard
-/// deviation between our m packings.
+/// Returns the claim that the mean over our own packings, one run each, agrees with the published mean of two codes on
+/// one packing. The error is in units of the allowed error 2 √(s_code² + s_own² (1/m + 1)). s_code is half the
+/// difference of the two codes, times √2. s_own is the standard deviation between our m packings.
 pub(crate) fn of_packings(
     (quantity, unit): (String, &'static str),
     runs: Vec<Run>,

@@ -2,14 +2,14 @@
 
 use grainbench_harness::statistics::spread;
 
-/// Returns the 99 % interval of the difference of two packings in a quantity. Zero if the table lacks the quantity, so
-/// that the claim fails.
+/// Returns the half-width of the 99 % interval of the difference between the values of two further packings. Returns
+/// zero if the table lacks the quantity, so that the claim fails.
 #[must_use]
 pub fn apart(table: &str, quantity: &str) -> f64 {
     spread(&draws_of(table, quantity)).unwrap_or(0.0)
 }
 
-/// Returns the absolute mean of a quantity over packings. NaN if the table lacks the quantity.
+/// Returns the absolute value of the mean of a quantity over packings. Returns NaN if the table lacks the quantity.
 #[must_use]
 pub fn mean_of(table: &str, quantity: &str) -> f64 {
     let draws = draws_of(table, quantity);

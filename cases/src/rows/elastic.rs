@@ -1,5 +1,5 @@
-//! Elastic grains. One grain on a plane is relaxed before the run, and its stiffness is multiplied to approach the
-//! rigid solution. A disc is compressed across its diameter.
+//! Elastic grains: relaxation of one grain on a plane before the run, stiffening of a grain towards the rigid limit,
+//! and the closed form of a disc that is compressed across its diameter.
 
 use crate::exact::one_grain::{OneGrain, last};
 use grainbench_harness::prelude::*;
@@ -29,7 +29,7 @@ pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     scene.duration = Duration::Seconds(time);
 }
 
-/// Multiplies all moduli by a factor.
+/// Multiplies bulk and shear modulus of all deformable bodies by a factor.
 pub fn stiffen(scene: &mut Scene, factor: f64) {
     for material in scene.deformable.iter_mut().flatten() {
         material.bulk_modulus *= factor;
@@ -37,21 +37,21 @@ pub fn stiffen(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// Returns the displacement down an incline over the displacement of a rigid grain, minus one.
+/// Returns the last displacement down an incline divided by that of a rigid grain, minus one.
 ///
 /// # Errors
-/// When the run has no grain.
+/// When the record lacks the probe `grain` or has no samples.
 pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
 }
 
-/// An elastic disc in plane strain, compressed without friction at two opposite sides or at four: the shortening δ of
-/// its diameter.
+/// Elastic disc in plane strain that is compressed without friction at two opposite sides or at four. The shortening of
+/// its diameter is δ.
 ///
 /// δ/R = p [(2/π)(2 ln(4R/a) − 1) − s], p = F/(E'R), a² = 4pR²/π (Johnson, Contact Mechanics, §5.6: a cylinder between
-/// two flats). s is zero between two flats. With an equal pair of forces across, which widens the disc,
-/// s = (4/π − 1) + ν/(1 − ν).
+/// two flats). s is zero for two sides. For four sides, the second pair of forces widens the disc, and s = (4/π − 1) +
+/// ν/(1 − ν).
 #[derive(Clone, Copy, Debug)]
 pub struct PressedDisc {
     /// E' = E/(1 − ν²) (Pa).
@@ -74,14 +74,14 @@ impl PressedDisc {
         Some(Self { modulus: disc.plane_modulus(), poisson, radius: scene.grains[0].radius, sides })
     }
 
-    /// Returns the shortening over p R at p.
+    /// Returns δ/(pR) for the dimensionless force p = F/(E'R).
     fn compliance(&self, p: f64) -> f64 {
         let widened = if self.sides == 4 { 4.0 / PI - 1.0 + self.poisson / (1.0 - self.poisson) } else { 0.0 };
         let patch = (4.0 * p / PI).sqrt();
         2.0 / PI * (2.0 * (4.0 / patch).ln() - 1.0) - widened
     }
 
-    /// Returns the force (N per metre) that shortens each diameter by `shortening` (m), by bisection.
+    /// Returns the force (N per metre) that shortens each compressed diameter by `shortening` (m), by bisection.
     #[must_use]
     pub fn force(&self, shortening: f64) -> f64 {
         let (mut low, mut high) = (1e-12, 0.05);
@@ -92,13 +92,12 @@ impl PressedDisc {
         low * self.modulus * self.radius
     }
 
-    /// Returns the displacements of a disc, compressed by a force at two opposite contacts, due to a small increase ΔF
-    /// at one contact. The unit is ΔF/(πE'). u is the mean displacement relative to that contact. v is the displacement
-    /// of the opposite point relative to the mean.
+    /// Returns the displacements due to a small increase ΔF of the force at one contact, in units of ΔF/(πE'). Before
+    /// the increase, `force` (N per metre) compresses the disc at two opposite contacts. Relative to the mean
+    /// displacement and along ΔF, u is the displacement of the loaded contact and v that of the opposite point.
     ///
-    /// Its inertia balances ΔF as a uniform body force −ΔF/(πR²). The axis x points along ΔF from the centre; r and θ
-    /// are measured from the contact. The stress
-    ///
+    /// The inertia of the disc balances ΔF as a uniform body force −ΔF/(πR²). The axis x points along ΔF from the
+    /// centre; r and θ are measured from the contact. The stress
     /// ```text
     /// σ = −(2ΔF/πr) cos θ e_r e_r + (ΔF/2πR) (e_x e_x + e_y e_y) + (ΔF/2πR²) [x (e_x e_x − e_y e_y) + y (e_x e_y + e_y e_x)]
     /// ```
@@ -110,8 +109,8 @@ impl PressedDisc {
     /// u = 2 ln(2R/a) − 5/4 − n/4        v = −2 ln 2 + 3/4 − n/4        w = 2 − π/2 + πn/2
     /// ```
     ///
-    /// u − v = 2 ln(4R/a) − 2 is the shortening of half a diameter between two flats. w is the displacement of each
-    /// side due to a pair of forces ΔF across.
+    /// u − v = 2 ln(4R/a) − 2 is the shortening of half a diameter between two flats. w is the outward displacement of
+    /// each side due to a pair of forces ΔF on the perpendicular diameter.
     /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics,
     /// eq. 5.57.
     #[must_use]
@@ -123,9 +122,9 @@ impl PressedDisc {
         DiscDisplacements { u, v, w: 2.0 - 0.5 * PI + 0.5 * PI * n }
     }
 
-    /// Returns the mean square of the displacement about its mean, in units of (1/πE')², for forces at left, right,
-    /// bottom and top that inertia balances. It gives the added mass of a disc: the inertia of its deformation. It is
-    /// computed by quadrature of the displacement field of [`Self::gives`].
+    /// Returns the mean square of the deviation of the displacement from its mean, in units of (1/πE')². The loads are
+    /// forces at left, right, bottom and top, and inertia balances them. The result gives the added mass of a disc,
+    /// which is the inertia of its deformation. The quadrature uses the displacement field of [`Self::gives`].
     #[must_use]
     pub fn stirred(&self, loads: [f64; 4]) -> f64 {
         self.stirred_by(100, loads)
@@ -153,7 +152,7 @@ impl PressedDisc {
         sum / count
     }
 
-    /// Returns the contact half-width a over the radius, a² = 4pR²/π.
+    /// Returns the contact half-width a divided by the radius R, with a² = 4pR²/π.
     #[must_use]
     pub fn patch(&self, force: f64) -> f64 {
         (4.0 * force / (PI * self.modulus * self.radius)).sqrt()
@@ -163,19 +162,21 @@ impl PressedDisc {
 /// Displacements of a disc, in units of ΔF/(πE').
 #[derive(Clone, Copy, Debug)]
 pub struct DiscDisplacements {
-    /// Mean displacement relative to the loaded contact.
+    /// Displacement of the loaded contact along ΔF, relative to the mean displacement.
     pub u: f64,
-    /// Displacement of the opposite point relative to the mean.
+    /// Displacement of the opposite point along ΔF, relative to the mean displacement.
     pub v: f64,
-    /// Outward displacement of a side due to a pair of forces across.
+    /// Outward displacement of a side due to a pair of forces ΔF on the perpendicular diameter.
     pub w: f64,
 }
 
-/// −Ai'(0): integral of a wave front of width 1 that arrives before the nominal arrival time.
+/// −Ai'(0), where Ai is the Airy function: time integral of the part of a wave front of width 1 that arrives before the
+/// nominal arrival time.
 pub(crate) const AHEAD: f64 = 0.258_819_403_792_806_8;
 
-/// Returns the width δ of a wave front after a path length `way`, in the units of `cell` and `way`: δ³ = 3 (25/96) h²
-/// s. On the grid, a wave's frequency is lower by (25/96)(kh)² (derivations of `vibrating-bar` and `bar-impact`).
+/// Returns the width δ of a wave front after a path length s (`way`), for cells of length h (`cell`): δ³ = 3 (25/96) h²
+/// s. On the grid, the frequency of a wave with wavenumber k is lower by the fraction (25/96)(kh)² (derivations of
+/// `vibrating-bar` and `bar-impact`).
 pub(crate) fn front(cell: f64, way: f64) -> f64 {
     (3.0 * 25.0 / 96.0 * cell * cell * way).cbrt()
 }
@@ -197,8 +198,9 @@ mod tests {
         ]
     }
 
-    /// Checks that the rim is free of traction except at the contact. The strain along the diameter and Johnson's
-    /// approach below a contact patch give u and v. The mean displacement is the displacement of the centre.
+    /// Checks that the rim is free of traction except at the contact. Checks u and v by integrals of the strain along
+    /// the diameter and by Johnson's approach below a contact patch. Checks that the mean displacement is the
+    /// displacement of the centre.
     #[test]
     fn a_disc_gives_way_to_a_load_that_its_inertia_bears() {
         for at in 1..20 {
@@ -212,7 +214,7 @@ mod tests {
         let disc = PressedDisc { modulus: 1.0, poisson: 0.25, radius: 1.0, sides: 2 };
         let (n, force) = (1.0 / 3.0, 2e-3);
         let DiscDisplacements { u, v, .. } = disc.gives(force);
-        // E' du/dx over F/π, integrated: relative displacement of two points on the diameter.
+        // Integral of E' du/dx, divided by F/π: relative displacement of two points on the diameter.
         let apart = |from: f64, to: f64| -> f64 {
             let (parts, width) = (20_000, (to - from) / 20_000.0);
             let strain = |x: f64| {
@@ -222,12 +224,13 @@ mod tests {
             (0..parts).map(|part| strain(from + (f64::from(part) + 0.5) * width) * width).sum()
         };
         assert!((apart(0.0, 1.0) - v).abs() < 1e-6, "{} is not {v}", apart(0.0, 1.0));
-        // Johnson's eq. 5.57 at a depth of many contact widths; minus one for a contact that grows with the force.
+        // Johnson's eq. 5.57 at a depth of many contact widths, differentiated by the force. The term −1 arises because
+        // the contact width grows with the force.
         let depth = 0.01;
         let (patch, tension) = (disc.patch(force), depth * (0.5 * (1.0 - n) - 0.5 * (1.0 + n)));
         let near = 2.0 * (2.0 * depth / patch).ln() - n - 1.0 - tension;
         assert!((near - apart(depth - 1.0, 0.0) - u).abs() < 1e-3, "{} is not {u}", near - apart(depth - 1.0, 0.0));
-        // u_x − u_x(0) over the disc.
+        // Mean of u_x − u_x(0) over the disc.
         let (mut mean, mut area, parts) = (0.0, 0.0, 800);
         for i in 0..parts {
             for j in 0..parts {
@@ -254,7 +257,8 @@ mod tests {
         let [along, across, back] =
             [[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0], [-1.0, 1.0, 0.0, 0.0]].map(|loads| disc.stirred(loads));
         assert!((along / across - 1.0).abs() < 1e-12 && (along / back - 1.0).abs() < 1e-12);
-        // The quadrature has converged to 3e-3 of 2.8 % of the mass, also for a load on one side alone.
+        // The relative error of the quadrature is at most 3e-3, also for one load alone. The added mass is 2.8 % of the
+        // mass for two loads.
         for loads in [[1.0, 0.0, 0.0, 0.0], [1.0, -1.0, 0.0, 0.0]] {
             assert!((disc.stirred(loads) / disc.stirred_by(400, loads) - 1.0).abs() < 3e-3, "{loads:?}");
         }

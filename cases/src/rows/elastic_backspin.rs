@@ -5,18 +5,18 @@ use crate::exact::one_grain::{OneGrain, course, last};
 use crate::sources::prototype::elastic_sphere::{BACKSPIN, WORK};
 use grainbench_harness::prelude::*;
 
-/// Time from which the grain rolls (s).
+/// Time after which the grain rolls without sliding (s).
 pub(crate) const ROLLS: f64 = 0.5;
-/// Result of the prototype for the sphere at the end.
+/// Result of the prototype for the rolling velocity of the sphere.
 const SPEED: &str = "mean velocity of rolling 1.459 to 1.478 m/s, where a rigid sphere has 10/7";
 
-/// Returns the displacement over the displacement of a rigid grain, minus one.
+/// Returns the last displacement divided by that of a rigid grain, minus one.
 pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_backspin(t).x - 1.0)
 }
 
-/// Returns mean velocity and mean surface speed ΩR over the time of rolling (m/s).
+/// Returns mean velocity and mean surface speed ΩR (m/s) from [`ROLLS`] to the end.
 pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     let radius = done.scene.grains[0].radius;
     let states: Vec<_> = course(done)?.into_iter().filter(|(t, _)| *t >= ROLLS).collect();
@@ -27,13 +27,14 @@ pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))
 }
 
-/// Returns the negative control for the sliding phase, in which friction is smaller.
+/// Returns the negative control for the sliding phase: 0.7 times the friction.
 pub(crate) fn slippery() -> Control {
     Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
 }
 
-/// Claims displacement and speed of the sphere at a level against the prototype. `asked` is the
-/// deviation of the displacement that was required for this level before the solver existed.
+/// Returns the claims that displacement and rolling velocity of the sphere agree with the prototype. `level` is the
+/// name of the resolution. `asked` is the relative error of the displacement that was required at this resolution
+/// before the solver existed.
 pub(crate) fn sphere(level: &str, asked: f64, run: Run) -> [Claim; 2] {
     [
         claim(format!("displacement at .8 s over the rigid one, less 1, {level}"), "1")

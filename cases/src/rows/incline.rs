@@ -8,15 +8,15 @@ use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
 
-/// Parameters of `incline-disc` or `incline-sphere`.
+/// Parameters of the case `incline-disc` or `incline-sphere`.
 pub(crate) struct Incline {
-    /// Case, for its variants.
+    /// Case that defines the variants.
     pub case: &'static Case,
     /// Inclined planes of the case, each a variant of the scene.
     pub slopes: &'static [Slope],
     /// Variants for the solver `rigid` (rapier).
     pub rigid: &'static [Row],
-    /// Variant of the claims on a grain that is set down, and its type of damping.
+    /// Variant for the claims on a grain that is set down, and the coefficients of the dashpots in these claims.
     pub set_down: (&'static str, Dashpots),
 }
 
@@ -34,9 +34,10 @@ pub(crate) const fn case(
                 the error of the time step.",
         scene,
         derivation,
-        weakness: "One contact that never opens, with a constant normal and the static overlap as initial state. Impact, \
-                   history on a rotating contact and contacts between grains are not tested. Wrong friction is visible only if \
-                   the grain slips, and a wrong inertia mostly if it rolls: read the slopes together.",
+        weakness: "One contact that never opens, with a constant normal and the static overlap as initial state. \
+                   Impact, history on a rotating contact and contacts between grains are not tested. Wrong friction is \
+                   visible only if the grain slips, and a wrong inertia mostly if it rolls. Only all slopes together \
+                   test both.",
         levels: LEVELS,
         default_level: LEVELS[2],
         claims,
@@ -94,21 +95,21 @@ pub struct Slope {
     pub sticks: bool,
 }
 
-/// Time step of runs against rigid solutions.
+/// Time step of runs that are compared with rigid solutions.
 pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
-/// Time step of the undamped run that is compared with the elastic solution.
+/// Time step of the undamped run that is compared with the compliant solution.
 const FINE: Resolution = Resolution::CriticalFraction(0.0025);
-/// Number of steps before slip begins, in the undamped runs for the order of convergence. Slip begins at mid-step in
-/// each run, because the coefficient of the error depends on the position within the step.
+/// Numbers of steps before slip begins, in the undamped runs for the order of convergence. In each run, slip begins in
+/// the middle of a step, because the coefficient of the error depends on the position within the step.
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
-/// Static overlaps of the sweep over R.
+/// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
-/// Static overlap over R at which soft contacts of all conventions nearly agree with a rigid contact.
+/// Static overlap divided by R at which soft contacts of all conventions nearly agree with a rigid contact.
 pub const NEARLY_RIGID: f64 = 1e-5;
 /// Damping ratio of the damped runs.
 pub const DAMPING: f64 = 0.5;
 
-/// Sets the moment of inertia of the other shape.
+/// Replaces the moment of inertia of a disc by that of a sphere, or that of a sphere by that of a disc.
 pub fn wrong_inertia(scene: &mut Scene) {
     let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };
     let grain = &mut scene.grains[0];
@@ -120,13 +121,13 @@ pub fn more_friction(scene: &mut Scene) {
     scene.change_laws(|law| law.friction *= 1.05);
 }
 
-/// Returns the negative control for sliding grains, in which friction is 5 % larger.
+/// Returns the negative control for sliding grains: friction that is 5 % larger.
 #[must_use]
 pub fn stronger_friction() -> Control {
     Control::scene("friction ×1.05", more_friction)
 }
 
-/// Returns the negative control for rolling grains, the moment of inertia of the other shape.
+/// Returns the negative control for rolling grains: the moment of inertia of the other shape, disc or sphere.
 #[must_use]
 pub fn other_inertia() -> Control {
     Control::scene("the inertia of the other shape", wrong_inertia)
@@ -139,8 +140,8 @@ pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, dampi
     Run::new(variant, solver, step).adjusted(&name, move |scene| rest_at_overlap(scene, ratio, damping))
 }
 
-/// Returns a run at a static overlap of 1e-5 R, with or without a tangential dashpot. For a slipping grain, conventions
-/// differ most in whether the dashpot force counts in the Coulomb limit.
+/// Returns a run at a static overlap of 1e-5 R, with or without a tangential dashpot. A slipping grain runs without it,
+/// because contact conventions differ in whether the dashpot force counts in the Coulomb limit.
 #[must_use]
 pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     if tangential_dashpot {
@@ -173,7 +174,7 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
 /// Compares a quantity of the last state with the exact value, in units of the exact value.
 ///
 /// # Errors
-/// When the record lacks the grain.
+/// When the record lacks the probe `grain` or has no samples.
 pub fn end(
     done: &FinishedRun,
     exact: impl Fn(&OneGrain, f64) -> State,
@@ -184,8 +185,8 @@ pub fn end(
     Ok(Measurement::new(pick(state), expected, expected))
 }
 
-/// Claims undamped slip against the exact compliant solution: a small error at a fine step, and second order in the
-/// step.
+/// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
+/// step, and second order in the time step.
 fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
@@ -229,8 +230,8 @@ fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
     })
 }
 
-/// Returns the tolerance for rolling at 1 s: the remaining slip velocity after `slides` (s) of sliding, and the
-/// rounding of velocities.
+/// Returns the tolerance for the velocity of a rolling grain at 1 s: the fraction of the slip velocity that remains at
+/// 1 s, plus the rounding of velocities. `slides` returns the duration of sliding (s).
 pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain) -> f64) -> Tolerance {
     let left = case.variant(variant).map_or(f64::NAN, |mut scene| {
         rest_at_overlap(&mut scene, 1e-3, DAMPING);
@@ -245,7 +246,7 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
     )
 }
 
-/// Claims damped motion against the rigid solution.
+/// Returns the claims on damped motion against the rigid solution.
 fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
     let rigid_claim = |quantity: &str, unit, pick: fn(State) -> f64| {
@@ -256,7 +257,7 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
             .refuses(telling(slope))
     };
     let mut claims = vec![rigid_claim("displacement at 1 s", "m", |state| state.x)];
-    // Velocity and spin of a rolling grain have a tighter claim in `final_motion`, to rounding.
+    // Velocity and spin of a rolling grain have a claim with a tolerance of rounding size, in `final_motion`.
     if !slope.sticks {
         claims.push(rigid_claim("velocity at 1 s", "m/s", |state| state.v));
         claims.push(rigid_claim("spin at 1 s", "rad/s", |state| state.omega));
@@ -264,7 +265,8 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     claims
 }
 
-/// Claims the exponent of the error against the rigid solution in the overlap.
+/// Returns the claim on the exponent n in the relation error ∝ (overlap/R)^n, where the error is relative to the rigid
+/// solution.
 fn exponent(slope: Slope) -> Claim {
     let expected: f64 = if slope.sticks { 1.0 } else { 0.5 };
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
@@ -289,14 +291,14 @@ fn exponent(slope: Slope) -> Claim {
         .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
 }
 
-/// Returns a negative control that affects the result. It changes inertia for a rolling grain and friction for a
+/// Returns a negative control that changes the result: wrong inertia for a rolling grain, larger friction for a
 /// slipping grain.
 fn telling(slope: Slope) -> Control {
     if slope.sticks { other_inertia() } else { stronger_friction() }
 }
 
-/// Claims motion against the rigid solution for a contact so stiff that conventions nearly agree. The claim is
-/// solver-independent.
+/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
+/// nearly agree.
 fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, NEARLY_RIGID);
     let near_rigid_claims = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
@@ -328,8 +330,8 @@ const ELSEWHERE: &str = "rolling: overlap/R for the lever arm, plus the spring d
                          displacement, or the velocity of its undamped vibration; slipping: half a period of each \
                          spring until friction acts in full, over the time";
 
-/// Returns the largest deviation from the rigid solution on a slope with any parameters, for displacement, velocity and
-/// spin, as fractions.
+/// Returns the largest relative deviations of displacement, velocity and spin from the rigid solution at the end of the
+/// run, for a slope with varied parameters.
 fn elsewhere(scene: &Scene) -> State {
     let grain = OneGrain::from_scene(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);
@@ -348,7 +350,8 @@ fn elsewhere(scene: &Scene) -> State {
     }
 }
 
-/// Claims rolling at the end: v and ΩR to rounding, with the lever arm of each convention.
+/// Returns the claims on the final rolling motion: v and ΩR agree to rounding with the solution for the lever arm of
+/// each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         let at_contact = solver == "dem:liggghts";
@@ -376,7 +379,7 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Returns the figures of the motion against the rigid solution.
+/// Returns the figures of displacement and spin against the rigid solution.
 fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut displacement = Vec::new();
     let mut spin = Vec::new();

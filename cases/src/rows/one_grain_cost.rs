@@ -1,5 +1,5 @@
-//! Target quantity of accuracy for one grain on a plane: its displacement against the rigid solution, over the
-//! stiffness of the contact and of the grain.
+//! Target quantity of the cost study for one grain on a plane: its displacement, compared with the rigid solution for
+//! several stiffnesses of the contact and of the grain.
 
 use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
 use crate::registry;
@@ -13,13 +13,13 @@ use grainbench_scene::solver::Method;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Static overlaps of grains on springs, over R.
+/// Static overlaps of grains on springs, divided by the radius R.
 const OVERLAPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 /// Factors on the moduli of deformable grains.
 const STIFFENED: [f64; 2] = [1.0, 10.0];
 
-/// Returns the displacement against a rigid solution as target quantity, in variants of a case. All solvers run the
-/// same time `seconds` (s).
+/// Returns the displacement at the time `seconds` (s) as a target quantity, one for each of the variants of a case. The
+/// expected value is the rigid solution `exact`. All solvers run up to this time.
 #[must_use]
 pub fn displacement(
     name: &str,
@@ -86,8 +86,9 @@ fn touching(scene: &mut Scene) {
     grain.position[axis] = grain.radius;
 }
 
-/// Relaxes an elastic grain under the normal component of gravity. If the case gives no moduli, they are those of the
-/// 2000 paper, K = 10 MPa and G = 2.5 MPa.
+/// Sets the grain on the plane and lets it relax before the run, under the normal component of gravity. The moduli of
+/// all materials are multiplied by `factor`. Materials without moduli first get K = 10 MPa and G = 2.5 MPa
+/// (Bardenhagen, Brackbill & Sulsky 2000).
 fn settled(scene: &mut Scene, factor: f64) {
     touching(scene);
     let axis = scene.dimension.count() - 1;

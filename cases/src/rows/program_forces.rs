@@ -1,9 +1,8 @@
-//! Claims against the external solvers `lammps` and `liggghts`: contact forces equal the forces in their dumps of
-//! contacts and walls.
+//! Claims that our contact forces equal the forces in the contact dumps and wall dumps of LAMMPS and LIGGGHTS.
 //!
-//! Both solvers evaluate the forces between grains again at output, with the velocities of the full step. The dashpot
-//! forces therefore differ from the forces that moved the grains, so runs with pairs are undamped. The dumped wall
-//! forces are the forces that moved the grains.
+//! At output, both programs evaluate the forces between grains again, with the velocities of the full step. The dumped
+//! dashpot forces therefore differ from the forces that moved the grains, so runs with contacts between grains are
+//! undamped. The dumped wall forces are the forces that moved the grains.
 
 use crate::rows::programs::{PAIRS, layer_of_spheres, row};
 use grainbench_harness::compare::pointwise::worst;
@@ -18,7 +17,8 @@ fn stiffer() -> Control {
     })
 }
 
-/// Claims that the forces at some contacts of our runs equal those of each external solver, in units of `unit`.
+/// Returns the claims that the forces in `columns` equal those of LAMMPS and of LIGGGHTS. `unit` returns the unit of
+/// the error (N) from the scene and the time step (s).
 #[must_use]
 pub fn forces(
     runs: impl Fn(&'static str) -> Run,
@@ -34,9 +34,9 @@ pub fn forces(
     PAIRS.map(force_row).to_vec()
 }
 
-/// Claims the forces at the contacts of the nine discs, in units of k_n δ with the walls' travel δ. LIGGGHTS moves
-/// walls as meshes and does not report their forces for each disc. The rounding tolerance is the tolerance of
-/// positions.
+/// Returns the claims on the contact forces of the nine discs, in units of k_n δ, where δ is the travel of the walls.
+/// LIGGGHTS moves walls as meshes and does not report the wall force on each disc, so wall forces are compared with
+/// LAMMPS only. `rounded` is the rounding tolerance of positions.
 #[must_use]
 pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Tolerance) -> Vec<Claim> {
     const BETWEEN: &[&str] =

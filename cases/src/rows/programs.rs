@@ -1,18 +1,18 @@
-//! Claims against the external solvers `lammps` and `liggghts`, stored or live: our solver in the convention of an
-//! external solver gives the same results.
+//! Claims that our solver in the contact convention of LAMMPS or LIGGGHTS gives the results of a stored or live run of
+//! that program.
 
 use crate::rows::incline::{DAMPING, at_overlap};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::file::GrainShape;
 
-/// Pairs of our solver in the convention of an external solver, and the external solver.
+/// Pairs of solvers: our solver in the contact convention of a program, and the program.
 pub const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
 
-/// Time step of one grain on a plane (s).
+/// Time step for one grain on a plane: 1e-4 s.
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 
-/// Compares our run (first) with the run of an external solver (second).
+/// Returns the claim that our run (first) agrees with the run of LAMMPS or LIGGGHTS (second).
 pub(crate) fn row(
     quantity: &str,
     unit: &'static str,
@@ -28,8 +28,8 @@ pub(crate) fn row(
         .refuses(control)
 }
 
-/// Claims the motion of one grain on a plane over one second: undamped, and damped, where the conventions of the
-/// solvers differ.
+/// Returns the claims on the position of one grain on a plane over one second, undamped and damped. In the damped runs,
+/// the conventions of LAMMPS and LIGGGHTS give different results.
 #[must_use]
 pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -51,8 +51,8 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     claims
 }
 
-/// Returns a negative control with a slightly wrong tangential spring. The spring affects the Coulomb limit of a
-/// slipping grain and every start of rolling.
+/// Returns a negative control with a tangential stiffness 0.1 % too large. The stiffness affects when a grain starts to
+/// slip and how a grain starts to roll.
 fn telling() -> Control {
     Control::ours("tangential stiffness × 1.001 in ours", |scene| {
         scene.change_laws(|law| law.scale_tangential(1.001));
@@ -68,7 +68,8 @@ fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
     })
 }
 
-/// Claims the separation velocity of two grains over their approach velocity.
+/// Returns the claims on the coefficient of restitution of two grains: separation velocity divided by approach
+/// velocity.
 #[must_use]
 pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     fn restitution_coefficient(done: &FinishedRun) -> Result<f64, MissingData> {
@@ -98,7 +99,7 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
     claims
 }
 
-/// Replaces discs by a layer of spheres of the same mass, because LIGGGHTS moves walls inwards in three dimensions
+/// Replaces discs by spheres of the same mass in one layer, because LIGGGHTS moves walls inwards in three dimensions
 /// only.
 pub(crate) fn layer_of_spheres(scene: &mut Scene) {
     scene.grain_shape = GrainShape::Sphere;
@@ -106,10 +107,11 @@ pub(crate) fn layer_of_spheres(scene: &mut Scene) {
     scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius * grain.radius);
 }
 
-/// Compared positions of the nine discs.
+/// Columns of the nine-discs case with the compared positions.
 const NINE_DISCS: [&str; 4] = ["edge.x", "edge.y", "corner.x", "corner.y"];
 
-/// Claims the positions of the nine discs over all cycles, in units of `travel`, with rounding tolerances `rounded`.
+/// Returns the claims on the positions of the nine discs over all cycles. `travel` returns the unit of the error (m),
+/// and `rounded` the rounding tolerance for a variant.
 #[must_use]
 pub fn nine_discs(
     variants: &[&'static str],
@@ -137,9 +139,9 @@ pub fn nine_discs(
     claims
 }
 
-/// Claims the positions of the nine discs while the walls rotate. The runs are undamped, because neither solver has
-/// mass-proportional damping and a damped contact of LIGGGHTS depends on where one `run` ends and the next begins.
-/// `places` is the largest position in units of the walls' travel.
+/// Returns the claims on the positions of the nine discs while the walls rotate. The runs are undamped for two reasons:
+/// LAMMPS and LIGGGHTS have no mass-proportional damping, and a damped contact of LIGGGHTS depends on where one `run`
+/// command ends and the next begins. `places` is the largest position, divided by the travel of the walls.
 #[must_use]
 pub fn turning_walls(
     variant: &'static str,
@@ -178,7 +180,7 @@ pub fn turning_walls(
     PAIRS.map(wall_row).to_vec()
 }
 
-/// Claims the velocity of a Hertz sphere over an impact, and its spin if `turns`.
+/// Returns the claims on the velocity of a Hertz sphere during an impact. If `turns` is true, they include the spin.
 #[must_use]
 pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -213,7 +215,8 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
     claims
 }
 
-/// Claims a grain that rolls to rest on a flat plane, in units of R. `ahead` is the tolerance for LIGGGHTS.
+/// Returns the claims on the position of a grain that rolls to rest on a flat plane, in units of R = 1 m. `ahead` is
+/// the tolerance for LIGGGHTS.
 #[must_use]
 pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Vec<Claim> {
     let rolling_rows = |pair: [&'static str; 2]| {
@@ -228,8 +231,8 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
     PAIRS.map(rolling_rows).to_vec()
 }
 
-/// Claims a grain that starts from rest on a slope, with a damped rolling spring. `tilted` returns the run of each
-/// solver.
+/// Returns the claim on a grain that starts from rest on a slope, with a damped rolling spring, against LIGGGHTS.
+/// `tilted` returns the run of each solver.
 #[must_use]
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
     let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
@@ -240,7 +243,8 @@ pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
     row("position over 4 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
 }
 
-/// Claims motion and wall force of one grain that hits a wall, in units of the values before the impact.
+/// Returns the claims on the velocity of one grain that hits a wall and on the force on the wall. Velocities are in
+/// units of the initial speed, and forces in units of the largest spring force.
 #[must_use]
 pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     let mut claims = Vec::new();

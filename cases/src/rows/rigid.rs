@@ -4,16 +4,16 @@
 //! points are then fixed on the bodies. Three errors follow, and no other is observed:
 //!
 //! ```text
-//! position     x is ahead of its velocities: (x − x_exact)/x_exact = h/t at constant acceleration
-//! lift-off     a contact point that turns with the grain rises by R(1 − cos ΩΔt) in a step, the load drops out and the
-//!              grain falls after it: at any moment friction lacks the impulse μ m |v_n| of that fall
-//! overlap      the pull towards zero overlap is soft, a spring of frequency f = 60 Hz at fixed walls: at rest
-//!              the overlap is δ = g_n/(2πf)², whatever Δt, and friction acts at the arm R − δ/2
+//! position     x leads the velocities: (x − x_exact)/x_exact = h/t at constant acceleration
+//! lift-off     a contact point that turns with the grain rises by R(1 − cos ΩΔt) in a step, the contact opens and the
+//!              grain falls: at any moment friction lacks the impulse μ m |v_n| with the velocity v_n of that fall
+//! overlap      the correction towards zero overlap acts as a spring of frequency f = 60 Hz at fixed walls: at rest
+//!              the overlap is δ = g_n/(2πf)² at every Δt, and friction has the lever arm R − δ/2
 //! ```
 //!
-//! For the overlap: at rest, the biased solve keeps the impulse P = m g_n h, P = (P + m δ b)/(1 + c), with
-//! b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf. Hence δ = g_n h c/b = g_n/ω². The overlap is reached within about
-//! 2ζ/ω + 1/(hω²), which increases as the step decreases.
+//! Derivation of the overlap: at rest, the solver with this correction (bias) keeps the impulse P = m g_n h, P = (P + m
+//! δ b)/(1 + c), with b = ω/(hω + 2ζ) and c = b/(hω²), ω = 2πf. Hence δ = g_n h c/b = g_n/ω². The overlap is reached
+//! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
 use crate::rows::incline::{other_inertia, stronger_friction};
@@ -24,26 +24,27 @@ use std::f64::consts::TAU;
 
 /// Name of the solver.
 const RIGID: &str = "rigid";
-/// Resolution of most claims.
+/// Default resolution of the claims.
 pub const DEFAULT: Resolution = Resolution::substeps(8);
-/// Numbers of substeps in the figure.
+/// Numbers of substeps in 1/60 s that the figure shows.
 const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
-/// Numbers of substeps at which rotating grains no longer lift off.
+/// Numbers of substeps in 1/60 s at which rotating grains no longer lift off.
 const FINE: [u32; 5] = [16, 32, 64, 128, 256];
 
 const RIGID_SOURCE: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 const ORDER_SOURCE: Source = Source::Derived("symplectic Euler is of first order in positions");
 
-/// Variant with its expected errors.
+/// Variant of a claim on the solver `rigid`, with its expected errors.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Variant of the scene.
     pub variant: &'static str,
-    /// True if the grain finally rolls without slip. The control is then a wrong inertia, otherwise a wrong friction.
+    /// True if the grain finally rolls without slip. The negative control then has a wrong inertia, otherwise a wrong
+    /// friction.
     pub rolls: bool,
-    /// Largest relative effect of lift-off on velocity and spin at the default resolution, if rotation lifts the
-    /// contact point off at 1 s.
+    /// Largest relative effects of lift-off on velocity and spin at the default resolution; `None` unless rotation
+    /// lifts the contact point off the plane at 1 s.
     pub lifts: Option<[f64; 2]>,
 }
 
@@ -67,7 +68,7 @@ fn wrong(row: Row) -> Control {
     if row.rolls { other_inertia() } else { stronger_friction() }
 }
 
-/// Claims displacement, velocity and spin at 1 s against the rigid solution.
+/// Returns the claims on displacement, velocity and spin at 1 s against the rigid solution.
 fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
@@ -88,12 +89,12 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
     ]
 }
 
-/// Returns the runs at all numbers of [`FINE`] substeps.
+/// Returns one run for each number of substeps in [`FINE`].
 fn fine(row: Row) -> impl Iterator<Item = Run> {
     FINE.iter().map(move |&substeps| run(row.variant, Resolution::substeps(substeps)))
 }
 
-/// Claims the order of the displacement's error in the time step, for a slipping grain.
+/// Returns the claim on the order of the displacement's error in the time step, for a slipping grain.
 fn order(row: Row) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .runs(fine(row))
@@ -107,9 +108,10 @@ fn order(row: Row) -> Claim {
         .refuses(wrong(row))
 }
 
-/// Claims the displacement of a rolling grain minus h/t. The lever arm of friction is R until the overlap is reached,
-/// and R − δ/2 afterwards. With a finer step, the overlap is reached later: after half a second with 256 substeps. The
-/// remaining error has no order in the time step.
+/// Returns the claim on the displacement of a rolling grain, corrected for the error h/t. The corrected displacement
+/// lies between the exact displacements for two lever arms of friction. The lever arm is R until the overlap at rest δ
+/// is reached, and R − δ/2 afterwards. With a finer step, the overlap is reached later: after half a second with 256
+/// substeps. The remaining error has no order in the time step.
 fn between_arms(case: &Case, row: Row) -> Claim {
     let (overlap, i) = arm(case, row);
     let width = overlap * i / (1.0 + i);
@@ -146,17 +148,17 @@ pub fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| incline(case, row)).collect()
 }
 
-/// Returns the overlap at rest over the radius, and I/(mR²).
+/// Returns the overlap at rest divided by the radius, and the inertia factor I/(mR²).
 fn arm(case: &Case, row: Row) -> (f64, f64) {
     let grain = case.variant(row.variant).map(|scene| OneGrain::from_scene(&scene));
     grain.map_or((f64::NAN, f64::NAN), |grain| (rest_overlap(&grain) / grain.radius, grain.inertia_factor))
 }
 
 fn incline(case: &Case, row: Row) -> Vec<Claim> {
-    const X: &str = "positions are ahead of the velocities by h/t = 5.2e-4, h = Δt/4 (symplectic Euler); if rotation \
-                     lifts the contact point off, friction lacks the impulse of the fall";
-    const LIFTED: &str = "rotation lifts the contact point off for part of a step: friction lacks μ m |v_n|, which \
-                          vanishes at smaller steps";
+    const X: &str = "with symplectic Euler, positions are ahead of the velocities by h/t = 5.2e-4, h = Δt/4; if \
+                     rotation lifts the contact point off the plane, the friction impulse of the fall is missing";
+    const LIFTED: &str = "rotation lifts the contact point off for a part of a step: the friction impulse μ m |v_n| is \
+                          missing, which vanishes at smaller steps";
     let (overlap, i) = arm(case, row);
     let of_arm = |factor: f64, because: &str| computed(factor * overlap, because);
     let [v, omega] = match row.lifts {
@@ -182,16 +184,17 @@ fn incline(case: &Case, row: Row) -> Vec<Claim> {
     claims
 }
 
-/// Returns the velocity of rolling (m/s) with the lever arm of friction at rapier's overlap at rest.
+/// Returns the velocity of rolling (m/s) at t (s). Friction has the lever arm R − δ/2, with rapier's overlap at rest δ.
 fn rolling(grain: &OneGrain, t: f64) -> f64 {
     grain.rolling_velocity(t, grain.radius - 0.5 * rest_overlap(grain))
 }
 
-/// Claims the error that remains at fine steps: the lever arm, and the delay of its overlap. An overdamped contact of
-/// frequency f and damping ratio ζ approaches its overlap with exp(−t/τ), τ = 2ζ/(2πf). A part τ/t of the lever arm's
-/// effect is therefore missing at t.
+/// Returns the claim on the velocity at 1 s with fine steps. Two effects remain: the lever arm of friction, and the
+/// slow growth of the overlap that determines the lever arm. An overdamped contact of frequency f and damping ratio ζ
+/// approaches its overlap at rest as exp(−t/τ), τ = 2ζ/(2πf). A part τ/t of the effect of the lever arm is therefore
+/// missing at t.
 fn final_velocity(case: &Case, row: Row) -> Claim {
-    /// Time of the reading (s).
+    /// Time at which the velocity is compared (s).
     const END: f64 = 1.0;
     let Settings { wall_frequency, damping_ratio, .. } = Settings::default();
     let ((overlap, i), lag) = (arm(case, row), 2.0 * damping_ratio / (TAU * wall_frequency));
@@ -236,7 +239,7 @@ fn backspin(case: &Case, row: Row) -> Vec<Claim> {
     against(row, OneGrain::rigid_backspin, stronger_friction(), allowed)
 }
 
-/// Returns a figure of the error against the rigid solution over the number of substeps.
+/// Returns a figure of the error of the displacement against the number of substeps.
 ///
 /// # Errors
 /// When a run fails for another reason than a crash of the solver.
@@ -275,7 +278,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     ))
 }
 
-/// Claims the restitution of a head-on impact.
+/// Returns the claim on the restitution of a head-on impact.
 #[must_use]
 pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<Measurement, MissingData>) -> Claim {
     claim("coefficient of restitution", "1")
@@ -295,7 +298,7 @@ pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<M
         }))
 }
 
-/// Claims that a momentum is conserved to rounding.
+/// Returns the claim that one component of the momentum is conserved to rounding.
 #[must_use]
 pub fn momentum(
     variant: &'static str,
@@ -309,7 +312,7 @@ pub fn momentum(
         .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
 }
 
-/// Claims the angular momentum of an off-centre impact.
+/// Returns the claim that the angular momentum is conserved in an off-centre impact.
 #[must_use]
 pub fn angular_momentum(
     variant: &'static str,
@@ -328,7 +331,8 @@ pub fn angular_momentum(
         }))
 }
 
-/// Claims the energy of a gas of elastic grains over some seconds instead of a number of cycles.
+/// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number
+/// of cycles, which `rigid` does not support.
 #[must_use]
 pub fn gas_energy(
     variant: &'static str,
@@ -343,9 +347,9 @@ pub fn gas_energy(
         .holds("conservation of energy", move |done| worst(&done[0]))
         .within(judged(
             1.5e-2,
-            "single impacts conserve it to rounding. If a disc hits two others in one step, the two approach \
-             velocities are reversed one after the other, and the second reversal undoes part of the first. This \
-             happens once in this run; smaller steps make it rarer, not smaller",
+            "single impacts conserve the energy to rounding. If a disc hits two discs in one step, the two approach \
+             velocities are reversed one after the other, and the second reversal undoes a part of the first one. This \
+             happens once in this run; smaller steps make the error rarer, not smaller",
         ))
         .refuses(Control::scene("dashpots of a hundredth of critical", move |scene| {
             let law = scene.laws[0].unwrap_or_default();
@@ -355,7 +359,7 @@ pub fn gas_energy(
         }))
 }
 
-/// Claims that `rigid` reports a duration in cycles as unsupported.
+/// Returns the claim that `rigid` reports a duration in cycles as unsupported.
 #[must_use]
 pub fn refuses_cycles(variant: &'static str) -> Claim {
     claim("refusal of a length in calculation cycles", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
@@ -368,7 +372,7 @@ pub fn refuses_cycles(variant: &'static str) -> Claim {
     )
 }
 
-/// Claims that `rigid` reports periodic axes as unsupported.
+/// Returns the claim that `rigid` reports periodic axes as unsupported.
 #[must_use]
 pub fn refuses_periodic_axes(variant: &'static str) -> Claim {
     claim("refusal of periodic axes", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(

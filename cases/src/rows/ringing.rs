@@ -20,46 +20,49 @@ pub(crate) struct FreeVibration {
     pub(crate) column: &'static str,
     /// Bulk and shear modulus of the elastic discs (Pa).
     pub(crate) moduli: [f64; 2],
-    /// Distance by which each wall moves in (m), and the duration of this motion (s).
+    /// Distance by which each wall moves in (m).
     pub(crate) squeeze: f64,
+    /// Duration of the motion of the walls (s).
     pub(crate) ramp: f64,
-    /// End of the run (s): about ten periods after the walls have stopped.
+    /// End of the run (s), about ten periods after the walls have stopped.
     pub(crate) time: f64,
     /// Time between two samples (s).
     pub(crate) sample: f64,
-    /// Cells per radius, and cells per radius in the long tier.
+    /// Cells per radius, except in the long tier.
     pub(crate) cells: f64,
+    /// Cells per radius in the long tier.
     pub(crate) fine: f64,
-    /// Function that returns the exact values; `None` for discs that do not deform.
+    /// Function that returns the exact values for a scene and a squeeze (m); `None` if the discs are rigid.
     pub(crate) exact: fn(&Scene, f64) -> Option<VibrationParameters>,
-    /// n of ω² = n k_n/m of rigid discs on springs.
+    /// Factor n in ω² = n k_n/m, for rigid discs on springs.
     pub(crate) springs: f64,
-    /// Force at a wall at rest over k_n times the squeeze, of discs on springs.
+    /// Force at a wall at rest, divided by k_n times the squeeze, for rigid discs on springs.
     pub(crate) share: f64,
     /// Source of the closed form.
     pub(crate) source: &'static str,
-    /// Largest relative error of the force, and the reason.
+    /// Largest relative error of the force that passes.
     pub(crate) allowed: f64,
+    /// Reason for the tolerance of the force.
     pub(crate) because: &'static str,
 }
 
-/// Discs at rest and the parameters of their free vibration.
+/// Forces and parameters of the free vibration of elastic discs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VibrationParameters {
     /// Force at a wall at rest (N/m).
     pub(crate) force: f64,
-    /// Restoring force on a disc over its displacement (N/m²).
+    /// Restoring force on a disc, divided by its displacement (N/m²).
     pub(crate) restoring: f64,
-    /// Added mass of a disc over its mass: the inertia of its deformation (Rayleigh).
+    /// Added mass of a disc, divided by its mass. The added mass is the inertia of the deformation (Rayleigh).
     pub(crate) stirred: f64,
-    /// Half-width of a contact patch over the radius.
+    /// Half-width of a contact patch, divided by the radius.
     pub(crate) patch: f64,
-    /// Relative increase of compliance by one more ΔF/(πE') at every contact.
+    /// Relative increase of the compliance of a disc if every contact yields by a further ΔF/(πE').
     pub(crate) share: f64,
 }
 
 impl FreeVibration {
-    /// Makes the discs elastic and sets the walls' motion and stop.
+    /// Makes the discs elastic. Sets the motion of the walls, the duration and the sampling.
     fn elastic(self, scene: &mut Scene) {
         let [bulk_modulus, shear_modulus] = self.moduli;
         scene.deformable[0] = Some(Deformable { bulk_modulus, shear_modulus, constitutive: Constitutive::NeoHookean });
@@ -72,7 +75,7 @@ impl FreeVibration {
         scene.sampling = Sampling::Seconds(self.sample);
     }
 
-    /// Makes the discs rigid, on springs with the force of the elastic discs at rest.
+    /// Makes the discs rigid, with springs that give the force of the elastic discs at rest.
     fn on_springs(self, scene: &mut Scene) {
         self.elastic(scene);
         if let Some(VibrationParameters { force, .. }) = (self.exact)(scene, self.squeeze) {
@@ -118,15 +121,16 @@ impl FreeVibration {
         Ok(dominant_frequency(&time, &force, 0.5 * near, 1.6 * near))
     }
 
-    /// Returns the relative decrease of frequency by springs between surfaces, which are as soft as 0.4 cells of
-    /// material.
+    /// Returns the relative decrease of the frequency due to the contact springs between the surfaces of the discs.
+    /// These springs are as soft as a layer of material of 0.4 cells.
     fn softened(self, mut scene: Scene, cells: f64) -> f64 {
         self.elastic(&mut scene);
         let soft = |rung: VibrationParameters| 0.5 * rung.share * PI * 0.4 / (2.0 * cells * rung.patch);
         (self.exact)(&scene, self.squeeze).map_or(f64::NAN, soft)
     }
 
-    /// Claims the force at rest, the frequency, and the frequency over the frequency of rigid discs on springs.
+    /// Returns the claims on the force at rest, the frequency, and the ratio of the frequency to that of rigid discs on
+    /// springs.
     pub(crate) fn claims(self, case: &Case, set: impl Fn(Run) -> Run) -> Vec<Claim> {
         let softer = |cells: f64| {
             Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75))
@@ -168,7 +172,8 @@ impl FreeVibration {
                 .run(self.rigid().aside())
                 .equals(exact, move |done| {
                     let VibrationParameters { force, restoring, stirred, .. } = self.exact(&done[0])?;
-                    // The mass cancels. k_n is the stiffness at which the springs have this force.
+                    // The mass cancels. `spring` is the stiffness k_n for which rigid discs have the same force at
+                    // rest.
                     let spring = force / (self.share * self.squeeze);
                     let expected = (restoring / (self.springs * spring * (1.0 + stirred))).sqrt();
                     Ok(Measurement::new(self.frequency(&done[0])? / self.frequency(&done[1])?, expected, expected))

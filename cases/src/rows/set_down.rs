@@ -1,7 +1,7 @@
 //! A grain set down on a slope with an overlap larger than its static overlap, and with so much friction that it
 //! sticks. It oscillates about its static overlap along the normal, and about rolling along the slope. The contact
-//! neither opens nor slips. The motion therefore depends only on the springs and dashpots, which all soft contact laws
-//! share.
+//! neither opens nor slips. The motion therefore depends only on the springs and dashpots, which are equal in all soft
+//! contact laws.
 //!
 //! With the static overlap δ_s = m g_n/k_n and the slip velocity s = v − ΩR:
 //!
@@ -10,8 +10,8 @@
 //! ds/dt = g_t − (1 + 1/i)(k_t ∫s dt + c_t s)/m                   s(0) = 0
 //! ```
 //!
-//! The two equations are damped oscillators; c_n = γ_n m + β k_n, c_t = γ_t m + β k_t. Source: Newton's and Euler's
-//! laws.
+//! Both equations are damped oscillators, with c_n = γ_n m + β k_n and c_t = γ_t m + β k_t. Source: Newton's and
+//! Euler's laws.
 
 use crate::exact::one_grain::{OneGrain, course, normal_axis, rest_at_overlap};
 use crate::rows::incline::STEP;
@@ -30,15 +30,15 @@ const SPRINGS: ClaimFigure = ClaimFigure {
 /// Coefficients of the dashpots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dashpots {
-    /// γ_n and γ_t: damping proportional to the mass.
+    /// γ_n and γ_t (1/s): damping proportional to the mass.
     OfMass,
-    /// β: damping proportional to the stiffness.
+    /// β (s): damping proportional to the stiffness.
     OfStiffness,
 }
 
-/// Static overlap over the radius.
+/// Static overlap divided by the radius.
 const RATIO: f64 = 1e-4;
-/// Initial overlap over the static overlap.
+/// Initial overlap divided by the static overlap.
 const DEEPER: f64 = 1.5;
 /// Damping ratio along the normal.
 const DAMPING: f64 = 0.1;
@@ -67,7 +67,7 @@ impl Oscillator {
         Self { frequency, damping: 0.5 * dashpot / frequency }
     }
 
-    /// Returns the frequency with damping (rad/s).
+    /// Returns the frequency of the damped oscillation (rad/s).
     fn ringing(self) -> f64 {
         self.frequency * (1.0 - self.damping * self.damping).sqrt()
     }
@@ -102,7 +102,7 @@ fn rest(scene: &Scene) -> f64 {
     grain.overlap_ratio * grain.radius
 }
 
-/// Returns the peak slip velocity of an undamped spring: g_t/ω (m/s).
+/// Returns the peak slip velocity of a sticking grain on an undamped tangential spring: g_t/ω (m/s).
 fn peak(scene: &Scene) -> f64 {
     OneGrain::from_scene(scene).along / oscillators(scene)[1].frequency
 }
@@ -133,7 +133,7 @@ fn stiffer(scene: &mut Scene) {
     });
 }
 
-/// Claims both displacement curves on a slope.
+/// Returns the claims on overlap and slip velocity over time, for a grain on a slope.
 #[must_use]
 pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     let name = match dashpots {

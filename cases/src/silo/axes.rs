@@ -1,26 +1,26 @@
-//! Figures 4 and 5 of the paper: principal axes of stress and rate in the blocks of the last frame, and single contact
-//! forces in a part of the silo.
+//! Figures 4 and 5 of the paper on silos: principal axes of stress T and strain rate D in the blocks of the last frame,
+//! and contact forces in a part of the silo.
 
 use super::ensemble::{self, Flow};
 use super::figures::rows;
 use super::instant::part;
 use grainbench_harness::prelude::*;
 
-/// Half of the drawn length of an axis of D (d).
+/// Plotted half-length of a principal axis of the strain rate D (grain diameters d).
 const RATE: f64 = 1.6;
-/// Half of the drawn length of the 90th percentile of the axes of T (d). Blocks are 5 d wide.
+/// Plotted half-length of the 90th percentile of the minor and major axes of the stress T (d). Blocks are 5 d wide.
 const STRESS: f64 = 2.4;
-/// Line widths over the largest width.
+/// Line widths of the three kinds of axes, as fractions of the largest width.
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
 
-/// Returns both figures; none if a run has no table of axes or of forces.
+/// Returns the figures for which a run has the tables: figure 4 needs `axes`, figure 5 also `forces`.
 pub(super) fn all(done: &FinishedRun, flow: Flow) -> Vec<Figure> {
     let Some(kinds) = kinds(done) else { return Vec::new() };
     let time = done.table("whole").ok().and_then(|whole| whole.column("time")?.last().copied()).unwrap_or(f64::NAN);
     [whole(done, flow, time, &kinds), detail(done, flow, time, kinds)].into_iter().flatten().collect()
 }
 
-/// Returns the axes of each block as lines.
+/// Returns the principal axes of each block as lines; `None` if the run has no table of axes.
 fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
     let table = done.table("axes").ok()?;
     let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
@@ -77,7 +77,7 @@ fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<F
     ))
 }
 
-/// Returns the figure of the blocks in a part of the silo and the single forces there (figure 5).
+/// Returns the figure of a part of the silo: the axes of its blocks, and its contact forces (figure 5).
 fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
     let forces = rows(done.table("forces").ok()?, ["from_x", "from_z", "to_x", "to_z", "force"]);
     let largest = forces.iter().map(|row| row[4]).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Claims on every silo, from its elements, blocks and tracers.
+//! Claims of the silo cases, on elements, blocks and tracers.
 
 use super::ensemble::{self, Flow, mean, share, steady};
 use crate::rows::draws::{apart, mean_of};
@@ -8,37 +8,39 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
 use grainbench_harness::source::CitedNumber;
 
-/// Function that returns a quantity of a silo.
+/// Function that returns a quantity of a silo from its run.
 pub(crate) type Quantity = fn(&FinishedRun, Flow) -> Result<f64, MissingData>;
 
-/// Values of the prototype for every silo.
+/// Values of the prototype for every silo: mean sin φ and mean packing fraction of the flow.
 pub(crate) struct Numbers {
     pub(crate) sine: CitedNumber,
     pub(crate) packing: CitedNumber,
 }
 
-/// Values of the prototype for silos that drain.
+/// Values of the prototype for draining silos.
 pub(crate) struct DrainNumbers {
     pub(crate) plateau: CitedNumber,
     pub(crate) onset: CitedNumber,
-    /// Angles between axes: for single frames, and for means over 20 frames.
+    /// Angles between the major principal axes of stress and strain rate (degrees): in single frames, and in means over
+    /// 20 frames.
     pub(crate) angles: [CitedNumber; 2],
-    /// Correlations: of the two friction criteria, and of the rates found by two methods.
+    /// Correlation coefficients: of two measures of friction, and of shear rates from two methods.
     pub(crate) correlations: [CitedNumber; 2],
-    /// Packing fractions in the first bins of |I₀|.
+    /// Packing fractions in the first bins of the inertial number |I₀|.
     pub(crate) bins: &'static [CitedNumber],
 }
 
-/// A silo and the origin of its tolerances.
+/// Silo at a tenth of the paper's size, with the data for its expected values and tolerances.
 #[derive(Clone)]
 pub(crate) struct Silo {
     /// Cause of the flow.
     pub(crate) flow: Flow,
     /// Run of the claims.
     pub(crate) run: Run,
-    /// Values of the prototype.
+    /// Expected values of the prototype.
     pub(crate) numbers: &'static Numbers,
-    /// Table of every quantity in ten of our own packings, one row per packing, made by `examples/silo_packings.rs`.
+    /// Table of all quantities for ten of our own packings, one row per packing. `examples/silo_packings.rs` computes
+    /// it.
     pub(crate) packings: &'static str,
 }
 
@@ -49,12 +51,13 @@ pub(crate) const LEVELS: &[Level] = &[
 ];
 
 /// Limitations of these cases.
-pub(crate) const WEAKNESS: &str = "A tenth of the size of the published silo, and one deposit of ten, whose spread gives the \
-                                   tolerances; at full size one deposit of each silo. The friction of the paper is not printed \
-                                   and assumed to be 0.5. `run` judges stored results. The tests repeat the runs at a tenth of \
-                                   the size, most of them in the long tier, and the full-size runs on request.";
+pub(crate) const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
+                                   the spread between the ten gives the tolerances. At full size there is one deposit \
+                                   of each silo. The paper does not print the friction, which is assumed to be 0.5. \
+                                   `run` judges stored results. The tests repeat the runs at a tenth of the size, most \
+                                   of them in the long tier, and the full-size runs on request.";
 
-/// Names and units of the quantities of silos.
+/// Name and unit of the number of grains that have left the silo. The next constants name further quantities.
 pub(crate) const GONE: [&str; 2] = ["grains out after 14 τ", "1"];
 const SINE: [&str; 2] = ["mean sin φ of the flow", "1"];
 const PACKING: [&str; 2] = ["mean packing fraction of the flow", "1"];
@@ -70,14 +73,14 @@ fn half_the_friction() -> Control {
     Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
 }
 
-/// Returns a negative control without tangential springs.
+/// Returns a negative control with tangential springs a millionth as stiff.
 pub(crate) fn no_springs() -> Control {
     Control::scene("tangential springs a millionth as stiff", |scene| {
         scene.change_laws(|law| law.scale_tangential(1e-6))
     })
 }
 
-/// Returns a negative control that reads the ratio of shear to normal stress, tan φ, as sin φ.
+/// Returns a negative control that reads tan φ, the ratio of shear to normal stress, instead of sin φ.
 fn tangent_for_sine() -> Control {
     Control::misread("tan φ taken for sin φ", |tables| {
         for table in tables {
@@ -110,12 +113,12 @@ fn packing(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&steady(done, flow, "packing_fraction")?))
 }
 
-/// Returns the number of grains that have left.
+/// Returns the number of grains that have left the silo.
 pub(crate) fn gone(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::gone(done)
 }
 
-/// Returns the packing fraction of strained tracers.
+/// Returns the packing fraction of tracers strained by more than 0.4.
 fn plateau(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::plateau(done)
 }
@@ -125,12 +128,12 @@ fn onset(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
     ensemble::onset(done)
 }
 
-/// Returns the mean angle between the axes of largest T and D.
+/// Returns the mean angle between the major principal axes of stress T and strain rate D, in single frames (degrees).
 fn angle(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&ensemble::angles(done, flow, false, "largest")?))
 }
 
-/// Returns the mean angle between the axes of largest T and D for means over windows of frames.
+/// Returns the mean angle between the major principal axes of T and D, each averaged over a window of frames (degrees).
 fn angle_of_windows(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     Ok(mean(&ensemble::angles(done, flow, true, "largest")?))
 }
@@ -139,7 +142,7 @@ impl Silo {
     /// Returns the claims on every silo.
     pub(crate) fn of_every(&self) -> Vec<Claim> {
         let numbers = self.numbers;
-        // For pushed silos, the difference between ten packings exceeds the effect of halving the friction.
+        // In pushed silos, half the friction changes sin φ by less than the difference between ten packings.
         let of_sine = match self.flow {
             Flow::Drained => half_the_friction(),
             Flow::Pushed => no_springs(),
@@ -155,8 +158,8 @@ impl Silo {
         all
     }
 
-    /// Returns the claims on silos that drain. In them, enough elements strain for paths of tracers and for curves over
-    /// the inertial number.
+    /// Returns the claims on draining silos only. In pushed silos, too few elements deform for tracer paths and for
+    /// curves against the inertial number.
     pub(crate) fn of_drains(&self, numbers: &DrainNumbers) -> Vec<Claim> {
         let mut all = vec![
             self.equals(PLATEAU, numbers.plateau, no_springs(), plateau),
@@ -170,14 +173,14 @@ impl Silo {
         all
     }
 
-    /// Returns the 99 % interval of the difference of two packings in a quantity. Zero if the table lacks the quantity,
-    /// so that the claim fails.
+    /// Returns the half-width of the 99 % interval of the difference between a quantity's values for two packings.
+    /// Returns zero if the table lacks the quantity, so that the claim fails.
     fn spread(&self, quantity: &str) -> f64 {
         apart(self.packings, quantity)
     }
 
-    /// Claims that a quantity equals the value of the prototype within the spread over packings. Angles between axes
-    /// can be zero, so their unit is the mean angle between two independent axes in the plane.
+    /// Returns the claim that a quantity equals the prototype's value within the spread over packings. An angle may be
+    /// zero, so its error is in units of 45°, the mean angle between two independent axes in the plane.
     pub(crate) fn equals(
         &self,
         [quantity, unit]: [&'static str; 2],
@@ -196,7 +199,7 @@ impl Silo {
             .refuses(control)
     }
 
-    /// Claims the fraction of elements whose sin φ lies in the range of the paper.
+    /// Returns the claim on the fraction of elements whose sin φ is in the range of the paper.
     fn range_of_friction(&self) -> Claim {
         let (flow, source) = (self.flow, self.numbers.sine.source());
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
@@ -206,7 +209,8 @@ impl Silo {
             .refuses(tangent_for_sine())
     }
 
-    /// Claims two correlations, which vanish for shuffled elements.
+    /// Returns the claims on two correlations over elements: of two measures of friction, and of two strain rates. The
+    /// negative controls shuffle the elements, so that the correlations vanish.
     fn correlations(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
         let asked = cited.map(|cited| format!("required in advance; the prototype has {}", cited.value));
         let [for_criteria, for_rates] = asked;
@@ -227,7 +231,7 @@ impl Silo {
         ]
     }
 
-    /// Claims the coaxiality of stress and rate.
+    /// Returns the claims on the angle between the major principal axes of stress and strain rate.
     fn coaxiality(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
         let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
         vec![
@@ -241,13 +245,14 @@ impl Silo {
         ]
     }
 
-    /// Claims the mean rotation from stress to rate, counted outwards in both halves. It is small for a symmetric flow.
+    /// Returns the claim on the mean rotation from the major axis of stress to that of strain rate. Outward rotation is
+    /// positive in both halves. The mean is small for a symmetric flow.
     pub(crate) fn turn(&self, cited: CitedNumber) -> Claim {
         let control = Control::misread("D turned by 10°", ensemble::rate_turned);
         self.equals(["turn from T to D in the plane, with the sign of x", "deg"], cited, control, ensemble::turn)
     }
 
-    /// Claims that a symmetric silo has no shear stress as a whole.
+    /// Returns the claim that the mean shear stress of a symmetric silo is zero.
     pub(crate) fn symmetry(&self) -> Claim {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
             .run(self.run.clone())
@@ -262,7 +267,8 @@ impl Silo {
             .refuses(turned_gravity())
     }
 
-    /// Claims φ over |I₀|: in the bins of the prototype, and the mean error over the bins of flowing elements.
+    /// Returns the claims on the packing fraction φ in bins of the inertial number |I₀|: the largest error in a bin,
+    /// and the mean error over the bins of flowing elements.
     fn over_inertia(&self, bins: &'static [CitedNumber]) -> Vec<Claim> {
         let cited = move || bins.iter().map(|cited| cited.value).enumerate();
         let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
@@ -284,7 +290,7 @@ impl Silo {
             claim(mean_off, "1")
                 .run(self.run.clone())
                 .equals(bins[0].source(), move |done| {
-                    // These are the bins from the second to the last but one, in which the ten packings were read.
+                    // These are the bins from the second to the last but one, which the table of ten packings covers.
                     let middle = cited().skip(1).take(bins.len() - 2);
                     let pairs = ensemble::in_bins_of(&ensemble::over_inertia_flowing(&done[0])?, middle)?;
                     let off: Vec<f64> = pairs.iter().map(|[found, expected]| found - expected).collect();
@@ -295,13 +301,13 @@ impl Silo {
         ]
     }
 
-    /// Claims the packing fraction of the deposit.
+    /// Returns the claim on the packing fraction of the deposit.
     pub(crate) fn deposit(&self, cited: CitedNumber) -> Claim {
         let control = Control::misread("radii a hundredth too large", ensemble::larger_radii);
         self.equals(["packing fraction of the deposit", "1"], cited, control, |done, _| ensemble::deposit(done))
     }
 
-    /// Claims that our solver in the convention of LAMMPS agrees with LAMMPS, from the same grains.
+    /// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
         let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
@@ -316,8 +322,8 @@ impl Silo {
         })
     }
 
-    /// Claims agreement with LAMMPS until chaotic trajectories separate. Other claims may use stored runs. This claim
-    /// runs our solver.
+    /// Returns the claim that our solver agrees with LAMMPS until chaotic trajectories separate. Other claims may use
+    /// stored results of our solver; this claim always runs our solver.
     fn beginning(&self) -> Claim {
         let run = |solver| Run::new("beginning", solver, self.run.resolution);
         let time = if self.run.set == Set::Long { 0.05 } else { 0.2 };
@@ -335,5 +341,5 @@ impl Silo {
     }
 }
 
-/// Kinetic energy of translation.
+/// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";

@@ -1,5 +1,5 @@
-//! Comparison of the elements of a run with stored results of other silos. According to the paper, all flows lie on one
-//! curve.
+//! Comparison of a run's elements with stored results of other silos. According to the paper, the elements of all flows
+//! lie on one curve.
 
 use super::ensemble::{self, STRAIN};
 use crate::kept;
@@ -7,16 +7,16 @@ use crate::registry::by_name;
 use grainbench_harness::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Stored flow of the same size. It has a case, the variant that is read as elements, and a label in figures.
+/// Flow whose stored result is compared with a run of the same size: case, variant, and label in figures.
 pub(crate) struct ComparedFlow {
     pub(crate) case: &'static str,
     pub(crate) variant: &'static str,
     pub(crate) label: &'static str,
-    /// Number of bins of strain, from |E| = 0.1 on, that contain tracers.
+    /// Number of bins of strain, counted upwards from |E| = 0.1, that contain tracers.
     pub(crate) strained: usize,
 }
 
-/// The other two flows at a tenth of the paper's size.
+/// The flows that are compared with the tall silo at a tenth of the paper's size.
 pub(crate) const TENTH: [ComparedFlow; 2] = [
     ComparedFlow { case: "silo-wide", variant: "drained", label: "wide silo, drained", strained: 5 },
     ComparedFlow { case: "silo-push", variant: "pushed", label: "wide silo, pushed", strained: 3 },
@@ -61,8 +61,9 @@ impl ComparedFlow {
     }
 }
 
-/// Claims that a draining silo lies on the curve of φ over |I₀| of another silo, for the duration of the other flow.
-/// `which` and `size` name the other silo and the size.
+/// Returns the claim that a draining silo and another silo have the same curve of packing fraction φ against inertial
+/// number |I₀|, up to the end of the other silo's run. `which` is the name of the other silo in the quantity; `size` is
+/// a suffix of the quantity.
 pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .run(run)
@@ -79,10 +80,12 @@ pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [
         .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
 }
 
-/// Number of bins of strain below |E| = 0.1, in which flows differ because their deposits differ.
+/// Number of bins of strain below |E| = 0.1. These bins are not compared, because flows from different deposits differ
+/// there.
 const FEW_STRAINS: usize = 3;
 
-/// Claims that three flows lie on one curve of φ over |E|.
+/// Returns the claim that the flow of `run` and the two `others` have the same curve of packing fraction φ against
+/// strain |E|.
 pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .run(run)

@@ -15,11 +15,12 @@ pub(crate) enum Flow {
     Pushed,
 }
 
-/// Smallest |D₀| of a flowing element (1/τ).
+/// Smallest shear rate |D₀| of a flowing element (1/τ).
 pub(crate) const FLOWING: f64 = 0.02;
 
 impl Flow {
-    /// Returns true if an element of 2.5 d is far from the cause of the flow: 7.5 d from the slit, or above 12.5 d.
+    /// Returns true if an element of edge 2.5 d is far from the cause of the flow: at least 7.5 d from the slit of a
+    /// draining silo, or above 12.5 d in a pushed silo.
     fn is_far(self, x: f64, z: f64) -> bool {
         match self {
             Self::Drained => x.hypot(z) >= 7.5,
@@ -27,7 +28,8 @@ impl Flow {
         }
     }
 
-    /// Returns true if a block of 5 d is far from the cause of the flow: 5 d from the slit, or above 10 d.
+    /// Returns true if a block of edge 5 d is far from the cause of the flow: at least 5 d from the slit of a draining
+    /// silo, or above 10 d in a pushed silo.
     fn is_far_block(self, x: f64, z: f64) -> bool {
         match self {
             Self::Drained => x.hypot(z) >= 5.0,
@@ -35,7 +37,7 @@ impl Flow {
         }
     }
 
-    /// Describes the region of the elements.
+    /// Describes the region far from the cause of the flow.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Drained => "from 7.5 d off the slit on",
@@ -44,7 +46,7 @@ impl Flow {
     }
 }
 
-/// Columns of a table, row by row.
+/// Selected columns of a table, read row by row.
 struct Rows<'a, const N: usize> {
     columns: [&'a [f64]; N],
     rows: usize,
@@ -59,14 +61,14 @@ impl<'a, const N: usize> Rows<'a, N> {
         Ok(Self { columns, rows: table.rows() })
     }
 
-    /// Returns the rows without NaN.
+    /// Returns the rows without NaN or infinite numbers.
     fn whole(&self) -> impl Iterator<Item = [f64; N]> + '_ {
         let row = |at: usize| self.columns.map(|column| column[at]);
         (0..self.rows).map(row).filter(|row| row.iter().all(|number| number.is_finite()))
     }
 }
 
-/// Returns a quantity of the elements of the bulk that flow steadily, far from the cause of the flow.
+/// Returns a quantity of all elements in steady flow, away from sides, surface and the cause of the flow.
 pub(crate) fn steady(done: &FinishedRun, flow: Flow, quantity: &str) -> Result<Vec<f64>, MissingData> {
     let names = ["time", "x", "z", "side", "surface", "shear_rate", quantity];
     let rows = Rows::from_table(done.table("elements")?, names)?;
@@ -80,7 +82,7 @@ pub(crate) fn steady(done: &FinishedRun, flow: Flow, quantity: &str) -> Result<V
     enough(values, "steadily flowing elements")
 }
 
-/// Smallest number of values of an ensemble.
+/// Smallest number of values for a statistic.
 const FEWEST: usize = 16;
 
 fn enough(values: Vec<f64>, what: &str) -> Result<Vec<f64>, MissingData> {
@@ -101,12 +103,14 @@ pub(crate) fn share(values: &[f64], [low, high]: [f64; 2]) -> f64 {
     values.iter().filter(|value| (low..=high).contains(*value)).count() as f64 / values.len() as f64
 }
 
-/// Returns a pair of quantities of all elements of the bulk whose shear rate is at least `rate`.
+/// Returns two quantities of each element in steady flow, away from sides and surface, whose shear rate is at least
+/// `rate` (1/τ).
 fn pairs(done: &FinishedRun, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, MissingData> {
     pairs_of(done.table("elements")?, f64::INFINITY, rate, names)
 }
 
-/// Returns a pair of quantities of the elements in a table, up to a time.
+/// Returns two quantities of each element of a table, away from sides and surface, from the start of steady flow to the
+/// time `until` (τ), if its shear rate is at least `rate` (1/τ).
 fn pairs_of(table: &Table, until: f64, rate: f64, names: [&str; 2]) -> Result<Vec<[f64; 2]>, MissingData> {
     let [a, b] = names;
     let rows = Rows::from_table(table, ["time", "side", "surface", "shear_rate", a, b])?;
@@ -121,7 +125,7 @@ pub(crate) fn of_criteria(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(correlation(&pairs(done, FLOWING, ["sine_of_friction", "drucker_prager"])?))
 }
 
-/// Returns Pearson's correlation between the logarithms of the instantaneous |D₀| and of |D₀| from displacements over
+/// Returns Pearson's correlation between log |D₀| from instantaneous velocities and log |D₀| from displacements over
 /// 0.2 τ.
 pub(crate) fn of_rates(done: &FinishedRun) -> Result<f64, MissingData> {
     let pairs = pairs(done, FLOWING, ["shear_rate", "shear_rate_between"])?;
@@ -136,7 +140,7 @@ fn correlation(pairs: &[[f64; 2]]) -> f64 {
     sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
 }
 
-/// Bounds of the bins of |I₀|.
+/// Bounds of the bins of the inertial number |I₀|.
 pub(crate) const INERTIA: [[f64; 2]; 10] = [
     [0.002, 0.005],
     [0.005, 0.01],
@@ -150,33 +154,34 @@ pub(crate) const INERTIA: [[f64; 2]; 10] = [
     [0.4, 0.6],
 ];
 
-/// Number of bins, from the first, with at least a hundred elements in the tall silo at a tenth of the size. With fewer
-/// elements, the means of two packings differ by more than 0.008 (99 %), because the standard deviation is 0.014 to
-/// 0.02.
+/// Number of bins, counted from the first, with at least a hundred elements in the tall silo at a tenth of the paper's
+/// size. With fewer elements, the means of two packings differ by more than 0.008 (99 %), because the standard
+/// deviation of φ is 0.014 to 0.02.
 pub(crate) const FULL: usize = 6;
 
-/// Returns the mean packing fraction in each bin of |I₀|, over flowing and creeping elements of the bulk without the
-/// sides. `None` for a bin with few elements.
+/// Returns the mean packing fraction in each bin of |I₀| in steady flow, for elements away from sides and surface at
+/// any shear rate. A bin with too few elements gives `None`.
 pub(crate) fn over_inertia(done: &FinishedRun) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
     over_inertia_until(done, f64::INFINITY)
 }
 
-/// Returns [`over_inertia`] of the flow up to a time.
+/// Returns [`over_inertia`] for the frames up to `time` (τ).
 pub(crate) fn over_inertia_until(done: &FinishedRun, time: f64) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
-    // For a large silo, the table of elements skips some frames; the table of rates has all of them.
+    // For a large silo, the table `elements` skips some frames; the table `rates` has all of them.
     let table = done.table("rates").or_else(|_| done.table("elements"))?;
     let pairs = pairs_of(table, time, 0.0, ["inertial_number", "packing_fraction"])?;
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
 }
 
-/// Returns [`over_inertia`] of flowing elements. The first bin has none, because |D₀| = 0.02/τ is |I₀| = 0.007 at the
-/// pressure at 15 d.
+/// Returns [`over_inertia`] for elements with |D₀| of at least 0.02/τ. The first bin is empty, because this rate gives
+/// |I₀| = 0.007 at the pressure at 15 d.
 pub(crate) fn over_inertia_flowing(done: &FinishedRun) -> Result<[Option<f64>; INERTIA.len()], MissingData> {
     let pairs = pairs(done, FLOWING, ["inertial_number", "packing_fraction"])?;
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
 }
 
-/// Pairs the value in each bin of another flow with the other flow's value. A missing bin is an error.
+/// Pairs the values in bins of `found` (first) with the values of another flow in the same bins (second). A bin that
+/// `found` lacks is an error.
 pub(crate) fn in_bins_of(
     found: &[Option<f64>; INERTIA.len()],
     others: impl Iterator<Item = (usize, f64)>,
@@ -196,21 +201,22 @@ pub(crate) fn worst(pairs: &[[f64; 2]]) -> [f64; 2] {
     pairs.iter().max_by(|a, b| apart(a).total_cmp(&apart(b))).copied().unwrap_or([f64::NAN; 2])
 }
 
-/// Returns the mean of the second values of pairs whose first value lies in a bin.
+/// Returns the mean of the second values of pairs whose first value is in a bin; `None` for too few pairs.
 fn in_bin(pairs: &[[f64; 2]], [low, high]: [f64; 2]) -> Option<f64> {
     let values: Vec<f64> = pairs.iter().filter(|pair| (low..high).contains(&pair[0])).map(|pair| pair[1]).collect();
     (values.len() >= FEWEST).then(|| mean(&values))
 }
 
-/// Strain |E| beyond which the packing fraction is at its plateau.
+/// Strain |E| beyond which the packing fraction has reached its plateau.
 const PLATEAU: f64 = 0.4;
 
-/// Returns the height above which tracers are read (d). Below it, tracers leave, or boxes of 5 d contain fixed grains.
+/// Returns the height above which tracers are read (d). Tracers below 2.5 d leave a draining silo. In a pushed silo,
+/// boxes of 5 d around tracers below 10 d contain fixed grains.
 pub(crate) fn lowest(done: &FinishedRun) -> f64 {
     if done.scene.driven.is_empty() { 2.5 } else { 10.0 }
 }
 
-/// Returns strain |E| and packing fraction of tracers.
+/// Returns pairs of strain |E| and packing fraction of tracers above [`lowest`].
 pub(crate) fn strained(done: &FinishedRun) -> Result<Vec<[f64; 2]>, MissingData> {
     let rows = Rows::from_table(done.table("tracers")?, ["z", "strain", "packing_fraction"])?;
     let lowest = lowest(done);
@@ -227,7 +233,7 @@ pub(crate) fn plateau(done: &FinishedRun) -> Result<f64, MissingData> {
 pub(crate) const STRAIN: [[f64; 2]; 8] =
     [[0.02, 0.04], [0.04, 0.08], [0.08, 0.1], [0.1, 0.15], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.8]];
 
-/// Returns the mean packing fraction of tracers in bins of strain.
+/// Returns the mean packing fraction of tracers in bins of strain; `None` for a bin with too few tracers.
 pub(crate) fn over_strain(done: &FinishedRun, bins: &[[f64; 2]]) -> Result<Vec<Option<f64>>, MissingData> {
     let pairs = strained(done)?;
     Ok(bins.iter().map(|&bin| in_bin(&pairs, bin)).collect())
@@ -265,7 +271,8 @@ pub(crate) fn onset(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(median(&before_dilation(done)?))
 }
 
-/// Returns an angle of the flowing blocks of the bulk, for single frames or for windows.
+/// Returns a column of the table `blocks`, such as an angle, for flowing blocks away from sides and surface. `averaged`
+/// selects windows of frames instead of single frames.
 pub(crate) fn angles(done: &FinishedRun, flow: Flow, averaged: bool, name: &str) -> Result<Vec<f64>, MissingData> {
     let names = ["time", "frames", "x", "z", "side", "surface", "shear_rate", name];
     let rows = Rows::from_table(done.table("blocks")?, names)?;
@@ -280,29 +287,29 @@ pub(crate) fn angles(done: &FinishedRun, flow: Flow, averaged: bool, name: &str)
     if values.len() < 4 { Err(MissingData("four flowing blocks".to_owned())) } else { Ok(values) }
 }
 
-/// Returns the mean rotation about y from the axes of T to the axes of D, multiplied by the sign of x. With this sign,
-/// both halves of a symmetric flow contribute equally.
+/// Returns the mean rotation (degrees) about y from the axes of T to the axes of D, multiplied by the sign of x. With
+/// this sign, both halves of a symmetric flow contribute equally.
 pub(crate) fn turn(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
     let (turns, places) = (angles(done, flow, false, "turn")?, angles(done, flow, false, "x")?);
-    // The sense from x to z is opposite to a positive rotation about y.
+    // The column `turn` counts from x to z, which is opposite to a positive rotation about y.
     Ok(turns.iter().zip(&places).map(|(turn, x)| -turn * x.signum()).sum::<f64>() / turns.len() as f64)
 }
 
-/// Returns a column of the table of the whole silo, in steady flow.
+/// Returns a column of the table `whole`, which describes the whole silo, in steady flow.
 pub(crate) fn whole(done: &FinishedRun, name: &str) -> Result<Vec<f64>, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["time", name])?;
     Ok(rows.whole().filter(|row| row[0] >= STEADY - 1e-9).map(|row| row[1]).collect())
 }
 
-/// Returns the packing fraction of the deposit: the bulk in the first frame.
+/// Returns the packing fraction of the deposit: the mean over elements away from sides and surface in the first frame.
 pub(crate) fn deposit(done: &FinishedRun) -> Result<f64, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["packing_fraction"])?;
     let first = rows.whole().next();
     first.map(|[packing]| packing).ok_or_else(|| MissingData("a bulk at the start".to_owned()))
 }
 
-/// Returns the number of grains that have left by the last frame: their centres are below the floor, or they are
-/// removed.
+/// Returns the number of grains that have left the silo by the last frame. Their centres are below the floor, or they
+/// have been removed.
 pub(crate) fn gone(done: &FinishedRun) -> Result<f64, MissingData> {
     let rows = Rows::from_table(done.table("whole")?, ["grains"])?;
     let last = rows.whole().last();
@@ -310,7 +317,7 @@ pub(crate) fn gone(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.scene.grains.len() as f64 - there)
 }
 
-/// Shifts a quantity by half the rows of the table, so that each element has the value of another element.
+/// Shifts a column by half the rows of the table, so that each element has the value of another element.
 fn rotate(tables: &mut [Table], name: &str) {
     for table in tables {
         for (column, values) in table.columns.iter().zip(&mut table.values) {
@@ -322,22 +329,22 @@ fn rotate(tables: &mut [Table], name: &str) {
     }
 }
 
-/// Gives each element the friction of another element, for a control.
+/// Replaces sin φ of each element by the value of another element, for a negative control.
 pub(crate) fn friction_elsewhere(tables: &mut [Table]) {
     rotate(tables, "sine_of_friction");
 }
 
-/// Replaces the sine of the friction angle by its tangent, for a control.
+/// Replaces sin φ by tan φ, for a negative control.
 pub(crate) fn tangent(tables: &mut [Table]) {
     change(tables, "sine_of_friction", |table, row| at(table, "sine_of_friction", row).asin().tan());
 }
 
-/// Gives each element the rate of another element, for a control.
+/// Replaces the shear rate from displacements of each element by the value of another element, for a negative control.
 pub(crate) fn rate_elsewhere(tables: &mut [Table]) {
     rotate(tables, "shear_rate_between");
 }
 
-/// Changes a column row by row, as a function of the table and the row.
+/// Replaces a column. `to` computes each new value from the table and the row.
 fn change(tables: &mut [Table], name: &str, to: impl Fn(&Table, usize) -> f64) {
     for table in tables {
         if let Some(place) = table.columns.iter().position(|column| column == name) {
@@ -351,31 +358,31 @@ fn at(table: &Table, name: &str, row: usize) -> f64 {
     table.column(name).map_or(f64::NAN, |values| values[row])
 }
 
-/// Compares D of each block with the stress of another block, for a control.
+/// Compares D of each block with the stress of another block, for a negative control.
 pub(crate) fn stress_elsewhere(tables: &mut [Table]) {
     change(tables, "largest", |table, row| at(table, "largest_elsewhere", row));
 }
 
-/// Turns D by ten degrees about y, for a control.
+/// Rotates D by ten degrees about y, outwards in both halves, for a negative control.
 pub(crate) fn rate_turned(tables: &mut [Table]) {
     change(tables, "turn", |table, row| at(table, "turn", row) - 10.0 * at(table, "x", row).signum());
 }
 
-/// Computes the inertial number with a density of 1 instead of 6/π, for a control.
+/// Computes the inertial number with a density of 1 instead of 6/π, for a negative control.
 pub(crate) fn density_of_one(tables: &mut [Table]) {
     change(tables, "inertial_number", |table, row| {
         at(table, "inertial_number", row) * (std::f64::consts::PI / 6.0).sqrt()
     });
 }
 
-/// Omits elements after the end of the prototype's runs from φ over |I₀|, for a control.
+/// Omits elements after 14 τ, the end of the prototype's runs, from φ against |I₀|, for a negative control.
 pub(crate) fn without_the_end(tables: &mut [Table]) {
     change(tables, "inertial_number", |table, row| {
         if at(table, "time", row) > 14.0 + 1e-9 { f64::NAN } else { at(table, "inertial_number", row) }
     });
 }
 
-/// Takes radii 1 % too large, for a control.
+/// Computes packing fractions with radii 1 % too large, for a negative control.
 pub(crate) fn larger_radii(tables: &mut [Table]) {
     change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.01_f64.powi(3));
 }

@@ -1,4 +1,4 @@
-//! Figures of silos as in the paper, from the tables of their runs.
+//! Figures of a silo, like those of the paper, from the tables of its run.
 
 use super::axes;
 use super::ensemble::{Flow, INERTIA, STRAIN, over_inertia, over_strain, strained};
@@ -9,16 +9,17 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 use nalgebra::Vector3;
 
-/// Frames of the animation on a page.
+/// Largest number of frames of the animation.
 const FRAMES: usize = 24;
 /// Largest number of points in a scatter plot; more points overlap.
 const CLOUD: usize = 600;
 
-/// Inertial number below which an element is at rest. Fixed grains have one from rounding.
+/// Inertial number below which an element is at rest. Rounding errors give fixed grains an inertial number slightly
+/// above zero.
 const STILL: f64 = 1e-5;
 
-/// Returns all figures of a silo: the animation, axes of stress and rate, single forces, φ over |I₀| with the
-/// prototype's bins, sin φ over φ along tracers, φ over strain.
+/// Returns all figures of a silo: the animation, axes of stress and strain rate, contact forces, φ against |I₀| with
+/// the prototype's bins, sin φ against φ along tracers, φ against strain.
 pub(crate) fn all(done: &FinishedRun, flow: Flow, bins: &[CitedNumber]) -> Vec<Figure> {
     let axes = axes::all(done, flow).into_iter();
     let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
@@ -35,7 +36,7 @@ pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64;
     (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
 }
 
-/// Thins points evenly to at most `most`.
+/// Returns at most `most` of the points, at equal intervals.
 pub(super) fn thinned(points: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
     let every = points.len().div_ceil(most).max(1);
     points.into_iter().step_by(every).collect()
@@ -81,7 +82,7 @@ fn film(done: &FinishedRun) -> Option<Figure> {
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
-/// Returns |I₀| and φ of the elements of the bulk in steady flow, without fixed grains.
+/// Returns |I₀| and φ of elements in steady flow, away from sides and surface and without fixed grains.
 pub(super) fn flowing(done: &FinishedRun) -> Vec<(f64, f64)> {
     let Ok(table) = done.table("elements") else { return Vec::new() };
     let all = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
@@ -89,14 +90,14 @@ pub(super) fn flowing(done: &FinishedRun) -> Vec<(f64, f64)> {
     all.filter(flows).map(|row| (row[3], row[4])).collect()
 }
 
-/// Returns the figure of φ over |I₀| (figure 6).
+/// Returns the figure of φ against |I₀| (figure 6).
 fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let cloud = flowing(done);
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
     let ours = over_inertia(done).ok()?;
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
-    // The fit is a straight line on linear axes, and a curve over the logarithm of |I₀|.
+    // The fit is a straight line on linear axes, and a curve against the logarithm of |I₀|.
     let line = (0..=40).map(|at| 5e-4 * 24_f64.powf(f64::from(at) / 40.0)).map(|rate| (rate, 0.635 - rate / 0.123));
     let caption = "Each small circle is an element at one time of the steady flow. The mean packing fraction of bins \
                    of |I₀| is compared with a prototype. The dashed curve is the paper's fit |I₀| = .123 (.635 − φ), \
@@ -115,7 +116,7 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     ))
 }
 
-/// Returns the figure of sin φ over φ along tracers (figure 7).
+/// Returns the figure of sin φ against φ along tracers (figure 7).
 fn along_tracers(done: &FinishedRun) -> Option<Figure> {
     let table = done.table("tracers").ok()?;
     let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
@@ -148,7 +149,7 @@ fn along_tracers(done: &FinishedRun) -> Option<Figure> {
     ))
 }
 
-/// Returns the figure of φ over |E| (figure 8).
+/// Returns the figure of φ against |E| (figure 8).
 fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let cloud = strained(done).ok()?.into_iter().map(|[strain, packing]| (strain, packing)).collect();
     let means = over_strain(done, &STRAIN).ok()?;

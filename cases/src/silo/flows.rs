@@ -1,18 +1,18 @@
-//! Three flows in one figure: figures 6, 7 and 8 of the paper, each of which shows all of its simulations.
+//! Figures 6, 7 and 8 of the paper, each with three flows. The paper also shows all flows in one figure.
 
 use super::collapse::ComparedFlow;
 use super::ensemble::{self, INERTIA, STRAIN};
 use super::figures::{flowing, rows, thinned};
 use grainbench_harness::prelude::*;
 
-/// Largest inertial number of figure 6. Elements over the slit are beyond it.
+/// Largest inertial number in figure 6. Elements above the slit have larger inertial numbers and are not plotted.
 const FASTEST: f64 = 0.15;
-/// Number of frames in the moving average along a tracer, because instantaneous stresses are noisy.
+/// Number of successive frames in each mean along a tracer. Means are plotted because instantaneous stresses are noisy.
 const SMOOTH: usize = 5;
 /// Plotted ranges of packing fraction, sin φ and strain.
 const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.8], [0.0, 0.9]];
 
-/// Flows with their labels.
+/// Finished runs of several flows with their labels.
 type Flows = [(&'static str, FinishedRun)];
 
 /// Returns the figures of a run and of the stored results of other flows.
@@ -22,7 +22,7 @@ pub(crate) fn figures(done: &FinishedRun, label: &'static str, others: &[Compare
     vec![over_rate(&flows), along_tracers(&flows), over_strain(&flows)]
 }
 
-/// Returns the figure of φ over |I₀| on linear axes (figure 6).
+/// Returns the figure of φ against |I₀| on linear axes (figure 6).
 fn over_rate(flows: &Flows) -> Figure {
     let mut curves = Vec::new();
     for (label, done) in flows {
@@ -44,7 +44,7 @@ fn over_rate(flows: &Flows) -> Figure {
     Figure::graph("inertia-of-flows", "Packing fraction over the inertial number, three flows", caption, axes, curves)
 }
 
-/// Returns the paths of the tracers of a flow in two quantities, averaged over some frames.
+/// Returns the paths of a flow's tracers in the plane of two quantities, as lines between means over [`SMOOTH`] frames.
 fn courses(done: &FinishedRun, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
     let Ok(table) = done.table("tracers") else { return Vec::new() };
     let all = rows(table, ["tracer", "z", names[0], names[1]]);
@@ -63,7 +63,7 @@ fn courses(done: &FinishedRun, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64
     lines
 }
 
-/// Line width over the largest width.
+/// Width of a path, as a fraction of the largest line width.
 const WIDTH: f64 = 0.15;
 
 /// Returns the plot of the tracer paths of all flows.
@@ -74,7 +74,7 @@ fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2],
     LinePlot { axes: axes.map(str::to_owned), to_scale: false, sheets: vec![sheet] }
 }
 
-/// Returns the figure of sin φ over φ (figure 7).
+/// Returns the figure of sin φ against φ (figure 7).
 fn along_tracers(flows: &Flows) -> Figure {
     let [packing, sine, _] = SEEN;
     let names = ["packing_fraction", "sine_of_friction"];
@@ -93,13 +93,13 @@ fn along_tracers(flows: &Flows) -> Figure {
     Figure::lines("tracers-of-flows", "sin φ over the packing fraction of tracer elements, three flows", &caption, plot)
 }
 
-/// Returns the figure of φ over |E| (figure 8).
+/// Returns the figure of φ against |E| (figure 8).
 fn over_strain(flows: &Flows) -> Figure {
     let [packing, _, strain] = SEEN;
     let plateau =
         flows.iter().filter_map(|(label, done)| Some(format!("{:.3} ({label})", ensemble::plateau(done).ok()?)));
     let plateau: Vec<String> = plateau.collect();
-    // The mean curve of the first flow guides the eye.
+    // Only the first flow has a curve of means, as a visual guide.
     let means = flows.first().and_then(|(label, done)| Some((label, ensemble::over_strain(done, &STRAIN).ok()?)));
     let means = means.map(|(label, all)| {
         let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);

@@ -1,5 +1,5 @@
-//! Data of the last frame of a silo: principal axes of stress and rate of its blocks, and contact forces in a part of
-//! the silo (figures 4 and 5 of the paper).
+//! Data of the last frame of a silo: principal axes of stress T and strain rate D of its blocks, and contact forces in
+//! a part of the silo (figures 4 and 5 of the paper).
 
 use super::ensemble::{FLOWING, Flow};
 use grainbench_fields::element::Element;
@@ -11,8 +11,9 @@ use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
 /// Columns of the table of axes, one row per block. The three axes of T, from the smallest principal value to the
-/// largest, are projected on the x-z plane. Each axis has the length √|principal value of the deviator| (√(mg/d²)). If
-/// the block flows, the projected axes of the smallest and the largest principal value of D follow.
+/// largest, are projected on the x-z plane. Each axis has the length √|principal value of the deviator| (√(mg/d²)). The
+/// last four columns are the projected axes of the smallest and the largest principal value of D; they are empty unless
+/// the block flows.
 pub(super) const AXES: [&str; 12] = [
     "x",
     "z",
@@ -30,17 +31,17 @@ pub(super) const AXES: [&str; 12] = [
 /// Columns of the table of forces, one row per contact between grains: both centres and the magnitude of the force.
 pub(super) const FORCES: [&str; 5] = ["from_x", "from_z", "to_x", "to_z", "force"];
 
-/// Returns the part of a silo whose single forces are plotted: lower and upper corner in x and z (d).
+/// Returns the part of a silo whose contact forces are plotted: lower and upper corner in x and z (d).
 pub(super) const fn part(flow: Flow) -> [[f64; 2]; 2] {
     match flow {
-        // Boundary between the funnel and the resting grains beside it.
+        // Boundary between the flowing funnel and the resting grains beside it.
         Flow::Drained => [[0.0, 5.0], [10.0, 15.0]],
         // Above the edge of the moving floor, where a shear band rises.
         Flow::Pushed => [[-5.0, 10.0], [5.0, 20.0]],
     }
 }
 
-/// Returns the axes of the blocks that contain enough grains.
+/// Returns the axes of blocks that contain enough grains and are not at the surface.
 pub(super) fn axes(blocks: &[Element], masked: &[MaskReasons], grid: &Grid) -> Table {
     let mut table = Table::new("axes", &AXES);
     for (cell, element) in blocks.iter().enumerate().filter(|(cell, _)| !masked[*cell].few && !masked[*cell].surface) {
@@ -76,7 +77,8 @@ pub(super) fn forces(snapshot: &Snapshot, [low, high]: [[f64; 2]; 2]) -> Table {
         }
         let radius = |id: u32| Some(snapshot.grain(id)?.radius);
         let (Some(one), Some(two)) = (radius(contact.grain), radius(other)) else { continue };
-        // Positions from the contact point, so that a pair across the periodic boundary is not drawn across the silo.
+        // Both positions follow from the contact point, so that a pair across the periodic boundary is not drawn across
+        // the silo.
         let from = contact.point - contact.normal * one;
         let to = contact.point + contact.normal * two;
         let force = (contact.shear_force - contact.normal * contact.normal_force).norm();

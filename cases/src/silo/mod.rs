@@ -1,5 +1,5 @@
-//! Common parts of the silo cases, which read the flow as granular elements. Spheres flow out of a silo, or are pushed
-//! through it from below. Lengths are in diameters d, times in τ = √(d/g); the mass of a grain is 1.
+//! Parts shared by the silo cases, which evaluate the flow in granular elements. Spheres flow out of a silo, or are
+//! pushed through it from below. Lengths are in diameters d, times in τ = √(d/g); the mass of a grain is 1.
 //!
 //! Source: C. H. Rycroft, K. Kamrin and M. Z. Bazant, *Assessing continuum postulates in simulations of granular flow* (2009).
 

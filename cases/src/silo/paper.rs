@@ -1,8 +1,9 @@
-//! Claims on silos at the paper's size. The expected values are printed in the paper. If the paper prints none, they
-//! are the prototype's values at a tenth of that size. There is one deposit of this size, so no tolerance comes from
-//! the spread over deposits. Each tolerance was required before the first run of this size. The paper's value of 0.6
-//! for sin φ before dilation was required too and was not met. The claim uses the prototype's value with the tolerance
-//! of a tenth of the size; the derivation states this.
+//! Claims on silos at the paper's size. The expected values are printed in the paper, or else are the prototype's
+//! values at a tenth of this size. There is only one deposit of this size, so tolerances do not come from the spread
+//! over deposits. All tolerances were required before the first run of this size.
+//!
+//! The paper's value of 0.6 for sin φ before dilation was also required, but our runs do not reach it. The claim on
+//! this sin φ therefore uses the value of the prototype and the tolerance for a tenth of the size (derivation).
 
 use super::ELEMENTS;
 use super::collapse::{self, ComparedFlow};
@@ -15,37 +16,36 @@ use grainbench_harness::source::CitedNumber;
 
 /// A silo at the paper's size.
 pub(crate) struct PaperSize {
-    /// Variant of the scene.
     pub(crate) variant: &'static str,
-    /// Cause of the flow.
     pub(crate) flow: Flow,
-    /// Label in figures.
+    /// Label of this flow in figures.
     pub(crate) label: &'static str,
-    /// Time step.
     pub(crate) step: Level,
     /// Packing fractions of the prototype in the first bins of |I₀|.
     pub(crate) bins: &'static [CitedNumber],
-    /// Expected values, if the silo drains. In draining silos, enough elements strain for paths of tracers and for
-    /// curves over the inertial number.
+    /// Expected values of a draining silo; `None` for a pushed silo. In a pushed silo, too few elements deform for
+    /// tracer paths and for curves against the inertial number.
     pub(crate) drained: Option<DrainExpectations>,
 }
 
 /// Expected values of a draining silo at the paper's size.
 pub(crate) struct DrainExpectations {
-    /// Packing fraction of strained tracers in the prototype.
+    /// Packing fraction of tracers strained by more than 0.4, in the prototype.
     pub(crate) plateau: CitedNumber,
-    /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which is not met (derivation).
+    /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which our runs do not reach
+    /// (derivation).
     pub(crate) onset: CitedNumber,
-    /// Number of bins of |I₀| that are compared up to 14 τ. A last bin outside this number is compared by its mean over
-    /// the whole flow, because few elements over the slit are in it.
+    /// Number of bins of |I₀| whose worst error is tested. A further bin in `bins` of [`PaperSize`] is tested by its
+    /// mean over the whole steady flow, because it contains few elements, all above the slit.
     pub(crate) bins: usize,
-    /// Another draining silo, for the curve over |I₀|. If present, all other flows are compared over |E|.
+    /// Another draining silo, whose curve of φ against |I₀| is compared. If present, the curves of φ against |E| of all
+    /// `others` are compared too.
     pub(crate) beside: Option<&'static ComparedFlow>,
-    /// Other flows in the figures.
+    /// Other flows, for figures and for the curves of φ against |E|.
     pub(crate) others: &'static [ComparedFlow],
 }
 
-/// Returns a negative control that reads sin φ as its tangent, as the paper's wording for μ suggests.
+/// Returns a negative control that reads tan φ instead of sin φ, as the paper's wording for μ suggests.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
 }
@@ -58,7 +58,7 @@ fn elsewhere() -> Control {
     Control::misread("each block beside the stress of another", ensemble::stress_elsewhere)
 }
 
-/// Suffix of the quantities, to distinguish them from those at a tenth of the size.
+/// Suffix that distinguishes quantities at the paper's size from those at a tenth of this size.
 const SUFFIX: &str = ", size of the paper";
 /// Reason for the tolerances.
 const TENTH: &str = "the tolerance of the silos of a tenth of the size, from two to four runs of the prototype";
@@ -66,10 +66,11 @@ const TENTH: &str = "the tolerance of the silos of a tenth of the size, from two
 /// Duration of the prototype's draining flows (τ).
 const PROTOTYPE: f64 = 14.0;
 
-/// Reason for the difference from the prototype after that time.
-const STRAINED: &str = "the prototype ends at 14 τ; later, slow elements have a packing fraction lower by 0.009 to \
-                        0.018, because they are strained more and φ depends on |I₀| alone only in steady shear";
-/// Claims φ over |I₀| up to a time against the prototype, in each bin of the prototype.
+/// Reason for the difference from the prototype after 14 τ.
+const STRAINED: &str = "the prototype ends at 14 τ. Afterwards the packing fraction of slow elements is lower by 0.009 \
+                        to 0.018, because these elements are strained further and φ is a function of |I₀| only in \
+                        steady shear";
+/// Returns the claim that φ agrees with the prototype in each bin of |I₀|, for frames up to `until` (τ).
 fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity
         .equals(bins[0].source(), move |done| {
@@ -82,13 +83,13 @@ fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, co
         .refuses(control)
 }
 
-/// Returns a tolerance that was required beforehand.
+/// Returns a tolerance that was required before the run existed.
 fn asked(allowed: f64, what: &str) -> Tolerance {
     required(allowed, format!("required in advance: {what}"))
 }
 
 impl PaperSize {
-    /// Returns the run, which takes a few minutes on two cores.
+    /// Returns the run of this silo. It takes a few minutes on two cores.
     pub(crate) fn run(&self) -> Run {
         Run::new(self.variant, "dem", self.step.resolution).read_by(ELEMENTS).kept().paper_size()
     }
@@ -97,12 +98,11 @@ impl PaperSize {
         claim(format!("{quantity}{SUFFIX}"), unit).run(self.run())
     }
 
-    /// Returns a quantity with a known deviation.
+    /// Starts a claim with a documented deviation of at most 0.02, whose reason is `reason`.
     fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
         claim(format!("{quantity}{SUFFIX}"), unit).run(self.run().known(reason).up_to(0.02))
     }
 
-    /// Returns the claims.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let flow = self.flow;
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
@@ -126,7 +126,7 @@ impl PaperSize {
                 .refuses(tangent()),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
-        // Few blocks of a pushed silo flow throughout twenty frames.
+        // In a pushed silo, only few blocks flow in all twenty frames of a window.
         let drained = self.drained.iter();
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
         all.extend(drained.flat_map(|numbers| self.of_drains(numbers)));
@@ -185,7 +185,7 @@ impl PaperSize {
         all
     }
 
-    /// Returns the figures if the run is stored or can be done.
+    /// Returns the figures; none if the run is neither stored nor possible.
     pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
         let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
         let mut all = super::figures::all(&done, self.flow, self.bins);

@@ -1,4 +1,4 @@
-//! Reading of the snapshots of a silo as granular elements of 2.5 d, as blocks of 5 d, and along tracers.
+//! Evaluation of the snapshots of a silo in granular elements of edge 2.5 d, in blocks of edge 5 d, and along tracers.
 
 use super::ensemble::{Flow, INERTIA};
 use super::instant;
@@ -15,21 +15,22 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::{Dimension, Scene};
 use nalgebra::{Matrix3, Vector3};
 
-/// Reading of every silo.
+/// Evaluation of the snapshots of every silo.
 pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin };
 
-/// Size of an element in x and z (m). In y, an element is as long as the period.
+/// Edge of an element in x and z (d). In y, an element is as long as the period.
 pub(super) const ELEMENT: f64 = 2.5;
-/// Time from which the flow counts as steady (s). Windows begin there.
+/// Time from which the flow counts as steady (τ). The first window of frames begins at this time.
 pub(super) const STEADY: f64 = 6.0;
 /// Number of frames whose stresses and motions are averaged in a window.
 const WINDOW: usize = 20;
-/// Largest number of stored rows of elements, and of blocks of single frames. Larger runs store only some frames.
+/// Largest number of stored rows of elements, and of blocks in single frames. For larger runs, only some frames are
+/// stored.
 const MOST_ROWS: usize = 30_000;
-/// Plane in which axes rotate: x and z.
+/// Plane in which rotations of axes are measured: x and z.
 const PLANE: [usize; 2] = [0, 2];
-/// Elements need at least eight grains. A cell is at the surface if it, or the cell above it, has a packing fraction
-/// below 0.4.
+/// Conditions for excluding elements. An element needs at least eight grains. It is at the surface if its packing
+/// fraction, or that of the element above, is less than 0.4.
 const MASKS: Masks = Masks {
     fewest: 8,
     surface: 0.4,
@@ -44,7 +45,8 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     let width = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.x, domain.high.x]);
     let depth = scene.domain.as_ref().map_or([-0.5, 0.5], |domain| [domain.low.y, domain.high.y]);
     let top = scene.grains.iter().map(|grain| grain.position.z + grain.radius).fold(0.0, f64::max);
-    // Whole blocks of two elements, starting on the floor. One more block gives the surface a cell above it.
+    // The height is a whole number of blocks above the floor, each two elements high. The extra block on top gives each
+    // surface cell a cell above it.
     let height = ((top / (2.0 * ELEMENT)).ceil() + 1.0) * 2.0 * ELEMENT;
     let corners = (Vector3::new(width[0], depth[0], 0.0), Vector3::new(width[1], depth[1], height));
     let grid_of_size = |size: f64| Grid::filling(corners, Vector3::new(size, depth[1] - depth[0], size));
@@ -66,8 +68,8 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     })
 }
 
-/// Columns of the table of elements, before the quantities of [`QUANTITIES`]. Elements on the floor do not count as
-/// elements at a side.
+/// First columns of the table of elements; [`QUANTITIES`] follow. `side` is 1 at the walls in x. The floor does not
+/// count as a side.
 const PLACED: [&str; 5] = ["time", "x", "z", "side", "surface"];
 /// Quantities of elements, by their names in [`COLUMNS`].
 const QUANTITIES: [&str; 8] = [
@@ -80,7 +82,7 @@ const QUANTITIES: [&str; 8] = [
     "velocity_x",
     "velocity_z",
 ];
-/// Columns of the table of all frames, which contains only elements away from the sides and the surface.
+/// Columns of the table `rates`. This table covers all frames, but only moving elements away from sides and surface.
 const RATES: [&str; 6] = ["time", "side", "surface", "shear_rate", "inertial_number", "packing_fraction"];
 /// Columns of the table of blocks with edge 5 d (d: grain diameter). `frames` is the number of averaged frames.
 /// `largest` and `smallest` are angles between the principal axes of the stress T and of the strain rate D.
@@ -100,9 +102,10 @@ const BLOCKS: [&str; 13] = [
     "axis_of_stress",
     "shear_stress",
 ];
-/// Columns of the table of the whole silo. `grains` counts centres above the floor. Stresses are means over all
-/// elements below the surface, over their pressure; the last column is the pressure of the right half over the left
-/// half.
+/// Columns of the table of the whole silo. `grains` is the number of centres above the floor. `packing_fraction` is the
+/// mean over elements away from sides and surface. `shear_over_pressure` is the sum of the shear stress over all
+/// elements below the surface, divided by the sum of their pressure. `right_over_left` is the pressure for x > 0
+/// divided by the pressure for x < 0.
 const WHOLE: [&str; 5] = ["time", "grains", "packing_fraction", "shear_over_pressure", "right_over_left"];
 
 struct Silo {
@@ -110,13 +113,11 @@ struct Silo {
     blocks: Grid,
     /// Interval in frames at which blocks of single frames are stored.
     every_blocks: usize,
-    /// Cause of the flow.
     flow: Flow,
-    /// Previous snapshot.
     before: Option<Snapshot>,
-    /// |D₀| of each element, from displacements since the previous frame.
+    /// |D₀| of each element in each frame, from displacements since the previous frame.
     rates: Vec<Vec<Option<f64>>>,
-    /// Stress and L of each block, for the frames of the present window.
+    /// All blocks, with stress and velocity gradient L, in each frame of the present window.
     window: Vec<Vec<Element>>,
     of_blocks: Table,
     whole: Table,
@@ -146,7 +147,7 @@ impl Reader for Silo {
 }
 
 impl Silo {
-    /// Adds the blocks of a snapshot, and of the window that ends with it.
+    /// Adds the blocks of a snapshot. If a window ends with this snapshot, adds the means over the window.
     fn see_blocks(&mut self, snapshot: &Snapshot) {
         let blocks = elements(snapshot, Dimension::Three, &self.blocks);
         if self.course.frames.len().is_multiple_of(self.every_blocks) {
@@ -164,7 +165,7 @@ impl Silo {
         }
     }
 
-    /// Adds the last frame's row of the whole silo.
+    /// Adds the row of the whole silo in the last frame.
     fn see_whole(&mut self) {
         let (Some(frame), Some(snapshot)) = (self.course.frames.last(), &self.before) else { return };
         let above = snapshot.grains.iter().filter(|grain| grain.position.z >= 0.0).count();
@@ -193,7 +194,7 @@ impl Silo {
         ]);
     }
 
-    /// Returns the table of elements with at least eight grains, at the stored frames.
+    /// Returns the table of elements with at least eight grains, in the stored frames.
     fn elements(&self) -> Table {
         let columns = [&PLACED[..], &QUANTITIES, &["shear_rate_between"]].concat();
         let mut table = Table::new("elements", &columns);
@@ -220,8 +221,8 @@ impl Silo {
         (self.course.grid.cells() * self.course.frames.len()).div_ceil(MOST_ROWS).max(1)
     }
 
-    /// Returns the data of φ over |I₀| for all frames, if only some frames are stored. Few elements are as fast as the
-    /// elements at a slit.
+    /// Returns the table `rates`, with φ and |I₀| in all frames; `None` if the table of elements has all frames. All
+    /// frames are needed, because few elements reach the inertial numbers above the slit.
     fn rates(&self) -> Option<Table> {
         let mut table = Table::new("rates", &RATES);
         let columns = RATES[3..].iter().filter_map(|name| COLUMNS.iter().find(|column| column.name == *name));
@@ -238,14 +239,14 @@ impl Silo {
         (self.every() > 1).then_some(table)
     }
 
-    /// Returns the table of tracers in the bulk: position, strain, and the quantities around them.
+    /// Returns the table of tracers away from the surface: position, strain, packing fraction and sin φ.
     fn tracers(&self) -> Table {
         let names = ["packing_fraction", "sine_of_friction"];
         let mut table = Table::new("tracers", &["time", "tracer", "x", "z", "strain", names[0], names[1]]);
         for stop in self.course.trails.iter().flat_map(|trails| &trails.stops) {
             let frame = &self.course.frames[stop.frame];
             let is_bulk = |cell: usize| !frame.masked[cell].surface && !frame.masked[cell].few;
-            // Between the bulk and its surface, an interpolated value mixes both.
+            // At the boundary between the bulk and its surface, interpolation would mix values of both.
             let over = stop.position + Vector3::new(0.0, 0.0, 0.5 * ELEMENT);
             if ![stop.position, over].iter().all(|place| self.course.grid.find(*place).is_some_and(is_bulk)) {
                 continue;
@@ -267,8 +268,8 @@ fn is_side(grid: &Grid, cell: usize) -> bool {
     column == 0 || column + 1 == grid.count[0]
 }
 
-/// Returns the element with the mean tensors of a block over some frames. A tensor is missing if the block lacks it in
-/// a frame.
+/// Returns the element whose stress and velocity gradient are means over some frames. A tensor is missing if the block
+/// lacks it in any of these frames.
 fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
     let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
     let count = all.len() as f64;
@@ -307,7 +308,7 @@ fn add_blocks(table: &mut Table, grid: &Grid, time: f64, frames: usize, blocks: 
     }
 }
 
-/// Returns the angle of the axis of the largest principal stress from x towards z (degrees), −90 to 90.
+/// Returns the angle from x towards z of the axis of the largest principal stress (degrees, −90 to 90).
 fn axis(stress: &Matrix3<f64>) -> f64 {
     let all = principal(stress, 3);
     let largest = all.axes[all.axes.len() - 1];
