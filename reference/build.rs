@@ -1,5 +1,5 @@
-//! Publishes the folder of this crate to dependent crates, and lists the file formats. A new format needs only one
-//! new file.
+//! Publishes the folder of this crate to dependent crates, and generates the list of file formats from the files in
+//! `src/read/formats`. A new format therefore needs only a new file.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the code with the modules in a folder and the list of their formats.
+/// Returns Rust code that declares each file in a folder as a module and lists their formats.
 fn list(folder: &Path) -> Result<String, Failure> {
     let mut files = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     files.retain(|path| path.extension().is_some_and(|end| end == "rs"));

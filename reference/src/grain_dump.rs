@@ -1,4 +1,4 @@
-//! Snapshots from dumps of grains without a scene. Data that the columns lack is supplied separately.
+//! Snapshots from dumps of grains without a scene. Options supply the data that the columns lack.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -15,10 +15,10 @@ use crate::read::numbers::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
-/// Data and options in addition to a dump.
+/// Options for reading a dump, with data that the dump may lack.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DumpOptions {
-    /// Names of the columns in the files.
+    /// Names of columns in the files, if they differ from those of LAMMPS.
     pub names: Names,
     /// Radius of every grain (m), needed if there is neither a column `radius` nor `diameter`.
     pub radius: Option<f64>,
@@ -26,9 +26,9 @@ pub struct DumpOptions {
     pub density: Option<f64>,
     /// Time step (s), needed if the file does not contain the time.
     pub time_step: Option<f64>,
-    /// If true, grains are discs in the plane.
+    /// True if the grains are discs in the plane z = 0; false for spheres.
     pub plane: bool,
-    /// If true, complete frames of a truncated file are read.
+    /// True to read the complete frames of a truncated file.
     pub partial: bool,
 }
 
@@ -44,13 +44,13 @@ pub struct GrainDump {
     entries: DumpSnapshot,
 }
 
-/// Positions of the columns in a dump.
+/// Indices of columns in a dump.
 struct Columns {
     id: usize,
     kind: Option<usize>,
     position: [Coordinate; 3],
     velocity: Option<[Option<usize>; 3]>,
-    /// Column of the radius, and factor of its values.
+    /// Index of the column of radii or diameters, and factor from its values to radii.
     radius: Option<(usize, f64)>,
     mass: Option<usize>,
     density: Option<usize>,
@@ -79,7 +79,7 @@ impl GrainDump {
     /// Reads the next snapshot. Returns `None` at the end of the dump of grains.
     ///
     /// # Errors
-    /// If a file is truncated, has unexpected content or lacks required data, or if contacts belong to other steps or
+    /// If a file is truncated, has unexpected content or lacks required data, or if contacts are for other steps or
     /// grains.
     pub fn read(&mut self) -> Result<Option<Snapshot>, ReadError> {
         match self.grains.read(&mut self.rows) {
@@ -92,7 +92,7 @@ impl GrainDump {
             Err(error) => return Err(error),
         }
         if self.rows.kind != DumpKind::Atoms {
-            let expected = "a dump of grains, `ITEM: ATOMS` (a dump of contacts is a second file)";
+            let expected = "a dump of grains with `ITEM: ATOMS` (a dump of contacts is a separate file)";
             return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
         }
         self.check_units()?;
@@ -124,13 +124,13 @@ impl GrainDump {
         Ok(Some(snapshot))
     }
 
-    /// Returns the position where the dump is truncated, if that is allowed.
+    /// Returns the error at the position where the dump is truncated, if truncation is allowed.
     #[must_use]
     pub fn cut(&self) -> Option<&str> {
         self.cut.as_deref()
     }
 
-    /// Returns an error if the unit of length is neither metre nor dimensionless.
+    /// Checks that the units of the file are SI or dimensionless.
     fn check_units(&self) -> Result<(), ReadError> {
         match self.rows.units.as_deref() {
             None | Some("si" | "lj") => Ok(()),
@@ -146,8 +146,8 @@ impl GrainDump {
         let [x, y, z] = self.rows.periodic;
         let is_crossed = [x, y, z].into_iter().zip(tilted).any(|(periodic, tilted)| periodic && tilted);
         if is_crossed && self.contacts.is_some() {
-            let expected = "a box with right angles where contacts cross periodic boundaries";
-            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "a tilted one"));
+            let expected = "a box with right angles, because contacts cross periodic boundaries";
+            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "a tilted box"));
         }
         Ok([x && !tilted[0], y && !tilted[1], z && !tilted[2]])
     }
@@ -209,7 +209,7 @@ impl GrainDump {
             id: id as u32,
             material: columns.kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
             radius,
-            // A value that the file does not contain is NaN.
+            // Values that the file does not contain are NaN.
             mass: mass.unwrap_or(f64::NAN),
             position,
             velocity,
@@ -224,8 +224,8 @@ impl GrainDump {
     }
 }
 
-/// Returns the contacts between the grains of a snapshot from a dump of contacts. `entries` holds the entries that
-/// were read last.
+/// Returns the contacts between the grains of a snapshot from a dump of contacts. `entries` holds the last step that
+/// has been read from this dump.
 pub(crate) fn contacts_of(
     snapshot: &Snapshot,
     reader: &mut DumpReader,
@@ -234,7 +234,7 @@ pub(crate) fn contacts_of(
     names: &Names,
 ) -> Result<Vec<ContactState>, ReadError> {
     let step = snapshot.step;
-    // Contacts can be written at more steps than grains.
+    // The dump of contacts may have more steps than the dump of grains.
     while entries.columns.is_empty() || entries.step < step {
         if !reader.read(entries)? {
             let expected = format!("the contacts of step {step}");
@@ -258,7 +258,7 @@ pub(crate) fn contacts_of(
             })
         };
         let (one, other) = (find(first)?, find(second)?);
-        // A list can contain a pair twice, once from each side. This is one contact.
+        // A dump may contain a contact twice, once from each grain.
         if one == other || !seen.insert((one.min(other), one.max(other))) {
             continue;
         }
@@ -274,7 +274,7 @@ pub(crate) fn contacts_of(
     Ok(contacts)
 }
 
-/// Returns the contact of two grains, given by their indices and the force on the first (N).
+/// Returns the contact of two grains of given indices. `force` is the force on the first grain (N).
 fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -> ContactState {
     let (first, second) = (&snapshot.grains[one], &snapshot.grains[other]);
     let length = snapshot.bounds.1 - snapshot.bounds.0;

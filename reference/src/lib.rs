@@ -1,7 +1,7 @@
-//! Readers for files of LAMMPS and LIGGGHTS, and the stored reference runs.
+//! Readers for files of LAMMPS, LIGGGHTS and other programs, input decks for these programs, and stored reference runs.
 //!
-//! Every content of a file is either read or refused. The error names the file and the position, and states the
-//! expected and the actual content. No input causes a panic, even if it is damaged.
+//! Content of a file is either read or refused. The error names the file and the position, and states the expected and
+//! the actual content. No input causes a panic, even if it is damaged.
 
 /// Folder of this crate. It contains literature values, prototypes, stored runs and estimated uncertainties.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");

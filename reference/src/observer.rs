@@ -1,4 +1,4 @@
-//! Record of a run of another program. It contains the probes of the scene that can be computed from a dump of grains.
+//! Record of a run of an external program, with the probes of the scene that follow from a dump of grains.
 
 use grainbench_scene::record::{GrainState, Series, Snapshot, StepState};
 use grainbench_scene::recorder::Recorder;
@@ -15,14 +15,14 @@ use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
-/// Names of columns in a file that differ from those in LAMMPS. Each entry is a pair of our name, such as `x`, `vx`
-/// or `omegaz`, and the name in the file.
+/// Names of columns in a file that differ from those of LAMMPS. Each entry is a pair of our name, such as `x`, `vx` or
+/// `omegaz`, and the name in the file.
 ///
-/// LAMMPS has no names for some columns. `angle` is the rotation angle of a disc (rad). `WALL.force_x` is the force
+/// For other quantities our names are: `angle` for the rotation angle of a disc (rad), and `WALL.force_x` for the force
 /// of the scene's wall `WALL` on a grain.
 ///
-/// Dumps of contacts have `id1`, `id2` and `force_x` (the force on the first grain). `tangential_x` is the tangential
-/// force if it has separate columns.
+/// In dumps of contacts, our names are `id1`, `id2`, and `force_x` for the force on the first grain. `tangential_x` is
+/// the tangential force, if it has separate columns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<(String, String)>);
 
@@ -33,7 +33,7 @@ impl Names {
         self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
     }
 
-    /// Returns the coordinate along an axis, from the named column or from the columns of LAMMPS.
+    /// Returns the coordinate along an axis, from the column of the given name or from one of the columns of LAMMPS.
     pub(crate) fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<Coordinate> {
         let name = ["x", "y", "z"][axis];
         match self.in_file(name) {
@@ -43,41 +43,41 @@ impl Names {
     }
 }
 
-/// Quantities of a scene that a dump contains.
+/// Quantities of a scene that follow from a dump.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DumpRecord {
     /// Columns of the probes that follow from the dump.
     pub series: Series,
-    /// Uncertainty by printed digits, for each column and sample.
+    /// Uncertainty due to printed digits, for each column and sample.
     pub uncertainty: Vec<Vec<f64>>,
     /// First snapshot with each number increased by the uncertainty of its printed digits; `None` if the digits are
     /// unknown or there are no grains.
     pub shifted_start: Option<Snapshot>,
-    /// Every requested snapshot, and always the last one.
+    /// Requested snapshots, and the first and the last snapshot.
     pub snapshots: Vec<Snapshot>,
 }
 
-/// Builds a record from the snapshots of a dump, one after the other.
+/// Builder of a record from the snapshots of a dump, added one after the other.
 pub struct DumpObserver<'s> {
     scene: &'s Scene,
-    /// Scene with a sample at every step that is passed to the recorder.
+    /// Scene with a sample at every step, for the recorders.
     sampled: Scene,
-    /// Recorders of three variants. Numbers are as printed, increased by their uncertainty, and shifted away from
-    /// zero by it.
+    /// Recorders of three variants of the numbers: as printed, increased by their uncertainty, and shifted away from
+    /// zero by their uncertainty.
     recorders: [Recorder; 3],
     known: KnownQuantities,
-    /// Forces between grains, if there is a dump of contacts.
+    /// Forces between grains, from a dump of contacts if there is one.
     pairs: PairForces,
-    /// Steps at which snapshots are still due, in order.
+    /// Remaining steps at which snapshots are requested, in order.
     due: &'s [u64],
     snapshots: Vec<Snapshot>,
     shifted_start: Option<Snapshot>,
-    /// First coordinate z (m) of each grain of a scene in the plane.
+    /// Coordinate z of each grain in its first snapshot (m), for a two-dimensional scene.
     heights: BTreeMap<usize, f64>,
     last: Option<Snapshot>,
 }
 
-/// Quantities that all snapshots so far contain.
+/// Quantities that are in all snapshots so far.
 #[derive(Debug, Clone)]
 struct KnownQuantities {
     velocity: bool,
@@ -88,24 +88,24 @@ struct KnownQuantities {
     walls: Vec<bool>,
 }
 
-/// Columns of a snapshot with data of grains.
+/// Indices of the columns of a snapshot.
 struct Columns {
     id: Option<usize>,
     position: [Option<Coordinate>; 3],
     velocity: [Option<usize>; 3],
     spin: [Option<usize>; 3],
     angle: Option<usize>,
-    /// Column of the radius, and factor of its values.
+    /// Index of the column of radii or diameters, and factor from its values to radii.
     radius: Option<(usize, f64)>,
     mass: Option<usize>,
-    /// Forces of each wall on the grains.
+    /// Indices of the columns of each wall's force on the grains.
     walls: Vec<[Option<usize>; 3]>,
 }
 
-/// Relative error of a radius or mass that a program computes from another quantity.
+/// Relative rounding error of a radius or mass that a program computes from another quantity.
 const COMPUTED: f64 = 1e-9;
 
-/// Direction in which numbers are shifted by the uncertainty of their printed digits.
+/// Direction in which numbers are shifted by the uncertainty of their printed digits: none, upwards, or away from zero.
 #[derive(Clone, Copy)]
 enum Shift {
     None,
@@ -114,8 +114,8 @@ enum Shift {
 }
 
 impl<'s> DumpObserver<'s> {
-    /// Returns an observer of a scene that keeps the first sample from each of these steps on, in order. It always
-    /// keeps the first and the last sample.
+    /// Returns an observer of a scene. For each of the given steps, in order, it keeps the first snapshot at or after
+    /// this step. It always keeps the first and the last snapshot.
     #[must_use]
     pub fn new(scene: &'s Scene, snapshot_steps: &'s [u64]) -> Self {
         let sampled =
@@ -141,13 +141,13 @@ impl<'s> DumpObserver<'s> {
         self
     }
 
-    /// Adds a snapshot of the file `file` at a time (s). `digits` are the digits of each column in the whole file.
-    /// Without them, printed numbers are taken as exact.
+    /// Adds a snapshot of the file `file` at a time (s). `digits` are the printed digits of each column in the whole
+    /// file. Without them, printed numbers count as exact.
     ///
     /// # Errors
-    /// If the id or the position of a grain is missing. If the number of grains differs from that of the scene; it
-    /// may be smaller if the scene removes grains. If a grain leaves the plane of the scene. If the contacts of this
-    /// step are missing and those of other steps are not.
+    /// If the id or the position of a grain is missing, a grain leaves the plane of a two-dimensional scene, or a
+    /// radius or mass differs from the scene. If the number of grains is larger than in the scene, or smaller although
+    /// the scene removes no grains. If dumps of contacts lack this step.
     pub fn take(
         &mut self,
         file: &str,
@@ -200,7 +200,7 @@ impl<'s> DumpObserver<'s> {
                 let (id, grain) = (place as u32 + 1, &self.scene.grains[place]);
                 let row = snapshot.row(row);
                 let shifted_number = |column: Option<usize>| Some(*row.get(column?)? + value(row, column, 1.0));
-                // A value that the file does not contain is NaN. Along an axis that the scene lacks it is zero.
+                // Values that the file does not contain are NaN, or zero along an axis that the scene lacks.
                 let vector = |columns: &[Option<usize>; 3], axes: [bool; 3]| {
                     Vector3::from_fn(|axis, _| {
                         shifted_number(columns[axis]).unwrap_or(if axes[axis] { f64::NAN } else { 0.0 })
@@ -236,7 +236,7 @@ impl<'s> DumpObserver<'s> {
             let contacts_seen = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
             for (number, wall) in seen.walls.iter_mut().enumerate() {
                 let on_grains = (0..order.len()).map(|grain| of_wall(number, grain));
-                // Along every axis, the uncertainties of all digits are added.
+                // The uncertainties of all digits are added to each component.
                 let open = |pair_force: PairForce| pair_force.force.add_scalar(times * pair_force.open);
                 let sum: Option<Vector3<f64>> = on_grains.map(|pair_force| pair_force.map(open)).sum();
                 wall.force = sum.map(|sum| -sum);
@@ -250,7 +250,7 @@ impl<'s> DumpObserver<'s> {
             if matches!(shift, Shift::Along) && self.shifted_start.is_none() {
                 self.shifted_start = Some(seen.clone());
             }
-            // Only contacts requested by probes are known, so snapshots do not contain them.
+            // Only contacts that probes request are known, so the stored snapshots contain no contacts.
             seen.contacts = Some(contacts_seen);
             recorder.take(&self.sampled, StepState::of_rigid(seen, 0.0));
         }
@@ -291,8 +291,8 @@ impl<'s> DumpObserver<'s> {
         })
     }
 
-    /// Returns an error if a grain of a scene in the plane moves out of it: if its coordinate z changes, or if it has a
-    /// velocity along z or a spin about x or y.
+    /// Checks that the grains of a two-dimensional scene stay in its plane: the coordinate z is constant, and the
+    /// velocity along z and the spins about x and y are zero.
     fn check_plane(
         &mut self,
         file: &str,
@@ -310,7 +310,7 @@ impl<'s> DumpObserver<'s> {
             let (numbers, radius) = (snapshot.row(row), self.scene.grains[place].radius);
             let wrong = |column: usize, expected: f64, found: f64| {
                 let (line, name) = (snapshot.first_line + row as u64, &snapshot.columns[column].name);
-                let expected = format!("grain {} in the plane of the scene, `{name}` {expected:?}", place + 1);
+                let expected = format!("grain {} in the plane of the scene, with `{name}` = {expected:?}", place + 1);
                 Err(ReadError::at(file, line, expected, format!("{found:?}")))
             };
             if let Some(at) = columns.position[2] {
@@ -332,8 +332,7 @@ impl<'s> DumpObserver<'s> {
         Ok(())
     }
 
-    /// Returns an error if the radius or mass of a grain differs from the scene by more than the uncertainty of its
-    /// digits.
+    /// Checks that radii and masses of the grains equal those of the scene within the uncertainty of their digits.
     fn check_grains(
         &self,
         file: &str,
@@ -357,7 +356,7 @@ impl<'s> DumpObserver<'s> {
                     continue;
                 }
                 let (line, column) = (snapshot.first_line + row as u64, &snapshot.columns[at].name);
-                let expected = format!("the {name} of grain {} of the scene, {expected:?} {unit}", place + 1);
+                let expected = format!("the {name} of grain {} as in the scene, {expected:?} {unit}", place + 1);
                 return Err(ReadError::at(
                     file,
                     line,
@@ -369,15 +368,15 @@ impl<'s> DumpObserver<'s> {
         Ok(())
     }
 
-    /// Returns the grains that are present as pairs of index in the scene and row. Rows sorted by id are in the order
-    /// of the scene. If grains were removed, the id is the index in the scene, counted from 1.
+    /// Returns the index in the scene and the row of each grain in a snapshot. Rows sorted by id are in the order of
+    /// the scene. If grains were removed, the id is the index in the scene, counted from 1.
     fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<(usize, usize)>, ReadError> {
         let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
         let wrong = |expected: String, found: String| Err(ReadError::at(file, snapshot.first_line, expected, found));
         let may_leave = self.scene.stays.removal.is_some() && rows < grains;
         if rows != grains && !may_leave {
-            let expected = format!("as many grains as the scene has, {grains}, at step {}", snapshot.step);
-            let hint = if rows < grains { " (where grains leave, the scene has `removal`)" } else { "" };
+            let expected = format!("{grains} grains, the number in the scene, at step {}", snapshot.step);
+            let hint = if rows < grains { " (a scene that grains may leave has `removal`)" } else { "" };
             return wrong(expected, format!("{rows}{hint}"));
         }
         if let Some(id) = columns.id {
@@ -392,7 +391,7 @@ impl<'s> DumpObserver<'s> {
             match place.filter(|&place| there.last().is_none_or(|&(before, _)| before < place)) {
                 Some(place) => there.push((place, row)),
                 None => {
-                    let expected = format!("ids from 1 to {grains}, each once, at step {}", snapshot.step);
+                    let expected = format!("each id from 1 to {grains} at most once at step {}", snapshot.step);
                     return wrong(expected, format!("{}", id(row)));
                 }
             }
@@ -400,7 +399,7 @@ impl<'s> DumpObserver<'s> {
         Ok(there)
     }
 
-    /// Returns the record.
+    /// Returns the finished record.
     #[must_use]
     pub fn finish(mut self) -> DumpRecord {
         let last = self.last.take().filter(|last| self.snapshots.last().is_none_or(|kept| kept.step != last.step));
@@ -421,7 +420,7 @@ impl<'s> DumpObserver<'s> {
                 continue;
             }
             let (along, outwards) = (shifted(&along, at, &values), shifted(&outwards, at, &values));
-            // Without digits, nothing was shifted and the uncertainty is zero.
+            // Without digits, numbers were not shifted, and the uncertainty is zero.
             observed.uncertainty.push(along.iter().zip(&outwards).map(|(a, b)| a.max(*b).max(0.0)).collect());
             observed.series.columns.push(column);
             observed.series.values.push(values);
@@ -431,7 +430,7 @@ impl<'s> DumpObserver<'s> {
 }
 
 impl DumpRecord {
-    /// Returns the samples of a scene without grains. There are no columns yet.
+    /// Returns a record with the steps and times of all samples, but without columns, for a scene without grains.
     pub(crate) fn without_grains(stepping: &Stepping) -> Self {
         let step: Vec<u64> = stepping.samples().collect();
         let time = step.iter().map(|step| *step as f64 * stepping.time_step).collect();
@@ -439,7 +438,7 @@ impl DumpRecord {
         Self { series, ..Self::default() }
     }
 
-    /// Keeps the first `samples` samples and the snapshots up to the last of them.
+    /// Truncates the record to the first `samples` samples and the snapshots up to the last of them.
     pub fn keep(&mut self, samples: usize) {
         let series = &mut self.series;
         if samples >= series.step.len() {
@@ -452,7 +451,8 @@ impl DumpRecord {
         self.snapshots.retain(|snapshot| snapshot.step <= last);
     }
 
-    /// Adds a column of the scene's series from another source. It is taken as exact.
+    /// Adds a column of the scene's series with values from another source, which count as exact. A column that the
+    /// scene does not have, or that the record already contains, is ignored.
     pub(crate) fn add(&mut self, scene: &Scene, name: &str, values: Vec<f64>) {
         let columns = Recorder::new(scene, 1.0, 1).finish().0.columns;
         let known = columns.into_iter().find(|column| column.name == name);
@@ -464,7 +464,7 @@ impl DumpRecord {
     }
 }
 
-/// Returns true if a dump of grains contains a column of the series.
+/// Returns true if a column of the series follows from the known quantities.
 fn is_known(scene: &Scene, name: &str, known: &KnownQuantities) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
     match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
@@ -488,7 +488,8 @@ fn is_known(scene: &Scene, name: &str, known: &KnownQuantities) -> bool {
     }
 }
 
-/// Overlaps follow from the positions of the grains. No program prints if a contact slips.
+/// Returns true if a quantity of a contact is known. Overlaps follow from positions. Forces are known if `forces` is
+/// true. Slip is never known, because programs do not print it.
 fn is_known_of_contact(quantity: &str, forces: bool) -> bool {
     quantity == "overlap" || forces && quantity.ends_with("_force")
 }

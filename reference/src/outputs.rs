@@ -1,5 +1,4 @@
-//! Outputs of a run as dumps or as one table. The files are read twice, first for their properties and then for a
-//! record.
+//! Outputs of a run as dumps or as one table. The files are read twice: first for their properties, then for a record.
 
 use std::path::{Path, PathBuf};
 
@@ -20,41 +19,42 @@ use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
 
 pub use crate::run_files::is_of_a_run;
 
-/// Maximum number of files that are named individually.
+/// Maximum number of files that are all named in reports. For more files, only the first and the last are named.
 const MOST_NAMED: usize = 3;
 
-/// Files of a run, and data that they lack.
+/// Files of a run, and options with data that the files lack.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Consecutive dumps, files with one moment each (VTK, grain tables), a collection of such files, or one table.
+    /// Output files: consecutive dumps, files with one moment each (VTK, grain tables), a collection of such files, or
+    /// one table.
     pub files: Vec<PathBuf>,
     /// Log of the run.
     pub log: Option<PathBuf>,
-    /// Names of the columns in the files.
+    /// Names of columns in the files that differ from those of LAMMPS.
     pub names: Names,
-    /// Time step (s), needed if no file contains it.
+    /// Time step (s); required if no file contains the time step or times.
     pub time_step: Option<f64>,
-    /// Time between frames (s), needed if files are numbered by frames and contain no times.
+    /// Time between frames (s); required if files are numbered by frames and contain no times.
     pub frame_interval: Option<f64>,
-    /// Maximum number of rows in a snapshot of the scene. Without a value there is no limit.
+    /// Maximum number of rows in a snapshot; `None` for no limit.
     pub most_rows: Option<u64>,
-    /// If true, complete frames of a truncated file are read.
+    /// True to read the complete frames of a truncated file.
     pub partial: bool,
-    /// If true, steps and times are counted from the first sample.
+    /// True to count steps and times from the first sample.
     pub from_first: bool,
     /// Steps at which snapshots are requested, in ascending order. For each, the first snapshot at or after this step
     /// is kept. The first and the last snapshot of the files are always kept.
     pub snapshot_steps: Vec<u64>,
 }
 
-/// Reason why outputs cannot be read as a run.
+/// Error of reading outputs as a run.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// A file is damaged or incomplete.
     #[error(transparent)]
     Read(ReadError),
     /// A file is truncated, for example because a job was killed.
-    #[error("{0} (--partial judges the whole frames in front of it)")]
+    #[error("{0} (--partial judges the complete frames before it)")]
     Cut(ReadError),
     /// Files are numbered by frames, and no file contains their times.
     #[error("{}: expected a column `Time` (s) or --frame-interval, found only frame numbers", one_line(.0))]
@@ -73,7 +73,7 @@ pub enum OutputError {
         one_line(.0)
     )]
     NoTime(String),
-    /// The units are not supported by scenes.
+    /// The units are not supported: name of the file and units.
     #[error(
         "{}: expected the units `si`, or no units if the scene is dimensionless; found {}",
         one_line(.0), quoted(.1)
@@ -107,8 +107,8 @@ pub enum OutputError {
         /// Time between these steps in the log (s).
         of_log: f64,
     },
-    /// The files are of different kinds.
-    #[error("{}: expected one table alone, or dumps alone", one_line(.0))]
+    /// The files are neither a single table nor only dumps.
+    #[error("{}: expected a single table, or only dumps", one_line(.0))]
     MixedFiles(String),
     /// The files contain no grains.
     #[error("{}: expected a dump with grains, found a dump without grains", one_line(.0))]
@@ -121,13 +121,13 @@ impl From<ReadError> for OutputError {
     }
 }
 
-/// Returns time steps (s) as text, either one value or the shortest and the longest.
+/// Returns the shortest and the longest time step (s) as text, or one value if they are equal.
 #[must_use]
 pub fn steps_in_words([shortest, longest]: [f64; 2]) -> String {
     if shortest == longest { format!("{shortest} s") } else { format!("{shortest} s to {longest} s") }
 }
 
-/// Sample that is taken as time 0 if it is not at step 0 and time 0.
+/// Sample that counts as time 0 if times are counted from the first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
     /// Step or frame number.
@@ -136,43 +136,43 @@ pub struct Origin {
     pub time: Option<f64>,
 }
 
-/// Properties of the outputs of a run.
+/// Outputs of a run with their properties.
 #[derive(Debug, Clone)]
 pub struct Outputs {
     sources: Sources,
     /// Dumps and files of one moment, sorted by step.
     files: Vec<RunFile>,
-    /// Digits of the columns of each file, from the whole file.
+    /// Digits of the columns of each file, from all of its snapshots.
     digits: Vec<Vec<Digits>>,
     table: Option<Table>,
     /// Times of the steps, if they are known.
     clock: Option<Clock>,
     /// First and last step.
     ends: [u64; 2],
-    /// First sample, which is taken as time 0.
+    /// Sample that counts as time 0: the first sample with [`Sources::from_first`], otherwise step 0.
     origin: Origin,
-    /// Errors of truncated files.
+    /// Errors of truncated files, if [`Sources::partial`] is set.
     cuts: Vec<String>,
-    /// Largest number of significant digits of any number.
+    /// Largest number of significant digits in all files.
     significant: u32,
-    /// Ids of the grains, sorted.
+    /// Ids of the grains in the first snapshot, sorted.
     ids: Vec<u64>,
 }
 
-/// Properties of the snapshots in all files.
+/// Properties of all snapshots, collected over all files.
 #[derive(Default)]
 struct Survey {
     /// Steps and times (s) of snapshots that contain both.
     timed: Vec<(u64, f64)>,
     units: Option<String>,
-    /// Number and time (s) of the first snapshot of grains.
+    /// Step or frame number and time (s) of the first snapshot of grains.
     first: Option<Origin>,
     /// First and last step.
     ends: Option<[u64; 2]>,
 }
 
 impl Outputs {
-    /// Reads the files to the end and stores their properties.
+    /// Reads the files to the end and collects their properties.
     ///
     /// # Errors
     /// If a file is damaged, or if the files are not consistent.
@@ -234,7 +234,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Reads a file to the end. Adds its snapshots to `survey` and returns the digits of its columns.
+    /// Reads a file to the end. Adds the properties of its snapshots to `survey` and returns the digits of its columns.
     fn look(&mut self, file: &RunFile, survey: &mut Survey) -> Result<Vec<Digits>, OutputError> {
         let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX))?;
         let mut snapshot = DumpSnapshot::default();
@@ -264,7 +264,7 @@ impl Outputs {
             if let Some(units) = &snapshot.units
                 && survey.units.as_ref() != Some(units)
             {
-                // No scene says that its numbers have no dimensions.
+                // Dimensionless units are refused here, because scenes have SI units.
                 check_units(&file.path, units, &["si"])?;
                 survey.units = Some(units.clone());
             }
@@ -273,8 +273,8 @@ impl Outputs {
         Ok(snapshot.columns.iter().map(|column| column.digits).collect())
     }
 
-    /// Sets the time steps from the options, the log or the files. A given time step must agree with that of the
-    /// files. A log must agree with the times of the files.
+    /// Sets the time step from the option, the log or the files, in this order. The option must agree with log and
+    /// files, and the log with the times of the files.
     fn set_clock(&mut self, of_log: Option<Clock>, of_files: Option<Clock>) -> Result<(), OutputError> {
         let [first, last] = self.ends;
         let given = self.sources.time_step;
@@ -309,26 +309,26 @@ impl Outputs {
         self.clock.as_ref().map(|clock| clock.range(self.ends[0], self.ends[1]))
     }
 
-    /// Returns the sample that is taken as time 0 if it is not at step 0 and time 0.
+    /// Returns the sample that counts as time 0, or `None` if its time is 0 or, with an unknown time, its step is 0.
     #[must_use]
     pub fn origin(&self) -> Option<Origin> {
         let is_late = self.origin.time.map_or(self.origin.step > 0, |time| time.abs() > 0.0);
         is_late.then_some(self.origin)
     }
 
-    /// Returns the positions where files are truncated. Only their complete frames were read.
+    /// Returns the errors at the positions where files are truncated. Only complete frames were read.
     #[must_use]
     pub fn cuts(&self) -> &[String] {
         &self.cuts
     }
 
-    /// Returns the largest number of significant digits of any number, which is the printed precision of the files.
+    /// Returns the largest number of significant digits of any number, which is the printed precision.
     #[must_use]
     pub fn significant_digits(&self) -> u32 {
         self.significant
     }
 
-    /// Returns the name of the outputs for pages.
+    /// Returns the name of the outputs in reports.
     #[must_use]
     pub fn name(&self) -> String {
         let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -342,7 +342,7 @@ impl Outputs {
         }
     }
 
-    /// Returns the quantities of a scene that the files contain.
+    /// Returns the quantities of a scene that follow from the files.
     ///
     /// # Errors
     /// If a required column is missing, if the number of grains differs from that of the scene, or if the time is
@@ -367,7 +367,7 @@ impl Outputs {
                 }
                 let is_first = number.is_none();
                 let number = *number.insert(snapshot.step);
-                // If one dump continues another, its first snapshot repeats the last one of the other.
+                // If a dump continues another dump, its first snapshot repeats the last snapshot of that dump.
                 if last == Some(number) {
                     if is_first {
                         snapshot.check_repeated(&name, &before)?;
@@ -375,12 +375,12 @@ impl Outputs {
                     continue;
                 }
                 if let Some(before) = last.filter(|before| number < *before) {
-                    let expected = format!("a step after {before}, where the file in front of it ends");
+                    let expected = format!("a step after {before}, the last step of the previous file");
                     return Err(ReadError::at(&name, snapshot.first_line, expected, number.to_string()).into());
                 }
                 let time = self.time(&name, &snapshot)?;
                 if time <= last_time {
-                    let expected = format!("a time after {last_time:?}, the time of the snapshot before");
+                    let expected = format!("a time after {last_time:?}, the time of the previous snapshot");
                     return Err(ReadError::at(&name, snapshot.first_line, expected, format!("{time:?}")).into());
                 }
                 last_time = time;
@@ -397,7 +397,8 @@ impl Outputs {
         if last.is_some() { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
     }
 
-    /// Reads the next snapshot. Returns false at the end of the file, or where it is truncated if that is allowed.
+    /// Reads the next snapshot. Returns false at the end of the file, or where it is truncated if truncation is
+    /// allowed.
     fn next(&self, reader: &mut Snapshots, snapshot: &mut DumpSnapshot) -> Result<bool, OutputError> {
         match reader.read(snapshot) {
             Err(error) if error.is_cut() && self.sources.partial => Ok(false),
@@ -405,7 +406,7 @@ impl Outputs {
         }
     }
 
-    /// Returns the time of a snapshot (s) if it follows from the file or the frame interval.
+    /// Returns the time of a snapshot (s), if the file contains it or it follows from the frame interval.
     fn told_time(&self, snapshot: &DumpSnapshot) -> Option<f64> {
         let of_frames = || {
             let interval = self.sources.frame_interval.filter(|_| snapshot.numbering != Numbering::Steps)?;
@@ -414,7 +415,7 @@ impl Outputs {
         snapshot.time.or_else(of_frames)
     }
 
-    /// Returns the time of a snapshot (s) since the first one.
+    /// Returns the time of a snapshot (s), counted from the origin.
     fn time(&self, name: &str, snapshot: &DumpSnapshot) -> Result<f64, OutputError> {
         match (self.told_time(snapshot), &self.clock) {
             (Some(time), _) => Ok(time - self.origin.time.unwrap_or_default()),
@@ -424,8 +425,8 @@ impl Outputs {
         }
     }
 
-    /// Returns the step of a snapshot since the first one. If the number of the snapshot can be a frame number, the
-    /// step is computed from its time (s).
+    /// Returns the step of a snapshot, counted from the origin. If its number may be a frame number and its time (s) is
+    /// known, the step is computed from the time.
     fn step(&self, snapshot: &DumpSnapshot, time: f64) -> u64 {
         let is_told = snapshot.numbering != Numbering::Steps && self.told_time(snapshot).is_some();
         match self.time_step().filter(|_| is_told) {
@@ -434,7 +435,7 @@ impl Outputs {
         }
     }
 
-    /// Returns the forces between the pairs that the scene requests, from dumps of contacts.
+    /// Returns the forces between the pairs of grains that probes request, from dumps of contacts.
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
         let mut pairs = PairForces::new(scene, &self.ids);
         for (file, digits) in self.files.iter().zip(&self.digits) {
@@ -451,8 +452,8 @@ impl Outputs {
         Ok(pairs)
     }
 
-    /// Reads a table with a column `time` (or `t`) and columns named like those of the scene's probes. The name of
-    /// the probe can be omitted if only one column of the scene has this ending.
+    /// Reads a table with a column of times or steps, and columns named like those of the scene's probes. The name of
+    /// the probe may be omitted if only one column of the scene has this ending.
     fn observe_table(&self, scene: &Scene, table: &Table) -> Result<DumpRecord, OutputError> {
         let name = shown(&self.sources.files[0]);
         let names = &self.sources.names;
@@ -508,12 +509,12 @@ impl Outputs {
     }
 }
 
-/// Returns the column of a table with the times.
+/// Returns the index of the column with times, if the table has one.
 fn time_column(table: &Table, names: &Names) -> Option<usize> {
     ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.in_file(name)))
 }
 
-/// Returns the time step (s) of a table with steps and times.
+/// Returns the mean time step (s) of a table with steps and times, or `None` if one is missing.
 fn table_step(table: &Table, names: &Names) -> Option<f64> {
     let ends = |column: usize| {
         let mut values = table.values(column);
@@ -530,7 +531,8 @@ fn steps_of(table: &Table, names: &Names) -> [u64; 2] {
     step.and_then(|steps| Some([*steps.first()?, *steps.last()?])).unwrap_or_default()
 }
 
-/// Merges the digits of files with one moment each, because their columns have the same format.
+/// If each file has one moment, replaces the digits of all files by their combination, because their columns have the
+/// same format.
 fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     let Some((first, rest)) = digits.split_first().filter(|_| are_of_a_moment) else { return };
     if rest.iter().any(|of_file| of_file.len() != first.len()) {
@@ -540,7 +542,7 @@ fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     digits.fill(all);
 }
 
-/// Returns the ids of a snapshot, sorted.
+/// Returns the ids of the grains in a snapshot, sorted.
 fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
     let mut ids: Vec<u64> = match snapshot.column(names.in_file("id")) {
         Some(column) => snapshot.values(column).map(|id| id as u64).collect(),
@@ -560,7 +562,7 @@ fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
     Ok(None)
 }
 
-/// Returns an error if units are not among those that are accepted.
+/// Returns an error unless `accepted` contains the units.
 fn check_units(file: &Path, units: &str, accepted: &[&str]) -> Result<(), OutputError> {
     if accepted.contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
 }

@@ -1,5 +1,5 @@
-//! Forces between grains from dumps of local entries. A row has two ids and a force, and the names of the columns
-//! depend on the program.
+//! Forces between grains from dumps of contacts. A row has two ids and a force. The names of the columns depend on the
+//! program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,31 +12,32 @@ use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 
-/// Force on the first of two grains (N), and the uncertainty of its components by printed digits (N).
+/// Force on the first of two grains (N), and the sum of the uncertainties of its components due to printed digits (N).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct PairForce {
     pub(crate) force: Vector3<f64>,
     pub(crate) open: f64,
 }
 
-/// Forces of the contacts that the probes of a scene request. All other contacts are skipped, so the required memory
+/// Forces of the contacts that the probes of a scene request. Other contacts are skipped, so that the required memory
 /// does not grow with their number.
 ///
-/// The columns are `id1`, `id2` and the force on the first grain, `force_x`, `force_y`, `force_z`. Columns such as
-/// `tangential_x` are added to the force, because some programs print the two components separately.
+/// The columns are `id1`, `id2`, and `force_x`, `force_y` and `force_z` for the force on the first grain. Columns such
+/// as `tangential_x` are added to the force, because some programs print its normal and tangential part separately.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PairForces {
-    /// Requested pairs of ids. The smaller id comes first.
+    /// Requested pairs of ids, the smaller id first.
     asked: BTreeSet<(u64, u64)>,
     /// Force on the grain with the smaller id, by step and pair.
     by_step: BTreeMap<u64, BTreeMap<(u64, u64), PairForce>>,
 }
 
-/// Names of the components of the force, and of a separate tangential force.
+/// Our names for the columns of the force.
 const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
+/// Our names for the columns of a separate tangential force.
 const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
 
-/// Columns of a dump of contacts with the ids of two grains and the parts of the force on the first.
+/// Indices of columns in a dump of contacts: ids of two grains, and parts of the force on the first grain.
 pub(crate) struct PairColumns {
     pub(crate) ids: [usize; 2],
     pub(crate) parts: [[Option<usize>; 3]; 2],
@@ -61,7 +62,8 @@ impl PairColumns {
 }
 
 impl PairForces {
-    /// Returns a collection for a scene whose grains have these ids in the dump, in the order of the scene.
+    /// Returns an empty collection for the pairs that the probes of a scene request. `ids` are the ids of its grains in
+    /// the dump, in the order of the scene.
     pub(crate) fn new(scene: &Scene, ids: &[u64]) -> Self {
         let asked = scene.probes.iter().filter_map(|probe| match probe.target {
             ProbeTarget::Pair(a, b) => {
@@ -88,7 +90,7 @@ impl PairForces {
         self.by_step.contains_key(&step)
     }
 
-    /// Adds the entries of a step.
+    /// Adds the contacts of a step.
     pub(crate) fn take(
         &mut self,
         file: &str,
@@ -117,14 +119,14 @@ impl PairForces {
                     }
                 }
             }
-            // A list can contain a pair twice, once from each side. This is one contact.
+            // A dump may contain a contact twice, once from each grain.
             forces.insert(pair, found);
         }
         Ok(())
     }
 
-    /// Returns the force of grain `b` on grain `a` at a step. It is zero if the pair is not listed. Returns `None` if
-    /// the step is missing.
+    /// Returns the force of grain `b` on grain `a` at a step. The force is zero if the dump does not list the pair.
+    /// Returns `None` if the dump does not contain the step.
     pub(crate) fn on(&self, step: u64, a: u64, b: u64) -> Option<PairForce> {
         let found = self.by_step.get(&step)?.get(&(a.min(b), a.max(b))).copied().unwrap_or_default();
         Some(if a < b { found } else { PairForce { force: -found.force, ..found } })

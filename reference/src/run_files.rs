@@ -23,7 +23,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// Returns the name of the kind as text.
+    /// Returns the name of the kind for error messages.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Table => "a table",
@@ -36,7 +36,7 @@ impl Kind {
     }
 }
 
-/// Returns the kind of a file from its beginning. An empty file counts as a dump, so the reader of dumps reports it.
+/// Returns the kind of a file from its beginning. An empty file counts as a dump, whose reader reports the error.
 pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
     let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
@@ -46,7 +46,7 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     if bytes.starts_with(parquet::MARK) {
         return Ok(Kind::Table);
     }
-    // Without compression, both are the same bytes. Archives and containers are identified before decompression.
+    // `unpacked` is empty at first, so that archives and containers are identified before decompression.
     let kind_of_bytes = |unpacked: &[u8]| {
         let beginning = Beginning { path, bytes: &bytes, unpacked };
         let is_it =
@@ -76,7 +76,8 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
                 has_comments = true;
                 continue;
             }
-            // The reader of dumps explains why an .xyz file, which begins with a count, is not supported.
+            // A number alone is the first line of an .xyz file. The reader of dumps reports that this format is not
+            // supported.
             if line.text.trim().parse::<u64>().is_ok() {
                 return Ok(Kind::Grains(&dump::FORMAT));
             }
@@ -86,11 +87,11 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     Ok(if has_comments { Kind::Table } else { Kind::Grains(&dump::FORMAT) })
 }
 
-/// Checks that a file contains output of a run: snapshots of grains, entries of a dump, or a table of numbers. Its
-/// name does not matter.
+/// Checks that a file contains output of a run: snapshots of grains, contacts of a dump, or a table of numbers. The
+/// name of the file does not matter.
 ///
 /// # Errors
-/// If the content is anything else, or cannot be read that far.
+/// If the file has other content or cannot be read.
 pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     let length = std::fs::metadata(path).map_err(|error| ReadError::opening(&shown(path), error))?.len();
     if length == 0 {
@@ -102,13 +103,13 @@ pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     }
 }
 
-/// File of a run, and its moment if it contains one snapshot only.
+/// Output file of a run. `moment` is `None` if the file contains several snapshots.
 #[derive(Clone, Debug)]
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
     format: &'static Format,
     moment: Option<Moment>,
-    /// First step of a file with several snapshots, if it can be read.
+    /// First step of a file with several snapshots, if it is known.
     begins: Option<u64>,
 }
 
@@ -116,7 +117,7 @@ pub(crate) struct RunFile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Moment {
     step: u64,
-    /// Time (s), if a list of files contains it.
+    /// Time (s), if a collection of files contains it.
     time: Option<f64>,
 }
 
@@ -127,12 +128,12 @@ impl RunFile {
     }
 }
 
-/// Returns files sorted by step, because the order of their names is often different. A list is replaced by the files
-/// that it names.
+/// Returns files sorted by step, which is often not the order of their names. A collection is replaced by the files
+/// that it lists.
 pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
-        // A table is passed to the reader of dumps, whose error names the problem.
+        // A table is opened as a dump, so that the reader of dumps reports the error.
         let format = format(path)?;
         match (format.holds)(path)? {
             FileContent::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
@@ -148,7 +149,7 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     Ok(files)
 }
 
-/// Returns the format of a file of grains.
+/// Returns the format of a file of grains. For a table, returns the format of dumps.
 fn format(path: &Path) -> Result<&'static Format, ReadError> {
     Ok(match kind(path)? {
         Kind::Grains(format) => format,
@@ -156,13 +157,13 @@ fn format(path: &Path) -> Result<&'static Format, ReadError> {
     })
 }
 
-/// Returns true for the box that LIGGGHTS writes beside each file of grains. Patterns for grain files match its name
-/// as well.
+/// Returns true for a file with the simulation box, which LIGGGHTS writes for each file of grains. Patterns for files
+/// of grains match its name too.
 fn is_box(path: &Path) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("boundingBox"))
 }
 
-/// Returns a file whose name contains the step as its last whole number.
+/// Returns a file with one snapshot. The last whole number in its name is the step.
 fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let last = stem.trim_end_matches(|letter: char| !letter.is_ascii_digit());
@@ -177,14 +178,14 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
 /// Reader of the snapshots of a file.
 pub(crate) struct Snapshots {
     moments: Box<dyn Moments>,
-    /// Moment and name of a file with one snapshot only.
+    /// Moment and file name if the file contains one snapshot only; otherwise `None`.
     only: Option<(Moment, String)>,
     numbering: Numbering,
     read: usize,
 }
 
 impl Snapshots {
-    /// Opens a file whose snapshots have at most `most_rows` rows.
+    /// Opens a file whose snapshots must have at most `most_rows` rows.
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
         let only = file.moment.map(|moment| (moment, shown(&file.path)));
         let numbering = file.format.numbering;
@@ -204,7 +205,7 @@ impl Snapshots {
         let is_there = self.moments.read(&mut next)?;
         if is_there != (self.read == 0) {
             let found = if is_there { "several" } else { "none" };
-            return Err(ReadError::at(name, 1, "one moment, with its time in a list of files or in its name", found));
+            return Err(ReadError::at(name, 1, "one time per file, from a list or the file name", found));
         }
         self.read += 1;
         if is_there {
@@ -224,7 +225,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// A file pattern yields names in alphabetical order, in which `dump.end` precedes `dump.grains`.
+    /// A file pattern yields names in alphabetical order, so that `dump.end` is before `dump.grains`.
     #[test]
     fn dumps_are_in_the_order_of_their_steps() {
         let folder = tempfile::tempdir().unwrap();

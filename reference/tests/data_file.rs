@@ -1,4 +1,5 @@
-//! Tests with intact and damaged data files. `tests/refusals/data-files.toml` has more damaged ones.
+//! Tests of the reader with intact and damaged data files. Further damaged files are in
+//! `tests/refusals/data-files.toml`.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -71,10 +72,10 @@ fn gzip_is_recognised_by_its_bytes() {
     let (head, tail) = SOUND.split_at(SOUND.len() / 2);
     let both = [gzip(head.as_bytes()), gzip(tail.as_bytes())].concat();
     assert_eq!(parse_data(&both[..], "data").unwrap(), read(SOUND));
-    // Data can arrive one byte at a time, for example from a pipe.
+    // Data may arrive one byte at a time, for example from a pipe.
     assert_eq!(parse_data(BufReader::with_capacity(1, &packed[..]), "data").unwrap(), read(SOUND));
 
-    assert_eq!(fault(gzip(b"")), "data:1: expected a data file, its title first, found an empty file");
+    assert_eq!(fault(gzip(b"")), "data:1: expected a data file that begins with a title, found an empty file");
     let cut = fault(&packed[..packed.len() / 2]);
     assert!(cut.starts_with("data:") && cut.contains("expected readable data"), "{cut}");
     let mut flipped = packed;
@@ -85,7 +86,7 @@ fn gzip_is_recognised_by_its_bytes() {
 
 #[test]
 fn a_line_without_end_is_refused_before_it_fills_the_memory() {
-    let expected = "data:2: expected a line of at most 65536 bytes, found a longer one";
+    let expected = "data:2: expected a line of at most 65536 bytes, found a longer line";
     let endless = BufReader::new((&b"title\n"[..]).chain(std::io::repeat(b'7')));
     assert_eq!(parse_data(endless, "data").unwrap_err().to_string(), expected);
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
@@ -113,7 +114,7 @@ fn the_stored_packing() {
     let first = data.atoms[0];
     assert_eq!((first.id, first.diameter), (1303, 1.135_394_066_56));
     assert_eq!(first.velocity[..2], [0.001_081_751_859_043_782_7, 3.771_492_326_664_034_4e-5]);
-    // The packing was made with mass = d².
+    // In this packing, each mass equals the square of the diameter (in the units of the file).
     for grain in &data.atoms {
         let expected = grain.diameter * grain.diameter;
         assert!((grain.mass() - expected).abs() < 1e-14 * expected);

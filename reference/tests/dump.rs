@@ -70,8 +70,8 @@ fn scaled_coordinates_count_from_the_side_of_the_box() {
     assert!((uncertainty - 6e-6).abs() < 1e-12, "{uncertainty}");
 }
 
-/// The tilts are 0.03 and −0.01, and the sides 0.1, 0.08 and 0.06 from (0, 0, 0). LAMMPS prints the box around the
-/// tilted one.
+/// The tilts xy and xz are 0.03 and −0.01. The edges of the box from the corner (0, 0, 0) are 0.1, 0.08 and 0.06 long.
+/// LAMMPS prints the bounds of the box that encloses the tilted box.
 #[test]
 fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     let text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-0.01 0.13 0.03\n0 0.08 -0.01\n\
@@ -81,12 +81,12 @@ fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
     assert!((coordinate("xs", 0) - (0.125 * 0.1 + 0.25 * 0.03 - 0.5 * 0.01)).abs() < 1e-15, "{}", coordinate("xs", 0));
     assert!((coordinate("ys", 1) - 0.25 * 0.08).abs() < 1e-15 && (coordinate("zs", 2) - 0.03).abs() < 1e-15);
     assert_eq!(coordinate("xu", 0), 0.02);
-    // Without the other scaled coordinate, the coordinate is unknown.
+    // The coordinate is unknown if another scaled coordinate is missing.
     let text = text.replace("xs ys zs xu", "xs a zs xu");
     assert!(all(text.as_bytes()).unwrap()[0].coordinate_named("xs", 0).is_none());
 }
 
-/// The error must distinguish a truncated file from a damaged one.
+/// The error distinguishes a truncated file from a damaged one.
 #[test]
 fn a_cut_is_told_from_damage() {
     let sound = sound();
@@ -211,7 +211,7 @@ fn refuses_two_gigabytes_of_nothing_at_once() {
     path.as_file().set_len(2 << 30).unwrap();
     let mut reader = DumpReader::open(path.path()).unwrap();
     let error = reader.read(&mut DumpSnapshot::default()).unwrap_err().to_string();
-    assert!(error.ends_with(":1:1: expected plain text (UTF-8), found the byte 0x00"), "{error}");
+    assert!(error.ends_with(":1:1: expected plain text, found the byte 0x00"), "{error}");
     let mut reader = DumpReader::new(BufReader::new(File::open(path.path()).unwrap()), "zeros").unwrap();
     assert!(reader.read(&mut DumpSnapshot::default()).is_err());
 }

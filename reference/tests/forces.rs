@@ -1,5 +1,5 @@
-//! Forces written by other programs, compared with hand calculations. The tests check the grain on which a force
-//! acts, its direction, and the periodic boundary.
+//! Forces in output files, compared with hand calculations. The tests check the grain on which a force acts, its
+//! direction, and the nearest image across a periodic boundary.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -18,8 +18,8 @@ fn scene(text: &str) -> Scene {
     SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
 }
 
-/// Returns the quantities of a scene in files with these texts. `names` are pairs of our column names and those of
-/// the files.
+/// Returns the quantities of a scene from files with the given texts. `names` are pairs of our column names and the
+/// names in the files.
 fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> DumpRecord {
     let directory = tempfile::tempdir().unwrap();
     let file = |(number, text): (usize, &String)| -> PathBuf {
@@ -33,7 +33,7 @@ fn observed(scene: &Scene, texts: &[String], names: &[(&str, &str)]) -> DumpReco
     Outputs::survey(sources).unwrap().observe(scene).unwrap()
 }
 
-/// Returns a snapshot of a dump of `what` (`ATOMS`, `ENTRIES`).
+/// Returns a dump with one snapshot of `what` (`ATOMS` or `ENTRIES`).
 fn dump(what: &str, columns: &str, rows: &[&str]) -> String {
     format!(
         "ITEM: TIMESTEP\n0\nITEM: NUMBER OF {what}\n{}\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n-0.5 0.5\n\
@@ -52,12 +52,12 @@ fn close(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} for {expected}");
 }
 
-/// Two discs of radius 0.51 m are in contact across the corner of two periodic axes. Disc a is at (0.1, 0.2), the
-/// image of b at (−0.5, −0.6). The distance is 1 m along e = (−0.6, −0.8), so the overlap is 0.02 m.
+/// Two discs of radius 0.51 m are in contact across the corner of two periodic axes. Disc a is at (0.1, 0.2) m, and the
+/// image of b at (−0.5, −0.6) m. Their distance is 1 m along e = (−0.6, −0.8), so the overlap is 0.02 m.
 ///
-/// A normal force of 100 N on a is −100 e = (60, 80) N. A force of 7 N along t = (e_y, −e_x) = (−0.8, 0.6), clockwise
-/// from e, is (−5.6, 4.2) N. The sum on a is (54.4, 84.2) N, and b has the opposite force. In two dimensions the sign
-/// of the shear force is the same from either side.
+/// A normal force of 100 N on a is −100 e N = (60, 80) N. A tangential force of 7 N along t = (e_y, −e_x) = (−0.8,
+/// 0.6), clockwise from e, is (−5.6, 4.2) N. The force on a is (54.4, 84.2) N, and the force on b is opposite. In two
+/// dimensions, the sign of the shear force is the same for both discs.
 #[test]
 fn pair_forces_act_on_the_first_along_the_nearest_image() {
     let scene = scene(
@@ -84,16 +84,16 @@ fn pair_forces_act_on_the_first_along_the_nearest_image() {
         }
         assert!(observed.snapshots[0].contacts.is_none(), "what a probe asks for is not all that there is");
     }
-    // An attractive force is negative, and it is not changed.
+    // An attractive normal force is negative.
     let pulled = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 -6 -8"]), grains], &names);
     close(value(&pulled, "ab.normal_force"), -10.0);
 }
 
-/// A disc of radius 0.5 m has an overlap of 0.01 m with a plane with the normal (0.6, 0.8). e = (−0.6, −0.8) points
+/// A disc of radius 0.5 m overlaps by 0.01 m with a plane of normal (0.6, 0.8). The direction e = (−0.6, −0.8) points
 /// from the disc to the plane.
 ///
-/// A normal force of 50 N on the disc is (30, 40) N. A force of 3 N along t = (−0.8, 0.6) is (−2.4, 1.8) N. The plane
-/// has the opposite force, summed over all discs.
+/// A normal force of 50 N on the disc is (30, 40) N. A tangential force of 3 N along t = (−0.8, 0.6) is (−2.4, 1.8) N.
+/// The force on the plane is minus the sum of the forces on both discs.
 #[test]
 fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
     let scene = scene(
@@ -112,9 +112,8 @@ fn wall_forces_act_on_the_grain_and_the_wall_feels_the_opposite() {
     close(value(&observed, "slope.force_y"), -49.8);
 }
 
-/// A disc of radius 0.5 m is in contact with the end of a segment. The distance from its centre at (0.294, 0.392) to
-/// the end at the origin is 0.49 m. The overlap is 0.01 m along (−0.6, −0.8). A normal force of 50 N on the disc is
-/// (30, 40) N.
+/// A disc of radius 0.5 m is in contact with the end of a segment. Its centre at (0.294, 0.392) m is 0.49 m from the
+/// end at the origin, so the overlap is 0.01 m along (−0.6, −0.8). A normal force of 50 N on the disc is (30, 40) N.
 #[test]
 fn the_end_of_a_segment_is_the_nearest_point() {
     let scene = scene(
@@ -129,10 +128,10 @@ fn the_end_of_a_segment_is_the_nearest_point() {
     close(value(&observed, "c.shear_force"), 0.0);
 }
 
-/// Two spheres with radii of 0.51 m in three dimensions are 1 m apart along (2, 3, 6)/7. A normal force of 70 N on
-/// the first is −(20, 30, 60) N.
+/// Two spheres of radius 0.51 m in three dimensions are 1 m apart along (2, 3, 6)/7. A normal force of 70 N on the
+/// first is −(20, 30, 60) N.
 ///
-/// For a shear force of 5 N along (−6, 0, 2)/√40 only the magnitude is checked, because there is no sign in three
+/// The shear force is 5 N along (−6, 0, 2)/√40. Only its magnitude is checked, because it has no sign in three
 /// dimensions.
 #[test]
 fn pair_forces_in_space_have_a_push_and_a_size() {
@@ -151,7 +150,7 @@ fn pair_forces_in_space_have_a_push_and_a_size() {
     close(value(&observed, "c.shear_force"), 5.0);
 }
 
-/// A table has forces with the signs of our series. They must not be changed, whatever the name of their column.
+/// Forces in a table have the same signs as in our series. They are kept, whatever the name of their column.
 #[test]
 fn tables_have_forces_as_series_have_them() {
     let scene = scene(

@@ -1,4 +1,4 @@
-//! Behaviour when a program is missing, fails, hangs or writes invalid output. Scripts replace the programs, so none
+//! Tests of programs that are missing, fail, hang or write invalid output. Scripts replace the programs, so that none
 //! need be installed.
 
 #![cfg(unix)]
@@ -96,7 +96,7 @@ fn a_program_that_leaves_nonsense() {
     assert!(error.ends_with("dump.grains:1: expected a line `ITEM: …`, found `nonsense`"), "{error}");
 }
 
-/// Returns a script for a complete run with three samples and a log. `x` is the position at the second sample.
+/// Returns a script that writes a complete run with three samples and a log. `x` is the position at the second sample.
 fn whole(x: &str, steps: &str) -> String {
     format!(
         "for step in {steps}; do x=$step; [ $step = 1 ] && x={x}; printf \"ITEM: TIMESTEP\\n$step\\nITEM: NUMBER OF ATOMS\\n\
@@ -114,7 +114,7 @@ fn a_program_that_does_its_run() {
     assert!(record.series.column("disc.angle").is_none(), "no dump contains it");
     assert_eq!((record.cost.steps, record.cost.wall_seconds), (2, 0.25));
     assert_eq!(record.provenance.options, ["LAMMPS (1 Jan 2030)"]);
-    // Quantities that the program does not write must be absent and not zero.
+    // Quantities that the program does not write are absent, not zero.
     assert_eq!((record.cost.contact_evaluations, record.cost.pair_tests, record.cost.bytes), (None, None, None));
     let last = record.snapshots.last().unwrap();
     assert!(last.contacts.is_none() && last.walls.iter().all(|wall| wall.force.is_none()));
@@ -122,12 +122,12 @@ fn a_program_that_does_its_run() {
     assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
 }
 
-/// An incomplete run and a run with NaN must fail and must not be evaluated.
+/// Incomplete runs and runs with NaN are failures and are not evaluated.
 #[test]
 fn a_program_that_leaves_less_than_its_run() {
     let message = |text: &str| run(text).unwrap_err().to_string();
     let short = message(&whole("1", "0 1"));
-    assert!(short.ends_with("expected samples to step 2, found the last at step 1"), "{short}");
+    assert!(short.ends_with("expected samples to step 2, found the last sample at step 1"), "{short}");
     let gap = message(&whole("1", "0 2"));
     assert!(gap.ends_with("expected a sample at step 1, found step 2"), "{gap}");
     let nan = message(&whole("nan", "0 1 2"));
@@ -137,7 +137,7 @@ fn a_program_that_leaves_less_than_its_run() {
 #[test]
 fn a_program_that_leaves_a_pipe_is_not_waited_for() {
     let error = run("mkfifo dump.grains").unwrap_err().to_string();
-    assert!(error.contains("dump.grains: expected a plain file, found none"), "{error}");
+    assert!(error.contains("dump.grains: expected a plain file, found something else"), "{error}");
 }
 
 #[test]
@@ -146,8 +146,8 @@ fn a_program_that_fills_the_disk_is_ended() {
     assert!(error.contains("MB for the samples of this scene, found more"), "{error}");
 }
 
-/// When a program ends, its child processes must end too. The shell that guards it gets the signal through a pipe
-/// that closes.
+/// When a program is ended, its child processes end too. The guard shell ends them when the pipe to its standard input
+/// closes.
 #[test]
 fn a_program_ends_with_all_that_it_started() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,7 +31,7 @@ fn reads_a_log_of_liggghts() {
     assert_eq!(log.runs[0].end.unwrap().steps, 3);
 }
 
-/// The log has the alignment of a 2025 release, a warning between the rows, a printed NaN, and no end.
+/// The log has the alignment of a 2025 release, a warning between rows, a printed NaN, and no end.
 #[test]
 fn reads_another_alignment_and_a_log_that_breaks_off() {
     let text = "LAMMPS (22 Jul 2025)\nPer MPI rank memory allocation (min/avg/max) = 5 | 5 | 5 Mbytes\n\

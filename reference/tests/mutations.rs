@@ -1,4 +1,4 @@
-//! No damage to a file may cause a panic of its reader. Every error must name its position on one line.
+//! Tests that damaged files never cause a panic of a reader. Every error names its position on one line.
 
 #[path = "common/damage.rs"]
 mod damage;
@@ -7,8 +7,8 @@ use damage::{DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump, well_said};
 use grainbench_reference::{parse_data, parse_log, parse_table};
 use proptest::prelude::*;
 
-/// Returns the configuration with the number of files of each kind. It is 500, or 50 000 with `GRAINBENCH_LONG`,
-/// unless `PROPTEST_CASES` is set.
+/// Returns the configuration of the tests. The number of damaged files in each test is `PROPTEST_CASES`. By default it
+/// is 50 000 if `GRAINBENCH_LONG` is set, otherwise 500.
 fn config() -> ProptestConfig {
     let case_count = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
     let usual = if std::env::var_os("GRAINBENCH_LONG").is_some() { 50_000 } else { 500 };

@@ -1,9 +1,9 @@
-//! Script that derives the numbers of the round robin.
+//! Test of the script that derives the numbers of the round robin.
 
 use std::path::Path;
 use std::process::Command;
 
-/// The script is tested on synthetic tables, with changed tables as negative controls.
+/// The Python test applies the script to synthetic tables. Changed tables are negative controls.
 #[test]
 fn the_script_derives_numbers_of_synthetic_tables() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("literature/dosta-2024/derive_test.py");

@@ -1,4 +1,4 @@
-//! Stored runs must be unchanged, and any change must be reported.
+//! Tests that stored runs are unchanged and that any change of their files is reported.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -27,7 +27,8 @@ fn copy() -> TempDir {
     copy
 }
 
-/// Replaces text in a file of the copy. If `vouch` is set, the hash in the provenance is replaced too.
+/// Replaces the text `from` by `to` in a file of the copy. If `vouch` is true, the hash of the file in the provenance
+/// is updated.
 fn edit(folder: &Path, name: &str, from: &str, to: &str, vouch: bool) {
     let path = folder.join(name);
     let before = hash_file(&path).unwrap();
@@ -58,7 +59,7 @@ fn fault(folder: &Path) -> String {
     shown.replace(&folder.display().to_string(), "RUN")
 }
 
-/// The test covers every folder of both programs.
+/// All stored runs of both programs are tested.
 #[test]
 fn every_run_loads_and_every_file_is_vouched_for() {
     let mut count = 0;
@@ -133,7 +134,7 @@ fn a_damaged_series_is_placed() {
     let folder = copy();
     edit(folder.path(), "series.csv.gz", ",grain.x,", ",grain.x,grain.x,", true);
     let shown = fault(folder.path());
-    assert!(shown.starts_with("RUN/series.csv.gz:1: expected columns of different names"), "{shown}");
+    assert!(shown.starts_with("RUN/series.csv.gz:1: expected columns with different names"), "{shown}");
     let folder = copy();
     edit(folder.path(), "series.csv.gz", "step,", "steps,", true);
     assert_eq!(fault(folder.path()), "RUN/series.csv.gz: expected a column `step`, found none");

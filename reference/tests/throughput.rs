@@ -1,4 +1,5 @@
-//! Throughput and memory of the dump reader. Both are printed. `GRAINBENCH_LONG=1` reads a whole gigabyte.
+//! Test of throughput and memory of the dump reader, which are both printed. The dump has 64 MiB, or 1 GiB with
+//! `GRAINBENCH_LONG=1`.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,7 +9,7 @@ use std::time::Instant;
 
 use grainbench_reference::{DumpReader, DumpSnapshot};
 
-/// Reader that repeats the same rows at the steps 0, 1, 2, …
+/// Dump that repeats the same rows at the steps 0, 1, 2, …
 struct EndlessReader {
     rows: String,
     atoms: usize,
@@ -42,7 +43,7 @@ impl Read for EndlessReader {
     }
 }
 
-/// Returns the peak memory of the process so far (MB), if the system reports it.
+/// Returns the peak memory of the process so far (MiB), if the system reports it.
 fn peak() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
@@ -54,7 +55,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     const ATOMS: usize = 10_000;
     let mut rows = String::new();
     for id in 1..=ATOMS {
-        // The ids are shuffled, so they have to be sorted.
+        // The ids are not in order, so the reader must sort them.
         let id = id * 7919 % ATOMS + 1;
         let value = |k: usize| (id as f64 * 0.618_034 + k as f64 * 0.377).sin();
         write!(rows, "{id} 1").unwrap();
@@ -67,7 +68,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     let source = EndlessReader { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
     let mut reader = DumpReader::new(BufReader::new(source), "endless").unwrap();
     let mut snapshot = DumpSnapshot::default();
-    // The first snapshots allocate the memory for all later ones.
+    // The first snapshots allocate the memory that later snapshots reuse.
     for _ in 0..3 {
         assert!(reader.read(&mut snapshot).unwrap());
     }

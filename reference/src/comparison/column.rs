@@ -1,24 +1,24 @@
-//! Accumulated difference of one column between two outputs.
+//! Difference of one column between two outputs, accumulated over all samples.
 
 use crate::read::digits::Digits;
 
-/// Difference of one column between the second output and the first.
+/// Difference of one column between two outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Name of the column.
     pub name: String,
-    /// Value of the first output at the largest difference. Differences are compared after subtraction of the
+    /// Value of the first output at the largest difference. The largest difference is found after subtraction of the
     /// uncertainty of printed digits.
     pub first: f64,
-    /// Value of the second output at the same point.
+    /// Value of the second output at the largest difference.
     pub second: f64,
-    /// Reference magnitude. It is the largest change for a coordinate and the largest magnitude for any other column.
+    /// Reference magnitude of the column in the first output. For a coordinate that changes, it is the largest change
+    /// since the first sample. Otherwise it is the largest magnitude of the column.
     ///
-    /// It is taken from the first output, or from the second if the first is zero throughout. It is 1 if both are
-    /// zero.
+    /// If this magnitude is zero, the second output is used; if both are zero, the scale is 1.
     pub scale: f64,
-    /// Uncertainty of the difference at the same point. It results from the printed digits of both outputs and from
-    /// interpolation of the second.
+    /// Uncertainty of the largest difference. It contains half a unit of the last printed digit in each output, and the
+    /// interpolation error of the second output.
     pub open: f64,
     /// Difference at each sample.
     pub course: Vec<Sample>,
@@ -27,11 +27,11 @@ pub struct Difference {
 /// Difference of a column at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Step, time (s) or row.
+    /// Step, time (s) or row number of the sample.
     pub at: f64,
-    /// Largest difference of a row.
+    /// Largest absolute difference of all rows of the sample.
     pub off: f64,
-    /// Largest difference that remains after subtraction of the uncertainty of printed digits.
+    /// Largest absolute difference after subtraction of the uncertainty of printed digits.
     pub beyond_digits: f64,
 }
 
@@ -40,12 +40,12 @@ pub struct Sample {
 pub(super) struct PrintedDigits {
     pub(super) digits: Digits,
     pub(super) of_file: Digits,
-    /// Box length by which a scaled coordinate is multiplied.
+    /// Box length by which a scaled coordinate is multiplied; `None` for other columns.
     pub(super) scale: Option<f64>,
 }
 
 impl PrintedDigits {
-    /// Returns half a unit of the last printed digit of a value.
+    /// Returns half a unit of the last printed digit of `value`, in the unit of the column.
     fn half_unit(&self, value: f64) -> f64 {
         match self.scale {
             Some(scale) => scale * self.digits.half_unit(1.0, &self.of_file),
@@ -60,7 +60,7 @@ pub(super) struct Column {
     printed: [PrintedDigits; 2],
     is_coordinate: bool,
     starts: [Vec<f64>; 2],
-    /// Largest magnitude in each output.
+    /// Largest magnitude of the column in each output.
     magnitudes: [f64; 2],
     changes: [f64; 2],
     worst: f64,
@@ -75,7 +75,7 @@ impl Column {
         Self { difference, printed, is_coordinate, starts: Default::default(), magnitudes, changes, worst }
     }
 
-    /// Adds all rows at one step, time (s) or row.
+    /// Adds the values of all rows of both outputs at one step, time (s) or row number.
     pub(super) fn take(&mut self, at: f64, values: [&[f64]; 2]) {
         for (which, values) in values.into_iter().enumerate() {
             if self.starts[which].is_empty() {
@@ -101,7 +101,7 @@ impl Column {
         self.difference.course.push(sample);
     }
 
-    /// Returns the difference. `interpolated` is the interpolation error, which is added to the uncertainty.
+    /// Returns the difference. The interpolation error `interpolated` is added to the uncertainty of the difference.
     pub(super) fn finish(mut self, interpolated: f64) -> Difference {
         let column_extent = |which: usize| {
             let change = self.changes[which];
@@ -110,7 +110,7 @@ impl Column {
         let extents = [column_extent(0), column_extent(1)];
         let extent = extents.into_iter().find(|extent| *extent > 0.0);
         self.difference.scale = extent.unwrap_or(1.0);
-        // Columns whose printed numbers are all equal have no difference, even if they have few digits.
+        // If all printed numbers and formats are equal, the uncertainty is zero even if few digits are printed.
         let [a, b] = self.printed;
         let is_alike = a.digits == b.digits && a.scale == b.scale && interpolated == 0.0;
         let is_equal = extent.is_none() || is_alike && self.difference.course.iter().all(|sample| sample.off == 0.0);

@@ -1,5 +1,4 @@
-//! Outputs as sequences of frames. A frame of a dump or table contains the values of some columns at one step, time
-//! or row.
+//! Sequence of frames of an output. A frame has the values of selected columns at one step, time or row.
 
 use std::path::Path;
 use std::vec;
@@ -15,26 +14,26 @@ use crate::run_files::{RunFile, Snapshots, in_order};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Position of a frame in the sequence.
+/// Position of a frame in its output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// Step, if the file contains it.
+    /// Step; `None` if the file contains no steps.
     pub(super) step: Option<u64>,
-    /// Time (s), if it follows from the file or its time step.
+    /// Time (s); `None` if the file contains no times and it cannot be computed from step and time step.
     pub(super) time: Option<f64>,
-    /// Number of the frame, from 0.
+    /// Index of the frame, from 0.
     pub(super) number: u64,
     /// Line number for error messages.
     pub(super) line: u64,
 }
 
-/// Values at one position.
+/// Values of one frame.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) place: Place,
-    /// Ids of the rows in their order, if the file contains them.
+    /// Ids of the rows in ascending order; `None` if the file contains no ids.
     pub(super) ids: Option<Vec<f64>>,
-    /// For each column, all rows sorted by id.
+    /// Values of each column in the order of the ids.
     pub(super) values: Vec<Vec<f64>>,
 }
 
@@ -43,14 +42,14 @@ pub(super) struct Frames {
     pub(super) file: String,
     time_step: Option<f64>,
     names: Names,
-    /// Requested columns, by our names.
+    /// Names of the selected columns in the first file.
     wanted: Vec<String>,
     number: u64,
     ids: Ids,
-    /// Position and numbers of the last frame. The numbers of a snapshot are omitted.
+    /// Position and numbers of the last frame. For snapshots of grains the numbers are empty.
     last: Option<(Place, Vec<f64>)>,
     partial: bool,
-    /// Position where the file is truncated, if that is allowed.
+    /// Error at the position where the file is truncated, if truncation is allowed.
     pub(super) cut: Option<String>,
     from: FrameSource,
 }
@@ -59,7 +58,7 @@ enum FrameSource {
     Grains {
         files: vec::IntoIter<RunFile>,
         reader: Option<Snapshots>,
-        /// True if no snapshot of the open file has been read.
+        /// True until a snapshot of the open file has been read.
         is_new: bool,
         snapshot: DumpSnapshot,
     },
@@ -72,7 +71,7 @@ enum FrameSource {
 }
 
 impl Frames {
-    /// Opens a file. `which` is 0 for the first and 1 for the second of two files.
+    /// Opens a file. `which` is 0 for the first and 1 for the second of the compared files.
     pub(super) fn open(path: &Path, is_grains: bool, which: usize, options: &Options) -> Result<Self, ReadError> {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
@@ -89,13 +88,13 @@ impl Frames {
         Ok(Self { file, time_step, names, wanted, number: 0, ids, last: None, partial, cut: None, from })
     }
 
-    /// Selects columns for the following frames, by our names.
+    /// Selects the columns of the following frames by their names in the first file.
     pub(super) fn want(&mut self, columns: &[String]) {
         columns.clone_into(&mut self.wanted);
     }
 
-    /// Returns the columns of the file by our names. Coordinates come first, ids and text columns are omitted. For a
-    /// dump, the columns are available after the first frame.
+    /// Returns the columns of the file by their names in the first file. Coordinates come first. Ids and text columns
+    /// of dumps are omitted, and steps and times of tables. The columns of a dump are known only after its first frame.
     pub(super) fn columns(&self) -> Vec<String> {
         let ours = |theirs: &str| {
             let renamed = self.names.0.iter().find(|(_, known)| known == theirs);
@@ -120,7 +119,7 @@ impl Frames {
         }
     }
 
-    /// Reads the next frame. Returns `None` at the end of the file. A repetition of the previous frame is skipped.
+    /// Reads the next frame. Returns `None` at the end of the file. A frame that repeats the previous one is skipped.
     pub(super) fn next(&mut self) -> Result<Option<Frame>, ReadError> {
         loop {
             let Some((frame, numbers)) = self.frame()? else { return Ok(None) };
@@ -140,7 +139,7 @@ impl Frames {
     /// Returns true if a frame repeats the previous one.
     ///
     /// # Errors
-    /// If the step or time of the frame decreases, or equals that of the previous frame while the numbers differ.
+    /// If the step or time decreases, or if it equals that of the previous frame and the numbers differ.
     fn is_repeated(&self, before: &Place, of_before: &[f64], at: &Place, numbers: &[f64]) -> Result<bool, ReadError> {
         let steps = before.step.zip(at.step);
         let times = before.time.zip(at.time);
@@ -158,7 +157,7 @@ impl Frames {
         }
     }
 
-    /// Reads the next frame. For a table, all numbers of the row are returned with it.
+    /// Reads the next frame. Also returns all numbers of the row for a table, and an empty list for a dump.
     fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
         match &mut self.from {
@@ -183,11 +182,12 @@ impl Frames {
         if let Some(id) = snapshot.column(self.names.in_file("id")) {
             self.ids.check(&self.file, snapshot, id)?;
         }
-        // The reader has already compared a snapshot that repeats a step with the previous one.
+        // A snapshot that repeats a step has already been compared with the previous one by its reader.
         Ok(Some((self.of_snapshot(snapshot, number), Vec::new())))
     }
 
-    /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if that is allowed.
+    /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if truncation is
+    /// allowed.
     fn next_snapshot(&mut self) -> Result<bool, ReadError> {
         let FrameSource::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
         loop {
@@ -222,7 +222,7 @@ impl Frames {
         }
     }
 
-    /// Returns the unit system that the file names.
+    /// Returns the name of the unit system, if the file contains it.
     pub(super) fn units(&self) -> Option<&str> {
         match &self.from {
             FrameSource::Grains { snapshot, .. } => snapshot.units.as_deref(),
@@ -251,7 +251,7 @@ impl Frames {
         }
     }
 
-    /// Returns the printed digits of a column. They are complete after all frames have been read.
+    /// Returns the printed digits of a column. The result is final after all frames have been read.
     pub(super) fn printed(&self, name: &str) -> PrintedDigits {
         let (columns, of_file) = match &self.from {
             FrameSource::Grains { snapshot, .. } => {

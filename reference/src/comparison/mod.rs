@@ -1,7 +1,7 @@
 //! Comparison of two outputs column by column.
 //!
-//! Samples are matched by step or row. If the steps differ, they are matched by time, and the second output is
-//! interpolated between its samples.
+//! Samples are matched by step or row number. If the steps differ, samples are matched by time, and the second output
+//! is interpolated between its samples.
 
 mod column;
 mod frames;
@@ -19,13 +19,13 @@ pub use column::{Difference, Sample};
 /// Options of a comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Columns to compare, by their names in the first file. If empty, all common columns are compared.
+    /// Columns to compare, by their names in the first file. An empty list selects all common columns.
     pub columns: Vec<String>,
-    /// Names of the columns in the second file.
+    /// Names of columns in the second file that differ from those in the first file.
     pub names: Names,
-    /// Time steps (s) of both outputs, needed if the files contain steps but no times.
+    /// Time steps of both outputs (s); required if a file contains steps but no times.
     pub time_steps: [Option<f64>; 2],
-    /// If true, complete frames of a truncated file are read.
+    /// True to read the complete frames of a truncated file.
     pub partial: bool,
 }
 
@@ -34,14 +34,14 @@ pub struct Options {
 pub enum Key {
     /// Samples are paired by step number.
     Step,
-    /// Time. The second output is interpolated.
+    /// Samples are compared at the times of the first output. The second output is interpolated if necessary.
     Time,
-    /// Row number.
+    /// Samples are paired by row number.
     Row,
 }
 
 impl Key {
-    /// Returns the word for the quantity.
+    /// Returns the name of the quantity.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -67,13 +67,13 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Columns that only one of the outputs has.
     pub lonely: [Vec<String>; 2],
-    /// Position where each output is truncated, if that is allowed.
+    /// For each output, the error at the position where it is truncated, if [`Options::partial`] is set.
     pub cuts: [Option<String>; 2],
     /// Quantity by which samples were matched.
     pub key: Key,
     /// Number of samples of the first output that were compared.
     pub compared: u64,
-    /// Number of these samples that were compared with an interpolated value.
+    /// Number of compared samples for which the second output was interpolated.
     pub interpolated: u64,
     /// Number of samples in each output.
     pub samples: [u64; 2],
@@ -81,23 +81,23 @@ pub struct Comparison {
     pub last: [f64; 2],
     /// Step, time (s) or row of the last sample that was compared.
     pub last_compared: f64,
-    /// Mean distance between samples in the output with fewer samples, in the same unit.
+    /// Mean interval between samples in the output with the longer mean interval, in the unit of the key.
     pub interval: f64,
 }
 
-/// Relative difference below which two times are equal. It refers to the larger time.
+/// Relative difference below which two times are equal.
 const ONE_TIME: f64 = 1e-6;
 
 /// Compares two dumps or two tables.
 ///
 /// # Errors
-/// If a file cannot be read, or if the files are of different kinds. Also if they have no common column or sample, or
-/// if the numbers of rows at a step differ.
+/// If a file cannot be read, the files are of different kinds, they have no common column or sample, or the numbers of
+/// rows at a step differ.
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
     let kinds = [kind(first)?, kind(second)?];
     if kinds[0].is_table() != kinds[1].is_table() {
-        let expected = format!("{}, as the other file is", kinds[0].words());
+        let expected = format!("{}, like the other file", kinds[0].words());
         return Err(ReadError::at(&name, 1, expected, kinds[1].words()));
     }
     let open = |which: usize| Frames::open([first, second][which], !kinds[0].is_table(), which, options);
@@ -112,7 +112,7 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     let mut walk = Walk { key, columns, bends: Vec::new(), compared: 0, interpolated: 0, last: f64::NAN };
     walk.go(&mut files)?;
     if walk.compared == 0 {
-        return Err(ReadError::at(&name, 1, format!("a {} that the other file has", key.word()), "none"));
+        return Err(ReadError::at(&name, 1, format!("a {} that the other file also has", key.word()), "none"));
     }
     let ends = [0, 1].map(|which: usize| places[which].last().map_or(f64::NAN, |place| key.value(place)));
     let interval = |which: usize| {
@@ -127,7 +127,7 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     Ok(Comparison { differences, lonely, cuts, key, compared, interpolated, samples, last, last_compared, interval })
 }
 
-/// Contents of both files.
+/// Columns and samples of both files.
 struct Survey {
     /// Columns that are compared.
     columns: Vec<String>,
@@ -140,7 +140,7 @@ struct Survey {
     cuts: [Option<String>; 2],
 }
 
-/// Reads both files to the end.
+/// Reads both files to the end and returns their common columns and samples.
 fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError> {
     let mut places: [Vec<Place>; 2] = Default::default();
     for (frames, places) in files.iter_mut().zip(&mut places) {
@@ -167,7 +167,7 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
     let is_asked = |name: &String| options.columns.is_empty() || options.columns.contains(name);
     let columns: Vec<String> = a.iter().filter(|name| b.contains(name) && is_asked(name)).cloned().collect();
     if columns.is_empty() {
-        return Err(missing(1, format!("a column of {}", quoted(&a.join(" ")))));
+        return Err(missing(1, format!("one of the columns {}", quoted(&a.join(" ")))));
     }
     let printed = columns.iter().map(|name| [files[0].printed(name), files[1].printed(name)]).collect();
     let alone = |own_columns: &[String], other: &[String]| -> Vec<String> {
@@ -179,8 +179,9 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
 
 /// Returns the quantity by which samples are matched.
 ///
-/// It is the step if all steps of the file with fewer samples occur in the other file at the same times. Otherwise it
-/// is the time if both files contain it, and else the step. Tables with neither are matched by row number.
+/// The key is the step if all steps of the file with fewer samples occur in the other file at the same times. Otherwise
+/// it is the time if both files contain times, and the step if they contain only steps. Files without steps and times
+/// are matched by row number if they have equally many rows.
 fn key([a, b]: &[Vec<Place>; 2]) -> Option<Key> {
     let tell_times = a.iter().chain(b).all(|place| place.time.is_some());
     let tell_steps = a.iter().chain(b).all(|place| place.step.is_some());
@@ -212,7 +213,7 @@ fn is_one(one: f64, two: f64) -> bool {
 struct Walk {
     key: Key,
     columns: Vec<Column>,
-    /// Largest second difference of each column of the second output, for the interpolation error.
+    /// Largest second difference of each column in the second output. The interpolation error is 1/8 of it.
     bends: Vec<f64>,
     compared: u64,
     interpolated: u64,
@@ -228,7 +229,8 @@ impl Walk {
             let at = self.key.value(&frame.place);
             let key = self.key;
             let is_there = |other: f64| if key == Key::Time { is_one(other, at) } else { other == at };
-            // Earlier frames are kept as long as a sample can lie between them and the next frame.
+            // Frames of the second output before this time are kept, because later samples may lie between them and the
+            // next frame.
             while let Some(next) = ahead.take() {
                 let other = self.key.value(&next.place);
                 if other >= at || is_there(other) {
@@ -269,7 +271,7 @@ impl Walk {
         self.last = at;
     }
 
-    /// Stores a frame of the second output and updates the second differences of its columns.
+    /// Stores a frame of the second output and updates the largest second differences of the columns.
     fn bend(&mut self, recent: &mut Vec<Frame>, next: Frame) {
         if let [first, second] = &recent[..] {
             for (at, bend) in self.bends.iter_mut().enumerate() {
@@ -282,8 +284,8 @@ impl Walk {
         recent.push(next);
     }
 
-    /// Returns the differences with their uncertainty. If values were interpolated, an eighth of the second
-    /// difference is added, which is the error of linear interpolation between two samples.
+    /// Returns the differences with their uncertainties. If values were interpolated, 1/8 of the largest second
+    /// difference is added to the uncertainty. This is the error of linear interpolation between two samples.
     fn finish(self) -> Vec<Difference> {
         let interpolated = self.interpolated > 0;
         let with_bends = self.columns.into_iter().zip(self.bends);
@@ -291,13 +293,13 @@ impl Walk {
     }
 }
 
-/// Interpolates linearly between two frames.
+/// Interpolates linearly between two frames. `share` is 0 at the first and 1 at the second frame.
 fn between(before: &Frame, next: &Frame, share: f64) -> Vec<Vec<f64>> {
     let column = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect();
     before.values.iter().zip(&next.values).map(column).collect()
 }
 
-/// Returns an error if two frames have different rows or ids.
+/// Checks that two frames have equally many rows and, if both have ids, the same ids.
 fn matched(frame: &Frame, other: &Frame, file: &str, key: Key) -> Result<(), ReadError> {
     let rows = |frame: &Frame| frame.values.first().map_or(0, Vec::len);
     let (word, at) = (key.word(), key.value(&frame.place));

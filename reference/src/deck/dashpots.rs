@@ -1,9 +1,9 @@
-//! Dashpots proportional to the effective mass of the contact, as both programs define them.
+//! Dashpots proportional to the effective mass of the contact, as in LAMMPS and LIGGGHTS.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
-/// Coefficients γ (1/s) of dashpots c = γ m_eff, along the normal and the tangent.
+/// Coefficients γ (1/s) of normal and tangential dashpots c = γ m_eff.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Dashpots {
     pub(crate) normal: f64,
@@ -20,10 +20,10 @@ pub(crate) enum Side {
 }
 
 impl Dashpots {
-    /// Returns the coefficients of a law for contacts between grains of one material and a partner.
+    /// Returns the coefficients of a contact law for contacts between grains of a material and a partner.
     ///
-    /// Other dashpots can be converted if all contacts have the same effective mass. Then c = βk is γ = βk/m_eff, and
-    /// a coefficient of restitution gives γ = 2ζ√(k/m_eff).
+    /// Other dashpots can be converted if all these contacts have the same effective mass m_eff. Stiffness-proportional
+    /// damping c = βk gives γ = βk/m_eff. A coefficient of restitution gives γ = 2ζ√(k/m_eff).
     pub(crate) fn from_law(scene: &Scene, law: &ContactLaw, material: u16, side: Side) -> Result<Self, String> {
         let mut dashpots = Self { normal: law.normal_damping, tangential: law.tangential_damping };
         let named = match (law.stiffness_damping != 0.0, law.damping_ratio != 0.0) {
@@ -51,7 +51,7 @@ impl Dashpots {
     }
 }
 
-/// Returns the mass (kg) of the grains of a material if it is the same for all of them.
+/// Returns the mass (kg) of the grains of a material, or `None` if their masses differ.
 fn one_mass(scene: &Scene, material: u16) -> Option<f64> {
     let mut masses = scene.grains.iter().filter(|grain| grain.material == material).map(|grain| grain.mass);
     let first = masses.next()?;

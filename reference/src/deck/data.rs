@@ -10,10 +10,11 @@ use nalgebra::Vector3;
 use super::heading;
 use super::outline::is_flat;
 
-/// Returns the lower and upper corner of the box (m). Periodic axes have the bounds of the scene. Other axes have
-/// room around the grains.
+/// Returns the lower and upper corner of the simulation box (m). Periodic axes have the bounds of the scene. Along
+/// other axes, a margin of four radii of the largest grain surrounds the grains.
 ///
-/// The box never becomes smaller, because neighbour lists need some room. It becomes larger if grains reach its sides.
+/// The programs enlarge the box if grains reach its sides. They do not make it smaller, because neighbour lists need
+/// some room.
 pub(crate) fn box_of(scene: &Scene) -> (Vector3<f64>, Vector3<f64>) {
     let states: Vec<GrainState> = (1..).zip(&scene.grains).map(|(id, grain)| GrainState::start(id, grain)).collect();
     let (mut low, mut high) = bounds(scene, &states);
@@ -33,14 +34,14 @@ fn largest_radius(scene: &Scene) -> f64 {
     scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max)
 }
 
-/// Returns true for each axis that is periodic in the programs. In two dimensions, z is periodic.
+/// Returns true for each axis that is periodic in the deck. In two dimensions the programs require that z is periodic.
 fn periodic(scene: &Scene) -> [bool; 3] {
     let [x, y, z] = scene.domain.map_or([false; 3], |domain| domain.periodic);
     [x, y, z || is_flat(scene)]
 }
 
-/// Returns the data file with `types` atom types. `density` computes the density (kg/m³) from mass and radius such
-/// that the program obtains the mass of the grain.
+/// Returns the data file with `types` atom types. `density` computes a density (kg/m³) from mass (kg) and radius (m),
+/// such that the program obtains the mass of the grain.
 pub(crate) fn data_file(
     scene: &Scene,
     types: usize,
@@ -66,12 +67,12 @@ pub(crate) fn data_file(
     text
 }
 
-/// Returns the density of a sphere (kg/m³).
+/// Returns the density (kg/m³) of a sphere with a given mass (kg) and radius (m).
 pub(crate) fn of_sphere(mass: f64, radius: f64) -> f64 {
     mass / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))
 }
 
-/// Returns the density of a disc of depth 1 m (kg/m³).
+/// Returns the density (kg/m³) of a disc with a given mass (kg) and radius (m) and a depth of 1 m.
 pub(crate) fn of_disc(mass: f64, radius: f64) -> f64 {
     mass / (std::f64::consts::PI * radius * radius)
 }
@@ -81,7 +82,7 @@ pub(crate) fn skin(scene: &Scene) -> f64 {
     0.2 * largest_radius(scene)
 }
 
-/// Returns the `boundary` command. Axes that are not periodic have the style `otherwise`.
+/// Returns the `boundary` command. `otherwise` is the style of axes that are not periodic.
 pub(crate) fn boundary(scene: &Scene, otherwise: &str) -> String {
     let words = periodic(scene).map(|periodic| if periodic { "p" } else { otherwise });
     format!("boundary {}", words.join(" "))

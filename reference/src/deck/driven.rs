@@ -1,11 +1,11 @@
-//! Grains with a prescribed velocity. They form groups that `fix move` moves.
+//! Commands for grains with a prescribed velocity. They are groups that `fix move` moves.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 
 use super::outline::is_flat;
 
-/// Returns the lines that move the driven grains of group `grains`, and the name of the group of the remaining
+/// Returns the commands that move the driven grains of the group `grains`, and the name of the group of the other
 /// grains.
 pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'static str) {
     if scene.driven.is_empty() {
@@ -24,7 +24,7 @@ pub(crate) fn driven(scene: &Scene, grains: &'static str) -> (Vec<String>, &'sta
     }
     lines.push(format!("group free subtract {grains}{groups}"));
     if scene.laws.iter().flatten().any(ContactLaw::has_damping) {
-        // Dashpots treat a frozen grain like a wall, with infinite mass. `fix move` moves the grain nevertheless.
+        // For dashpots, a frozen grain has infinite mass like a wall. `fix move` moves the grain nevertheless.
         lines.push(format!("group heavy union{groups}"));
         lines.push("fix heavy heavy freeze".to_owned());
     }

@@ -1,4 +1,5 @@
-//! Quantities read from the log of a run. They are sums over all contacts, which dumps of grains do not contain.
+//! Quantities that are read from the log of a run, because dumps of grains do not contain them: forces on walls, mean
+//! stress, coordination number, and displacements of pistons.
 
 use grainbench_scene::record::Series;
 use grainbench_scene::scene::{ProbeTarget, Scene};
@@ -6,37 +7,38 @@ use grainbench_scene::scene::{ProbeTarget, Scene};
 use super::outline::AXES;
 use crate::read::log::Log;
 
-/// Column of the log that is also a column of the series.
+/// Quantity in the log that becomes a column of the series.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LogColumn {
     /// Column of the series, for example `floor.force_x`.
     pub(crate) column: String,
-    /// Name of the variable. It is short and plain, because LIGGGHTS truncates the names of columns.
+    /// Name of the variable. It is short, because LIGGGHTS truncates the names of columns.
     pub(crate) name: String,
-    /// Formula in the language of the program.
+    /// Formula in the script language of the program.
     pub(crate) formula: String,
 }
 
 /// Components of the virial in the order of both programs.
 const VIRIAL: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
-/// Names that a program uses in its sums.
+/// Differences between the programs in the commands for logged quantities.
 pub(crate) struct Sums<'a> {
-    /// Temperature that the program excludes from its pressure.
+    /// Temperature argument of `compute pressure`, whose contribution the keyword `virial` excludes.
     pub(crate) temperature: &'a str,
     /// Group of the grains.
     pub(crate) grains: &'a str,
-    /// Returns the command and the components of the force of a wall on the grains, by the number of the wall from 1.
+    /// Function that returns the command and the components of the force of a wall on the grains. Walls are counted
+    /// from 1.
     pub(crate) force: &'a dyn Fn(usize) -> (String, [String; 3]),
-    /// Returns the displacement of a piston by the number of its wall from 1, or `None` if the program has no piston
-    /// there.
+    /// Function that returns the formula for the displacement of a piston, or `None` if the wall is no piston. Walls
+    /// are counted from 1.
     pub(crate) advance: &'a dyn Fn(usize) -> Option<String>,
 }
 
-/// Returns the commands that define the columns, and the columns.
+/// Returns the commands that define the logged quantities of a scene, and the columns of the series.
 ///
-/// The pressure of the programs contains the forces between grains at the time of the step. It is divided by the
-/// volume of a box that grows with the grains. The formula converts it to the volume of the scene's domain.
+/// `compute pressure` sums the forces between grains at the time of the step and divides by the volume of the program's
+/// box, which may grow with the grains. The formula converts the result to the volume of the scene's domain.
 pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<LogColumn>), String> {
     let Sums { temperature, grains, force, advance } = program;
     let (mut commands, mut all) = (String::new(), Vec::new());
@@ -49,7 +51,7 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
             ProbeTarget::Wall(wall) => {
                 let (command, components) = force(wall + 1);
                 commands.push_str(&command);
-                // The programs sum the force on the grains; the probe is the force on the wall.
+                // The programs sum the force on the grains. The probe is the force on the wall.
                 for (component, axis) in components.iter().zip(AXES).take(scene.dimension.count()) {
                     take(format!("{}.force_{axis}", probe.name), format!("-{component}"));
                 }
@@ -62,7 +64,7 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
             ProbeTarget::Stress => {
                 let Some(domain) = scene.domain else {
                     return Err(
-                        "mean stress needs a domain, for the box of the program grows with the grains".to_owned()
+                        "mean stress needs a domain, because the box of the program grows with the grains".to_owned()
                     );
                 };
                 let count = scene.dimension.count();
@@ -87,7 +89,7 @@ pub(crate) fn logged(scene: &Scene, program: &Sums<'_>) -> Result<(String, Vec<L
     Ok((commands.trim_end().to_owned(), all))
 }
 
-/// Returns the values of the log at the steps of a series, one column per quantity.
+/// Returns the values in the log at the steps of a series, one column per quantity. Missing values are NaN.
 pub(crate) fn read(logged: &[LogColumn], log: &Log, series: &Series) -> Vec<(String, Vec<f64>)> {
     let mut columns = Vec::new();
     for LogColumn { column, name, .. } in logged {
@@ -100,8 +102,8 @@ pub(crate) fn read(logged: &[LogColumn], log: &Log, series: &Series) -> Vec<(Str
                 continue;
             };
             for (step, value) in run.thermo.values(step).zip(run.thermo.values(at)) {
-                // The next run prints the last step of a run again before it builds neighbour lists. The value
-                // printed first is valid.
+                // A later run prints the last step of the previous run again, before it builds neighbour lists. The
+                // first value is valid.
                 if let Some(first) = series.step.binary_search(&(step as u64)).ok().filter(|&at| values[at].is_nan()) {
                     values[first] = value;
                 }

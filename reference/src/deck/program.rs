@@ -1,4 +1,4 @@
-//! Programs that this crate writes input for, runs and reads. Each program is one module.
+//! Programs for which this crate writes decks, and which it runs. Each program is a module.
 
 use std::fmt;
 
@@ -8,12 +8,12 @@ use super::lammps::Lammps;
 use super::liggghts::Liggghts;
 use super::{DeckFiles, Stepping};
 
-/// Interface of a program. The command `executable -in in.name -log file` runs it in the folder of its deck. The
-/// program writes dumps and a log in the format of LAMMPS.
+/// Interface of a program that runs decks. The command `executable -in in.name -log file` runs a deck in its folder.
+/// The program writes dumps and a log in the format of LAMMPS.
 pub(crate) trait Peer: Sync {
-    /// Returns the name in lower case. The solver has the same name.
+    /// Returns the name in lower case, which is also the solver name.
     fn name(&self) -> &'static str;
-    /// Returns the name in the spelling of the authors.
+    /// Returns the name in the spelling of its authors.
     fn title(&self) -> &'static str;
     /// Returns the name of the executable on `PATH`.
     fn executable(&self) -> &'static str;
@@ -24,7 +24,7 @@ pub(crate) trait Peer: Sync {
     fn write(&self, scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String>;
 }
 
-/// Program that decks are written for.
+/// Program for which decks are written.
 #[derive(Clone, Copy)]
 pub struct Program(&'static dyn Peer);
 
@@ -40,13 +40,13 @@ impl Program {
         self.0
     }
 
-    /// Returns the name in lower case. The solver has the same name.
+    /// Returns the name in lower case, which is also the solver name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.0.name()
     }
 
-    /// Returns the program with a name.
+    /// Returns the program with this name in lower case, or `None`.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|program| program.name() == name)
@@ -58,7 +58,7 @@ impl Program {
         self.0.executable()
     }
 
-    /// Returns the environment variable that names another executable.
+    /// Returns the environment variable that can name another executable.
     #[must_use]
     pub fn variable(self) -> String {
         format!("GRAINBENCH_{}", self.name().to_uppercase())

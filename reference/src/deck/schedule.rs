@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 use super::Stepping;
 
-/// Returns the step of a moment, or `None` if the moment is after the end. A moment between two steps is an error.
+/// Returns the step of a time, or `None` if the time is not before the end of the run. A time between two steps is an
+/// error.
 fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
     let step = match moment {
         Moment::Never => return Ok(None),
@@ -21,12 +22,14 @@ fn step_of(moment: Moment, stepping: &Stepping) -> Result<Option<u64>, String> {
     Ok((step < stepping.steps).then_some(step))
 }
 
-/// Returns the first step without a wall that is present until a time (s).
+/// Returns the first step without a wall that is removed at the time `until` (s): the first step that is not before
+/// this time.
 pub(crate) fn gone_at(until: f64, stepping: &Stepping) -> u64 {
     (until * (1.0 - 1e-9) / stepping.time_step).ceil() as u64
 }
 
-/// Returns the steps at which any wall changes its velocity, sorted. The first entry is 0, the last entry is the end.
+/// Returns the steps at which any wall changes its velocity, sorted. The first entry is 0, and the last is the end of
+/// the run.
 pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &Stepping) -> Result<Vec<u64>, String> {
     let mut steps = vec![0, stepping.steps];
     for phase in motions.flat_map(|motion| &motion.phases) {
@@ -39,7 +42,7 @@ pub(crate) fn changes<'m>(motions: impl Iterator<Item = &'m Motion>, stepping: &
     Ok(steps)
 }
 
-/// Velocities of a wall between two changes.
+/// Velocity and angular velocity of a wall between two changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rates {
     /// Velocity (m/s).
@@ -48,7 +51,7 @@ pub(crate) struct Rates {
     pub(crate) spin: Vector3<f64>,
 }
 
-/// Returns the velocities from a step to the next change.
+/// Returns velocity and angular velocity of a wall from a step to the next change.
 pub(crate) fn rates_from(motion: &Motion, step: u64, stepping: &Stepping) -> Result<Rates, String> {
     let mut rates = Rates::default();
     for phase in &motion.phases {

@@ -1,10 +1,10 @@
-//! Common time limit for a run of a program and the reading of its output.
+//! Time limit of a run of a program. Reading of its output counts too.
 
 use std::time::{Duration, Instant};
 
 use grainbench_scene::solver::Failure;
 
-/// Time at which a limit expires.
+/// Start and duration of a time limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
     start: Instant,

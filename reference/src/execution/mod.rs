@@ -1,7 +1,8 @@
-//! Runs an external program: writes the input files to a scratch folder, starts one process and reads its output.
+//! Runs of external programs: input files are written to a scratch folder, one process is started, and its output is
+//! read.
 //!
 //! LAMMPS and LIGGGHTS ([`crate::live`]) and programs with a manifest ([`crate::outside`]) share this code. They differ
-//! only in the data of [`Launch`] and in the readers of their output.
+//! only in [`Launch`] and in the readers of their output.
 
 mod deadline;
 pub(crate) mod process;
@@ -28,7 +29,7 @@ use worker::Answer;
 /// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
 
-/// Run of a program.
+/// Input files, command, limits and protocol of a run that is to be started.
 pub(crate) struct Launch<'p> {
     /// Name of the solver.
     pub(crate) solver: String,
@@ -38,9 +39,10 @@ pub(crate) struct Launch<'p> {
     pub(crate) files: Vec<(String, String)>,
     /// Path of the program.
     pub(crate) executable: PathBuf,
-    /// Command-line arguments. `{scene}` is replaced by the path of the first input file, and `{out}` by the folder.
+    /// Command-line arguments. `{scene}` is replaced by the path of the first input file, and `{out}` by the path of
+    /// the folder of the run.
     pub(crate) arguments: Vec<String>,
-    /// Limits. The time limit has started.
+    /// Limits of the run. The time limit has already started.
     pub(crate) limits: Limits,
     /// Protocol of the process.
     pub(crate) protocol: Protocol<'p>,
@@ -48,36 +50,38 @@ pub(crate) struct Launch<'p> {
 
 /// Protocol of a process.
 pub(crate) enum Protocol<'p> {
-    /// The exit code is 0 after a run.
+    /// The exit code is 0 after a successful run.
     ExitCode,
-    /// The exit code is 0 after a run and [`CANNOT`] if the program cannot express the scene. The program may write a
-    /// report with this name.
+    /// The exit code is 0 after a successful run, and [`CANNOT`] if the program cannot express the scene. If the name
+    /// of a report is given, the program may write this file.
     Report(Option<&'p str>),
-    /// Workers answer one request after the other. The list contains those that wait for a run.
+    /// A worker answers one request after the other. The list contains the workers that wait for a request.
     Worker(&'p Mutex<Vec<Worker>>),
 }
 
 /// Message of a program about its run.
 enum ProgramMessage {
-    /// The run succeeded. The time (s) is present if the program reports it.
+    /// The run succeeded. The solution time (s) is present if the program reports it.
     Ran(Option<f64>),
     /// The program cannot express the scene, for this reason.
     Cannot(String),
     Failed(Failure),
 }
 
-/// Execution that ended regularly.
+/// Result of a program that ended without a signal and within its limits.
 pub(crate) struct Execution {
     folder: TempDir,
     message: ProgramMessage,
     last_lines: Vec<String>,
-    /// Elapsed time (s).
+    /// Wall-clock time of the execution (s).
     pub(crate) seconds: f64,
 }
 
-/// Runs a program and returns its record. `read` reads the output in the folder until the deadline, and may return
-/// further data. `finish` returns the time of the run (s) and the version of the program. Its arguments are the time
-/// that the program reports (s), the elapsed time (s) and these data.
+/// Runs a program and returns its record.
+///
+/// `read` reads the output in the folder until the deadline and may return further data. `finish` returns the time of
+/// the run (s) and the version of the program. The arguments of `finish` are the time that the program reports (s), the
+/// elapsed time (s) and the further data.
 pub(crate) fn run<T>(
     launch: &Launch<'_>,
     (scene, resolution): (&Scene, &Resolution),
@@ -109,7 +113,7 @@ pub(crate) fn run<T>(
     })
 }
 
-/// Starts a program in a new folder with its files, and waits until its run ends.
+/// Starts a program in a new folder with its input files, and waits for the end of the run.
 pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
     let Launch { solver, files, executable, limits, protocol, .. } = launch;
     let fail = |(failure, last_lines)| RunError::Program { solver: solver.clone(), failure, last_lines };
@@ -125,7 +129,7 @@ pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
         let waiting = idle().pop();
         let worker = waiting.map_or_else(|| Worker::start(executable, &arguments, *limits), Ok);
         let mut worker = worker.map_err(|failure| fail((failure, Vec::new())))?;
-        // The start of the worker does not count, because later runs do not need it.
+        // The start of the worker is not timed, because later runs do not need it.
         start = Instant::now();
         let answer = worker.ask(&scene, out, *limits).map_err(fail)?;
         let last_lines = worker.last_lines();
@@ -142,7 +146,7 @@ pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
 }
 
 impl ProgramMessage {
-    /// Returns the message that follows from the exit code, the report and the printed text in the folder.
+    /// Returns the message of a process from its exit code, its report and its standard output in the folder.
     fn from_process(ended: &ProcessEnd, protocol: &Protocol<'_>, folder: &Path) -> Result<Self, Failure> {
         let report = match protocol {
             Protocol::Report(Some(name)) => report::read(&folder.join(name), name)?,
@@ -152,7 +156,9 @@ impl ProgramMessage {
             let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
             let screen = String::from_utf8_lossy(&screen).into_owned();
             let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
-            return Ok(Self::Cannot(reason.unwrap_or_else(|| format!("it ended with {CANNOT} without a reason"))));
+            return Ok(Self::Cannot(
+                reason.unwrap_or_else(|| format!("it ended with exit code {CANNOT} and gave no reason")),
+            ));
         }
         Ok(match report.failed {
             Some(failed) => Self::Failed(Failure::Crash(failed.words())),
@@ -161,7 +167,7 @@ impl ProgramMessage {
         })
     }
 
-    /// Returns the message that follows from the answer of a worker.
+    /// Returns the message of a worker from its answer.
     fn from_answer(answer: Answer) -> Self {
         match answer {
             Answer::Ran(times) => match times.seconds() {
@@ -176,14 +182,14 @@ impl ProgramMessage {
 
 /// Returns the maximum size of the files of a run (B).
 ///
-/// It contains 64 MiB for the start and 4 KiB per sample and grain. This is four times the size of its columns and a
+/// The size is 64 MiB plus 4 KiB per sample and grain. This is four times the size of the columns of a grain and of a
 /// dozen contacts.
 pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
     let samples = stepping.steps / stepping.interval + 2;
     (64 << 20) + samples.saturating_mul(4096).saturating_mul(scene.grains.len() as u64)
 }
 
-/// Returns an error if a series lacks a sample of its deck or has a value that is not finite.
+/// Checks that a series has all samples of its run and only finite values.
 pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
     let mut found = series.step.iter().copied();
     for step in stepping.samples() {
@@ -192,7 +198,7 @@ pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String
             Some(at) => return Err(format!("expected a sample at step {step}, found step {at}")),
             None => {
                 let (last, steps) = (series.step.last().copied().unwrap_or_default(), stepping.steps);
-                return Err(format!("expected samples to step {steps}, found the last at step {last}"));
+                return Err(format!("expected samples to step {steps}, found the last sample at step {last}"));
             }
         }
     }
@@ -205,13 +211,13 @@ pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String
     Ok(())
 }
 
-/// Returns the failure of a run whose file cannot be read.
+/// Returns the failure of a run with an unreadable output file.
 pub(crate) fn output(error: ReadError) -> Failure {
     Failure::Output(error.to_string())
 }
 
-/// Returns the path of a file that a run wrote in a folder. Links are refused, including those to parent folders.
-/// Pipes are refused, because reading them could block forever.
+/// Returns the path of an output file in the folder of a run. Links are refused, also among the folders in `name`.
+/// Pipes are refused too, because reading from them could block forever.
 pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> {
     let path = folder.join(name);
     let between = Path::new(name).ancestors().skip(1).filter(|part| !part.as_os_str().is_empty());
@@ -222,7 +228,9 @@ pub(crate) fn plain_file(folder: &Path, name: &str) -> Result<PathBuf, Failure> 
         }
     }
     match fs::symlink_metadata(&path) {
-        Ok(found) if !found.is_file() => Err(Failure::Output(format!("{name}: expected a plain file, found none"))),
+        Ok(found) if !found.is_file() => {
+            Err(Failure::Output(format!("{name}: expected a plain file, found something else")))
+        }
         // A missing file is reported when it is opened.
         _ => Ok(path),
     }

@@ -17,15 +17,16 @@ use super::Deadline;
 
 /// File with the standard output of a program.
 pub(crate) const SCREEN: &str = "screen";
-/// File with the standard error of a program if the two are separate.
+/// File with the standard error of a program, if it is separate from the standard output.
 pub(crate) const ERRORS: &str = "errors";
-/// Environment variable with the folder of a run.
+/// Environment variable with the folder of a run, which identifies its processes.
 const FOLDER: &str = "GRAINBENCH_FOLDER";
-/// Maximum number of searches for processes of a run. Processes that end can start new ones.
+/// Maximum number of searches for processes of a run. Processes may start further processes while they are being
+/// killed.
 const SWEEPS: u32 = 20;
 /// Number of last lines in a report.
 const LAST_LINES: usize = 4;
-/// Number of bytes at the end of a file that are searched for last lines (B).
+/// Size of the end of a file that is searched for its last lines (B).
 const END: u64 = 4096;
 
 /// Returns the path of a program on `PATH`.
@@ -34,7 +35,7 @@ pub(crate) fn on_path(name: &str) -> Option<PathBuf> {
     env::split_paths(&path).map(|folder| folder.join(name)).find(|path| path.is_file())
 }
 
-/// Creates a folder with files of these names and texts. The folder is deleted when it is dropped.
+/// Creates a temporary folder with files of given names and texts. The folder is deleted when the value is dropped.
 pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -> io::Result<TempDir> {
     let folder = tempfile::Builder::new().prefix("grainbench-").tempdir()?;
     for (name, text) in files {
@@ -51,13 +52,13 @@ pub(crate) struct ProcessStart<'s> {
     pub(crate) arguments: &'s [String],
     /// Folder of the output files, including standard output.
     pub(crate) folder: &'s Path,
-    /// Working directory, if it is not the folder.
+    /// Working directory; `None` for `folder`.
     pub(crate) at: Option<&'s Path>,
-    /// If true, standard error is written to [`ERRORS`] and not to [`SCREEN`].
+    /// True to write standard error to [`ERRORS`] instead of [`SCREEN`].
     pub(crate) errors_apart: bool,
 }
 
-/// End of a program that was not ended by a signal.
+/// Regular end of a program, without a signal.
 pub(crate) struct ProcessEnd {
     /// Exit code.
     pub(crate) code: i32,
@@ -65,16 +66,16 @@ pub(crate) struct ProcessEnd {
     pub(crate) last_lines: Vec<String>,
 }
 
-/// Limits of a run.
+/// Limits of a program run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     /// Time at which the program must have ended.
     pub(crate) deadline: Deadline,
     /// Maximum size of all files in the folder (B).
     pub(crate) bytes: u64,
-    /// Maximum address space of each process (KiB). Without a value there is no limit.
+    /// Maximum address space of each process (KiB); `None` for no limit.
     pub(crate) memory: Option<u64>,
-    /// Number of threads.
+    /// Number of threads of the program.
     pub(crate) threads: u16,
 }
 
@@ -89,33 +90,33 @@ impl Limits {
     }
 }
 
-/// Flag that ends all programs.
+/// Flag that ends all running programs if it is set.
 static INTERRUPT: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// True if a program was ended by the flag.
+/// True if a program was ended because of the flag.
 static HAS_ENDED: AtomicBool = AtomicBool::new(false);
 
-/// Ends running programs once a flag is set. The first call in a process counts.
+/// Sets the flag that ends running programs. Only the first call in a process has an effect.
 pub fn end_programs_at(interrupt: Arc<AtomicBool>) {
     let _ = INTERRUPT.set(interrupt);
 }
 
-/// Returns true if an interrupt ended a program. Errors after that may be due to the interrupt.
+/// Returns true if an interrupt has ended a program. Later errors may be due to the interrupt.
 #[must_use]
 pub fn has_ended_programs() -> bool {
     HAS_ENDED.load(Ordering::Relaxed)
 }
 
-/// Shell script that runs a program. It ends the program and all child processes when its own standard input closes.
-/// This happens when we close it and when our process ends for any reason.
+/// Shell script that guards a program. It ends the program and all child processes when its own standard input closes,
+/// which happens when we close it or our process ends for any reason.
 ///
 /// If standard input closes without a message, our process has ended, and the script deletes the folder. The shell
-/// leads the process group, so the number of the group stays in use.
+/// leads the process group, so the number of the group is not reused.
 const GUARD: &str = "exec 3<&0 </dev/null
 \"$0\" \"$@\" 3<&- & program=$!
 (read -r _ <&3 || rm -rf \"$GRAINBENCH_FOLDER\"; kill -9 -$$) &
 wait $program";
-/// Message to the guard before its standard input closes while our process continues.
+/// Message to the guard, sent before its standard input closes while our process continues.
 const WE_ARE_ALIVE: &[u8] = b"alive\n";
 
 /// Runs a program until it ends or exceeds a limit.
@@ -138,7 +139,7 @@ pub(crate) fn run(started: &ProcessStart<'_>, limits: Limits) -> Result<ProcessE
             Ok(None) => match limits.check() {
                 Err(failure) => failure,
                 Ok(()) => {
-                    // The pause is at most a twentieth of the elapsed time, so late detection costs at most 5 %.
+                    // The pause is 1/20 of the elapsed time, but at least 0.5 ms and at most 20 ms.
                     sleep((start.elapsed() / 20).clamp(Duration::from_micros(500), Duration::from_millis(20)));
                     continue;
                 }
@@ -155,7 +156,7 @@ pub(crate) fn run(started: &ProcessStart<'_>, limits: Limits) -> Result<ProcessE
     let last_lines = last_lines(folder);
     match status.code() {
         Some(0) if size(folder) > limits.bytes => Err((too_much(limits.bytes), last_lines)),
-        // Exit codes of a shell that could not start a program.
+        // Exit codes of a shell that could not start the program.
         Some(126 | 127) => Err((Failure::NotRun(executable.display().to_string()), last_lines)),
         // Exit codes of a shell whose program was ended by a signal.
         Some(code @ 129..=192) => Err((Failure::Crash(format!("signal {}", code - 128)), last_lines)),
@@ -164,8 +165,8 @@ pub(crate) fn run(started: &ProcessStart<'_>, limits: Limits) -> Result<ProcessE
     }
 }
 
-/// Returns the command for a shell that runs a script as the guard of a program. It applies the limits and uses the
-/// folder as working directory.
+/// Returns the shell command that runs a script as the guard of a program. It sets the memory limit and the number of
+/// threads; the working directory is `folder`.
 pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folder: &Path, limits: Limits) -> Command {
     let guarded = match limits.memory {
         Some(most) => format!("ulimit -v {most} || exit 126\n{script}"),
@@ -178,11 +179,11 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
         .args(arguments)
         .current_dir(folder)
         .env(FOLDER, folder)
-        // The number of threads is ours, because another order of summation changes the last digits.
+        // The number of threads is set, because another order of summation changes the last digits.
         .env("OMP_NUM_THREADS", limits.threads.to_string())
-        // Avoids one daemon per start, which would monitor several processes.
+        // Avoids one daemon per start for monitoring several processes.
         .env("OMPI_MCA_ess_singleton_isolated", "1")
-        // Avoids the search for networks between machines, which takes three quarters of the start time.
+        // Avoids the search for networks between machines, which takes 3/4 of the start time.
         .env("OMPI_MCA_pml", "ob1")
         .stdin(Stdio::piped());
     #[cfg(unix)]
@@ -190,18 +191,16 @@ pub(crate) fn guard(script: &str, executable: &Path, arguments: &[String], folde
     command
 }
 
-/// Ends processes that a program started in separate sessions (`setsid`). The guard itself ends only the process
-/// group that it leads.
+/// Ends processes that a program started in separate sessions (`setsid`). The guard ends only its own process group.
 ///
-/// These processes are identified by the folder in their environment. This needs `/proc`.
+/// These processes are found in `/proc` by the folder in their environment.
 pub(crate) fn end_sessions(folder: &Path, guard: u32) {
     let mut mark = format!("{FOLDER}=").into_bytes();
     mark.extend(folder.as_os_str().as_encoded_bytes());
     for _ in 0..SWEEPS {
         let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
         let numbers = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-        // The guard ends its own group, including processes with another environment. A process that has ended has no
-        // group.
+        // Processes in the group of the guard are ended by the guard. A process without a group has ended.
         let is_marked = |process: &u32| {
             if group(*process).is_none_or(|group| group == guard) {
                 return false;
@@ -218,10 +217,10 @@ pub(crate) fn end_sessions(folder: &Path, guard: u32) {
     }
 }
 
-/// Returns the process group of a process from `/proc`.
+/// Returns the process group of a process, or `None` if `/proc` does not list the process.
 fn group(process: u32) -> Option<u32> {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The program name in parentheses may contain blanks. State, parent and group follow it.
+    // The program name in parentheses may contain blanks. State, parent process and group follow it.
     text.rsplit_once(')')?.1.split_ascii_whitespace().nth(2)?.parse().ok()
 }
 
@@ -230,15 +229,15 @@ pub(crate) fn too_much(most: u64) -> Failure {
     Failure::Output(format!("expected at most {} MB for the samples of this scene, found more", most / 1_000_000))
 }
 
-/// Closes the standard input of the guard. A message is sent before, so that the guard keeps the folder. The guard
-/// may have ended.
+/// Closes the standard input of the guard after the message that makes the guard keep the folder. The guard may have
+/// ended already.
 fn close(child: &mut Child) {
     if let Some(mut input) = child.stdin.take() {
         say_alive(&mut input);
     }
 }
 
-/// Sends the guard the message that our process is alive. The guard may have ended.
+/// Sends the message `WE_ARE_ALIVE` to the guard, which may have ended already.
 pub(crate) fn say_alive(input: &mut ChildStdin) {
     let _ = input.write_all(WE_ARE_ALIVE);
 }
@@ -260,7 +259,7 @@ pub(crate) fn last_lines(folder: &Path) -> Vec<String> {
     if of_errors.is_empty() { last_lines_of(&folder.join(SCREEN)) } else { of_errors }
 }
 
-/// Returns the last lines of a file. LIGGGHTS prints bytes that are not UTF-8.
+/// Returns the last lines of a file. The text may have bytes that are not UTF-8, for example from LIGGGHTS.
 fn last_lines_of(path: &Path) -> Vec<String> {
     let read = || -> io::Result<Vec<u8>> {
         let mut file = File::open(path)?;

@@ -13,16 +13,16 @@ const MOST: u64 = 1 << 20;
 /// Report of a program. Unknown keys are ignored.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub(super) struct ProgramReport {
-    /// Times of its parts (s).
+    /// Times that the program measured (s).
     pub(super) seconds: Option<Seconds>,
     /// Description of a failure.
     pub(super) failed: Option<FailureReport>,
 }
 
-/// Times (s).
+/// Times in a report (s).
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Seconds {
-    /// Time of the solution, without the start.
+    /// Solution time without start-up (s).
     pub(super) solve: f64,
 }
 
@@ -33,7 +33,7 @@ impl Seconds {
     }
 }
 
-/// Time, position and reason of a failure. Each can be any JSON value.
+/// Time, position and reason of a failure. Each value can be any JSON value.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct FailureReport {
     when: Option<Value>,
@@ -43,16 +43,21 @@ pub(super) struct FailureReport {
 }
 
 impl FailureReport {
-    /// Returns the description as text.
+    /// Returns the failure as text.
     pub(super) fn words(&self) -> String {
         let text = |value: &Option<Value>| {
             value.as_ref().map_or_else(|| "unknown".to_owned(), |value| one_line(&value.to_string()))
         };
-        format!("by its own report: when {}, where {}, why {}", text(&self.when), text(&self.place), text(&self.why))
+        format!(
+            "the program reports: time {}, place {}, cause {}",
+            text(&self.when),
+            text(&self.place),
+            text(&self.why)
+        )
     }
 }
 
-/// Reads a report. Returns an empty report if there is no file.
+/// Reads a report. Returns an empty report if the file does not exist.
 pub(super) fn read(path: &Path, name: &str) -> Result<ProgramReport, Failure> {
     let wrong = |expected: &str, found: String| Failure::Output(format!("{name}: expected {expected}, found {found}"));
     match fs::symlink_metadata(path) {

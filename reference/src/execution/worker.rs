@@ -1,9 +1,9 @@
-//! Program that keeps running. It is started once, reads one request per line from standard input and answers each
-//! with one line. This avoids the start of an interpreter for each run.
+//! Worker: a program that keeps running. It is started once, reads one request per line from standard input and writes
+//! one answer per line. This avoids the start of an interpreter for each run.
 //!
-//! A request is `{"scene": FILE, "out": FOLDER}`. The answer is `{"ran": {"seconds": …}}`, where the time of the
-//! solution (s) is optional, `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. Arrays are
-//! written to files in the folder.
+//! A request is `{"scene": FILE, "out": FOLDER}`. The answer is `{"ran": {"seconds": …}}` with an optional solution
+//! time (s), `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. The worker writes arrays to
+//! files in the folder.
 
 use super::process::{self, ERRORS, Limits};
 use super::report::{FailureReport, Seconds};
@@ -21,14 +21,13 @@ use tempfile::TempDir;
 
 /// Maximum length of an answer (B).
 const LONGEST: u64 = 1 << 16;
-/// Interval between checks of the limits.
+/// Interval between checks of the limits while a run is in progress.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Shell script that passes every line of its own standard input to the program. It ends the program and all child
-/// processes when standard input closes. It also does so when a message says that our process is alive and finished.
+/// Shell script that guards a worker and passes lines of its own standard input to it. It ends the worker and all child
+/// processes when it reads the line `alive`, when its standard input closes, or when the worker ends.
 ///
-/// If standard input closes without this message, our process has ended, and the script deletes the folder. If the
-/// program ends, its child processes are ended too.
+/// If standard input closes without the line `alive`, our process has ended, and the script deletes the folder.
 const GUARD: &str = "exec 3<&0 4>&1 </dev/null >/dev/null
 { while IFS= read -r line <&3; do
     [ \"$line\" = alive ] && kill -9 -$$
@@ -57,15 +56,15 @@ pub(super) enum Answer {
     Failed(FailureReport),
 }
 
-/// Times in the answer.
+/// Times in an answer.
 #[derive(Deserialize)]
 pub(super) struct Times {
-    /// Time of the solution (s).
+    /// Solution time (s); `None` if the worker does not report it.
     pub(super) seconds: Option<f64>,
 }
 
 impl Times {
-    /// Returns the time as in a report.
+    /// Returns the time in the form of a report, or an error if it is negative or not finite.
     pub(super) fn seconds(&self) -> Result<Option<Seconds>, Failure> {
         match self.seconds.map(|solve| Seconds { solve }) {
             Some(seconds) if !seconds.is_a_time() => {
@@ -76,18 +75,18 @@ impl Times {
     }
 }
 
-/// Program that keeps running.
+/// Worker process.
 #[derive(Debug)]
 pub(crate) struct Worker {
     guard: Child,
     requests: ChildStdin,
     answers: Receiver<String>,
-    /// Folder of the worker with its standard error.
+    /// Folder of the worker, with its standard error.
     folder: TempDir,
 }
 
 impl Worker {
-    /// Starts a program.
+    /// Starts a worker process.
     pub(super) fn start(executable: &Path, arguments: &[String], limits: Limits) -> Result<Self, Failure> {
         let not_run = |error: io::Error| Failure::NotRun(format!("{}: {error}", executable.display()));
         let folder = process::scratch([]).map_err(not_run)?;
@@ -97,7 +96,7 @@ impl Worker {
         let piped = || not_run(io::Error::other("no pipe"));
         let (requests, lines) = (guard.stdin.take().ok_or_else(piped)?, guard.stdout.take().ok_or_else(piped)?);
         let (send, answers) = sync_channel(1);
-        // The thread ends when the program ends or the receiver is dropped.
+        // The thread ends when the worker ends or the receiver is dropped.
         thread::spawn(move || {
             let mut lines = BufReader::new(lines);
             loop {
@@ -112,7 +111,7 @@ impl Worker {
         Ok(Self { guard, requests, answers, folder })
     }
 
-    /// Requests a run and waits for the answer. The caller must not use a worker again after an error.
+    /// Requests a run and waits for the answer. After an error the worker must not be used again.
     pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, (Failure, Vec<String>)> {
         let request = serde_json::to_string(&Request { scene, out }).unwrap_or_default();
         let sent = writeln!(self.requests, "{request}").and_then(|()| self.requests.flush());
@@ -155,7 +154,7 @@ impl Drop for Worker {
     }
 }
 
-/// Returns the answer in a line.
+/// Parses an answer from a line of the worker's standard output.
 fn parsed(line: &str) -> Result<Answer, Failure> {
     let text = line.trim();
     serde_json::from_str(text).map_err(|error| {

@@ -1,4 +1,5 @@
-//! LAMMPS and LIGGGHTS as solvers, if they are installed. A run consists of deck, execution, dump and record.
+//! LAMMPS and LIGGGHTS as solvers, if they are installed. For a run, a deck is written and executed, and its dumps are
+//! read.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -24,7 +25,7 @@ use crate::read::numbers::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 
-/// Time limit of a run, if no other limit is given.
+/// Default time limit of a run.
 const TIME_LIMIT: Duration = Duration::from_secs(600);
 /// Environment variable with another time limit (s).
 const OTHER_LIMIT: &str = "GRAINBENCH_TIME_LIMIT";
@@ -32,7 +33,7 @@ const OTHER_LIMIT: &str = "GRAINBENCH_TIME_LIMIT";
 /// Log file in the folder of a run.
 const LOG: &str = "log.run";
 
-/// Program that is run as a solver.
+/// Installed program as a solver.
 #[derive(Debug, Clone)]
 pub struct LiveProgram {
     program: Program,
@@ -41,8 +42,8 @@ pub struct LiveProgram {
 }
 
 impl LiveProgram {
-    /// Finds the program that `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names, or else `lmp` or `liggghts` on
-    /// `PATH`. The time limit of a run is ten minutes, or the number of seconds in `GRAINBENCH_TIME_LIMIT`.
+    /// Finds the program that `GRAINBENCH_LAMMPS` or `GRAINBENCH_LIGGGHTS` names, otherwise `lmp` or `liggghts` on
+    /// `PATH`. The time limit of a run is 600 s, or the number of seconds in `GRAINBENCH_TIME_LIMIT`.
     #[must_use]
     pub fn find(program: Program) -> Self {
         let (variable, usual) = (program.variable(), program.executable());
@@ -50,7 +51,9 @@ impl LiveProgram {
             Some(path) => Some(PathBuf::from(&path))
                 .filter(|path| path.is_file())
                 .ok_or_else(|| format!("{variable} names `{}`, which is not a file", PathBuf::from(path).display())),
-            None => on_path(usual).ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names none")),
+            None => {
+                on_path(usual).ok_or_else(|| format!("there is no `{usual}` on PATH, and {variable} names no program"))
+            }
         };
         match env::var(OTHER_LIMIT).ok().filter(|text| !text.is_empty()).map(|text| (text.parse::<u64>(), text)) {
             None => Self { program, executable, time_limit: TIME_LIMIT },
@@ -62,13 +65,13 @@ impl LiveProgram {
         }
     }
 
-    /// Returns the program at a path.
+    /// Returns the program with the executable at a path, with the default time limit.
     #[must_use]
     pub fn at(program: Program, executable: &Path) -> Self {
         Self { program, executable: Ok(executable.to_owned()), time_limit: TIME_LIMIT }
     }
 
-    /// Sets the common time limit for the run and the reading of its files.
+    /// Sets the time limit of a run, including the reading of its files.
     #[must_use]
     pub fn with_time_limit(self, time_limit: Duration) -> Self {
         Self { time_limit, ..self }
@@ -77,8 +80,8 @@ impl LiveProgram {
     /// Returns the hash of the executable, or an empty text if there is none.
     #[must_use]
     pub fn edition(&self) -> String {
-        /// Hashes of executables by path and time of change. They are stored because a plan requests a hash for each
-        /// task.
+        /// Hashes of executables by path and time of change. They are computed once, because each task of a plan needs
+        /// the hash.
         static KNOWN: Mutex<BTreeMap<(PathBuf, SystemTime), String>> = Mutex::new(BTreeMap::new());
         let Ok(path) = &self.executable else { return String::new() };
         let changed = fs::metadata(path).and_then(|about| about.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
@@ -133,12 +136,13 @@ impl Solver for LiveProgram {
     }
 }
 
-/// Reads the dumps of a deck's run in a folder until the deadline. Values that are not finite are kept, and errors
-/// later name their column and step.
+/// Reads the dumps of a deck's run in a folder until the deadline. Values that are not finite are kept, so that later
+/// errors can name their column and step.
 fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Result<DumpRecord, Failure> {
     let stepping = deck.stepping;
     let open = |name: &str| DumpReader::open(&plain_file(folder, name)?).map_err(output);
-    // Calls a function with each snapshot of a dump at the samples, and of the dump at the end if there is one.
+    // Calls a function with each snapshot of the dump at the samples, and of the dump at the end if the last step is no
+    // sample.
     let read = |names: [&'static str; 2], take: &mut dyn FnMut(&str, &DumpSnapshot) -> Result<(), ReadError>| {
         let mut snapshot = DumpSnapshot::default();
         for name in &names[..if stepping.ends_on_a_sample() { 1 } else { 2 }] {

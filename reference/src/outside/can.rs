@@ -1,4 +1,4 @@
-//! Features of a scene that a program does not declare.
+//! Comparison of the features of a scene with those that a program declares.
 
 use super::manifest::{Capabilities, Manifest, Wall};
 use grainbench_scene::effect::Effect;
@@ -11,25 +11,25 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
     let can = &manifest.can;
     let dimension = scene.dimension.count();
     if !can.dimension.contains(&dimension) {
-        return Some(format!("it declares no scenes of {dimension} dimensions"));
+        return Some(format!("it does not declare scenes in {dimension} dimensions"));
     }
     if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
-        return Some(format!("{what} cannot be declared"));
+        return Some(format!("a manifest cannot declare {what}"));
     }
     if !scene.grains.is_empty() && manifest.output.grains.is_none() {
-        return Some("it leaves no grains (`output.grains`)".to_owned());
+        return Some("its manifest declares no output of grains (`output.grains`)".to_owned());
     }
     let deforms = matches!(resolution, Resolution::Grid { .. });
     let law = if deforms { lacks_material(can, scene) } else { lacks_law(can, scene) };
     law.or_else(|| lacks_wall(can, scene)).or_else(|| lacks_effect(can, scene, deforms))
 }
 
-/// Returns the missing feature for grains that keep their shape.
+/// Returns a message about the first feature that the program lacks for rigid grains, or `None`.
 fn lacks_law(can: &Capabilities, scene: &Scene) -> Option<String> {
     if let Some(what) = scene.needs_deformable() {
         return Some(match can.deformable[..] {
-            [] => format!("it declares no bodies that deform (`can.deformable`), and the scene has {what}"),
-            _ => format!("the scene has {what}, and no cells of a grid are named"),
+            [] => format!("it declares no deformable bodies (`can.deformable`), but the scene has {what}"),
+            _ => format!("the scene has {what}, but the resolution sets no grid cells"),
         });
     }
     for law in scene.laws.iter().flatten() {
@@ -41,16 +41,17 @@ fn lacks_law(can: &Capabilities, scene: &Scene) -> Option<String> {
     None
 }
 
-/// Returns the missing feature for grains and bodies that deform. Their contacts have friction and no springs.
+/// Returns a message about the first feature that the program lacks for deformable grains and bodies, or `None`. Their
+/// contacts have friction but no springs.
 fn lacks_material(can: &Capabilities, scene: &Scene) -> Option<String> {
     if can.deformable.is_empty() {
-        return Some("it declares no bodies that deform (`can.deformable`)".to_owned());
+        return Some("it declares no deformable bodies (`can.deformable`)".to_owned());
     }
     if scene.start.manufactured.is_some() || scene.start.initial_pressure.is_some() {
-        return scene.start.needs_deformable().map(|what| format!("{what} cannot be declared"));
+        return scene.start.needs_deformable().map(|what| format!("a manifest cannot declare {what}"));
     }
     if let Some(body) = scene.bodies.iter().find(|body| body.stress.is_some()) {
-        return Some(format!("body `{}` starts with a stress, which cannot be declared", body.name));
+        return Some(format!("body `{}` starts with a stress, which a manifest cannot declare", body.name));
     }
     let used = scene.grains.iter().map(|grain| grain.material).chain(scene.bodies.iter().map(|body| body.material));
     used.into_iter().find_map(|place| {
@@ -72,7 +73,7 @@ fn lacks_wall(can: &Capabilities, scene: &Scene) -> Option<String> {
             WallShape::Round { .. } => (Wall::Round, "round"),
             WallShape::Mesh(_) => (Wall::Mesh, "mesh"),
         };
-        (!can.walls.contains(&kind)).then(|| format!("it does not declare walls that are a `{word}`"))
+        (!can.walls.contains(&kind)).then(|| format!("it does not declare walls of the shape `{word}`"))
     })
 }
 
@@ -81,16 +82,17 @@ fn lacks_effect(can: &Capabilities, scene: &Scene, deforms: bool) -> Option<Stri
         return Some("it does not declare driven grains (`can.driven`)".to_owned());
     }
     if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
-        return Some(format!("wall `{}` moves by a sine or a ramp, which resolved scenes do not hold", wall.name));
+        return Some(format!("wall `{}` moves by a sine or a ramp, which resolved scenes cannot express", wall.name));
     }
     if let Some(driven) = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0) {
         let name = &driven.name;
-        return Some(format!("driven grains `{name}` have a spin or a motion, which resolved scenes do not hold"));
+        return Some(format!("driven grains `{name}` have a spin or a motion, which resolved scenes cannot express"));
     }
     let is_asked = |effect: &Effect| match effect {
-        // Every program has gravity, and Hertz' law is declared as a law.
+        // Every program must support gravity. Hertz contacts are declared as a law.
         Effect::Gravity | Effect::Hertz => false,
-        // Deformable bodies have no dashpots. Plasticity and viscosity are declared with the law of the material.
+        // Contacts of deformable bodies have no dashpots. Their plasticity and viscosity are declared as laws of
+        // materials.
         Effect::ContactDamping | Effect::Restitution | Effect::Plasticity | Effect::Viscosity => !deforms,
         _ => true,
     };

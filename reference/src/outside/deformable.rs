@@ -1,4 +1,4 @@
-//! Data of deformable bodies for a program: grid, materials, bodies, initial state and probes.
+//! Deformable bodies in a resolved scene: grid, materials, bodies, relaxation and probes.
 
 use grainbench_scene::body::{Block, BlockShape, Hold};
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -10,11 +10,11 @@ use serde::Serialize;
 /// Grid of a run with deformable bodies.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Grid {
-    /// Edge h of a cell (m).
+    /// Edge length h of a cell (m).
     pub cell: f64,
-    /// Number of material points per cell and axis at the start, for methods that have them.
+    /// Number of material points per cell and axis at the start, for programs that have material points.
     pub points: u32,
-    /// Courant number c Δt/h of the time step. c is the speed of the fastest wave.
+    /// Courant number c Δt/h, with the speed c of the fastest wave and the time step Δt.
     pub courant: f64,
 }
 
@@ -27,37 +27,38 @@ pub struct Material {
     pub bulk_modulus: f64,
     /// Shear modulus G (Pa).
     pub shear_modulus: f64,
-    /// Constitutive law `hypoelastic`, `neo-hookean` or `von-mises`, with its parameters.
+    /// Constitutive law (key `constitutive`: `hypoelastic`, `neo-hookean`, `kelvin-voigt` or `von-mises`) with its
+    /// parameters.
     #[serde(flatten)]
     pub law: Constitutive,
 }
 
-/// Body that is not a grain.
+/// Deformable body that is not a grain.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Body {
     /// Name of the body.
     pub name: String,
-    /// Name of its material.
+    /// Name of the body's material.
     pub material: String,
     /// Initial density ρ (kg/m³).
     pub density: f64,
-    /// Initial shape.
+    /// Initial shape of the body.
     pub shape: BodyShape,
-    /// Initial velocity (m/s).
+    /// Initial velocity (m/s), to which `spin`, `stretch` and `wave` add.
     pub velocity: [f64; 3],
-    /// Initial angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity.
+    /// Initial angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity at x.
     pub spin: [f64; 3],
-    /// Initial stretch rates a along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to the velocity.
+    /// Initial stretch rates a along the axes (1/s). They add aᵢ (xᵢ − cᵢ) to the velocity component vᵢ.
     pub stretch: [f64; 3],
-    /// Constraints of the lower and the upper side of a box along each axis. A side is `free`, `sliding` (no motion
-    /// along the normal) or `fixed` (no motion at all).
+    /// Constraints of the lower and the upper side of a box along each axis: `free`, `sliding` (no normal motion) or
+    /// `fixed` (no motion).
     pub sides: [[&'static str; 2]; 3],
-    /// Sine wave that is added to the velocity along x.
+    /// Sine wave that is added to the velocity along x; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
 }
 
-/// Shape of a body.
+/// Initial shape of a body.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyShape {
@@ -79,7 +80,7 @@ pub enum BodyShape {
     },
 }
 
-/// Velocity v_x = v₀ sin(β (x − x_low)).
+/// Initial velocity wave v_x = v₀ sin(β (x − x_low)), with the lower side x_low of the body.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Wave {
     /// Amplitude v₀ (m/s).
@@ -88,11 +89,11 @@ pub struct Wave {
     pub wave_number: f64,
 }
 
-/// Damped relaxation before time zero. All bodies are at rest at its beginning. The initial velocities and spins are
-/// set after it, and then time starts.
+/// Damped relaxation before the run, which starts with all bodies at rest. After the relaxation, the initial velocities
+/// and spins are set, and time starts at zero.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Settle {
-    /// Duration (s).
+    /// Duration of the relaxation (s).
     pub duration: f64,
     /// Mass-proportional damping α during the relaxation (1/s).
     pub damping: f64,
@@ -103,12 +104,11 @@ pub struct Settle {
 /// Probe of a body or of a point inside a body.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BodyProbe {
-    /// Name. The columns of the series begin with it.
+    /// Name of the probe, with which its columns in the series begin.
     pub name: String,
-    /// Name of the body or grain.
+    /// Name of the body, or `grain N` with the id N of a grain.
     pub of: String,
-    /// Initial position (m) of the material point that the probe follows. Without it, the probe refers to the whole
-    /// body.
+    /// Initial position of the material point that the probe follows (m); absent for a probe of the whole body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 3]>,
 }
@@ -118,7 +118,7 @@ pub(super) fn vector(vector: &Vector3<f64>) -> [f64; 3] {
     [vector.x, vector.y, vector.z]
 }
 
-/// Returns the deformable materials.
+/// Returns the materials of a scene for which elastic moduli are given.
 pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     let named = scene.materials.iter().zip(&scene.deformable);
     let material = |(name, deformable): (&String, &Option<Deformable>)| {
@@ -133,7 +133,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     named.filter_map(material).collect()
 }
 
-/// Returns the bodies.
+/// Returns the deformable bodies of a scene.
 pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
     let word = |hold: Hold| match hold {
         Hold::Free => "free",
@@ -159,7 +159,7 @@ pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
     scene.bodies.iter().map(body).collect()
 }
 
-/// Returns the relaxation before time zero.
+/// Returns the relaxation of a scene before the run, or `None` if there is none.
 pub(super) fn settle(scene: &Scene) -> Option<Settle> {
     scene.start.settle.map(|settle| Settle {
         duration: settle.duration,

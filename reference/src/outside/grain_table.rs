@@ -1,4 +1,4 @@
-//! Grains in a table with one row per grain and sample. The rows contain the step or the time of the sample.
+//! Grains in a table with one row per grain and sample. Each row contains the step or the time of the sample.
 
 use crate::deck::Stepping;
 use crate::observer::{DumpObserver, DumpRecord, Names};
@@ -10,8 +10,8 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
 use std::path::Path;
 
-/// Returns the quantities of a scene that the table at a path contains, and the snapshots that the scene requests.
-/// `name` is its name in error messages.
+/// Returns the quantities of a scene from the table at a path, and the snapshots that the scene requests. `name` is the
+/// name of the table in error messages.
 pub(super) fn observe(
     scene: &Scene,
     path: &Path,
@@ -45,21 +45,23 @@ pub(super) fn observe(
     Ok(observer.finish())
 }
 
-/// Returns the step of every row.
+/// Returns the step of every row, from a column `step` or from the times.
 fn steps(table: &Table, name: &str, names: &Names, time_step: f64) -> Result<Vec<u64>, ReadError> {
     if let Some(column) = table.column(names.in_file("step")) {
         let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
         let steps: Result<Vec<u64>, f64> = table.values(column).map(whole).collect();
-        return steps.map_err(|step| ReadError::at(name, 1, "whole steps from zero on", step.to_string()));
+        return steps.map_err(|step| ReadError::at(name, 1, "whole numbers of steps, zero or more", step.to_string()));
     }
     let Some(column) = ["time", "t"].into_iter().find_map(|time| table.column(names.in_file(time))) else {
         return Err(ReadError::at(name, 1, "a column `step` or `time`", quoted_names(&table.columns)));
     };
     let step = |time: f64| {
         let step = (time / time_step).round();
-        // A program that adds up its time steps has their rounding error.
+        // If a program adds up its time steps, its times have a rounding error.
         if (time - step * time_step).abs() <= 1e-3 * time_step { Ok(step as u64) } else { Err(time) }
     };
     let steps: Result<Vec<u64>, f64> = table.values(column).map(step).collect();
-    steps.map_err(|time| ReadError::at(name, 1, format!("times on steps of {time_step} s"), format!("{time} s")))
+    steps.map_err(|time| {
+        ReadError::at(name, 1, format!("times that are multiples of the time step {time_step} s"), format!("{time} s"))
+    })
 }

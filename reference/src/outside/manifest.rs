@@ -1,4 +1,4 @@
-//! `SOLVER.toml`, which describes the commands, the features and the output of a program.
+//! Manifest `SOLVER.toml`, which describes the commands, the features and the output of a program.
 
 use crate::observer::Names;
 use crate::read::read_error::{one_line, quoted};
@@ -11,36 +11,38 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path};
 use thiserror::Error;
 
-/// Characters that are allowed in the name of a program in addition to letters and digits.
+/// Characters that names of programs may contain in addition to letters and digits.
 const IN_NAMES: &str = "-_.+ ";
 
-/// Checked content of a manifest.
+/// Content of a manifest.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// Name of the solver in results.
+    /// Name of the solver in results, up to 40 characters.
     pub name: String,
-    /// Command that prints the version. Its first line is stored in the provenance of the runs.
+    /// Command that prints the version, whose first line is stored in the provenance of runs. Empty by default.
     #[serde(default)]
     pub version: Vec<String>,
-    /// Command of a run.
+    /// Command of a run as a list of words. Either `run` or `worker` is required.
     ///
-    /// The program is started in a new folder. `{scene}` is replaced by the file with the scene, `{out}` by this
-    /// folder, and `{here}` by the folder of the manifest. A word that names a file beside the manifest is replaced
-    /// by its path.
+    /// The program is started in a new folder. `{scene}` is replaced by the path of the scene file, `{out}` by the path
+    /// of this folder, and `{here}` by the path of the manifest's folder. A word that names a file beside the manifest
+    /// is replaced by the file's path.
     #[serde(default)]
     pub run: Vec<String>,
-    /// Alternative to `run`: command of a program that keeps running and accepts one run per line.
+    /// Alternative to `run`: command of a program that keeps running and accepts one run per line of its standard
+    /// input.
     #[serde(default)]
     pub worker: Vec<String>,
-    /// Command that is executed once in the folder of the manifest, before the first run. It is not timed.
+    /// Command that is executed once in the folder of the manifest, before the first run. It is not timed. Empty by
+    /// default.
     #[serde(default)]
     pub prepare: Vec<String>,
-    /// Further files of the adapter, by their paths relative to the manifest. They are part of its fingerprint, so
-    /// stored results depend on them.
+    /// Further files of the adapter, by their paths relative to the manifest. Stored results depend on the contents of
+    /// these files.
     #[serde(default)]
     pub files: Vec<String>,
-    /// Format of the scene.
+    /// Format of the scene file; JSON by default.
     #[serde(default)]
     pub scene: SceneFormat,
     /// Features of the program.
@@ -48,14 +50,14 @@ pub struct Manifest {
     /// Parameters of the runs that measure convergence and computing time.
     #[serde(default)]
     pub knobs: ParameterValues,
-    /// Output of the program.
+    /// Output files of a run.
     pub output: Output,
     /// Limits of a run.
     #[serde(default)]
     pub limits: Limits,
 }
 
-/// Format of the scene.
+/// Format of the scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SceneFormat {
@@ -66,25 +68,25 @@ pub enum SceneFormat {
     Toml,
 }
 
-/// Features that a program declares. A scene that requires more is not run.
+/// Features that a program declares. A scene that needs another feature is not run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capabilities {
-    /// Supported numbers of dimensions.
+    /// Supported numbers of dimensions: 2, 3 or both.
     pub dimension: Vec<usize>,
-    /// Contact laws of grains that keep their shape.
+    /// Supported contact laws of rigid grains. Without them, `deformable` is required.
     #[serde(default)]
     pub laws: Vec<SpringsKind>,
-    /// Constitutive laws, for programs with deformable grains and bodies.
+    /// Supported constitutive laws of deformable grains and bodies. None by default.
     #[serde(default)]
     pub deformable: Vec<ConstitutiveKind>,
-    /// Supported shapes of walls.
+    /// Supported shapes of walls. None by default.
     #[serde(default)]
     pub walls: Vec<Wall>,
-    /// Effects other than gravity, by the names of [`Effect::key_word`].
+    /// Supported effects except gravity, by their names in files ([`Effect::key_word`]). None by default.
     #[serde(default)]
     pub effects: Vec<String>,
-    /// True if the program supports driven grains.
+    /// True if the program supports driven grains, false by default.
     #[serde(default)]
     pub driven: bool,
 }
@@ -95,9 +97,9 @@ pub struct Capabilities {
 pub enum Wall {
     /// Plane.
     Plane,
-    /// Segment, in two dimensions.
+    /// Line segment in two dimensions.
     Segment,
-    /// Rectangle, in three dimensions.
+    /// Rectangle in three dimensions.
     Rectangle,
     /// Side of a cylinder or cone.
     Round,
@@ -105,58 +107,59 @@ pub enum Wall {
     Mesh,
 }
 
-/// Parameters that are varied.
+/// Parameters of convergence runs. If a list is empty, the cost study uses its own values.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ParameterValues {
-    /// Time steps as fractions of the critical time step.
+    /// Time steps as fractions of the critical time step, above 0 and below 1.
     #[serde(default)]
     pub critical_fraction: Vec<f64>,
-    /// Cells per reference length of the scene. This is the radius of a grain if there are grains.
+    /// Numbers of cells per reference length of the scene. The reference length is the radius of a grain if there are
+    /// grains.
     #[serde(default)]
     pub cells: Vec<f64>,
 }
 
-/// Output files of a run, by their paths in the folder of the run.
+/// Output files of a run, by their paths relative to the folder of the run. `grains` or `series` is required.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// Grains at every sample.
+    /// File or files with the grains at every sample.
     #[serde(default)]
     pub grains: Option<Grains>,
-    /// Contact forces at the same steps, as a dump in the format of LAMMPS.
+    /// Contact forces at the same steps, as a dump in the format of LAMMPS. The grains must be a dump too.
     #[serde(default)]
     pub contacts: Option<String>,
-    /// Table with further columns of the scene's series.
+    /// Table with further columns of the scene's series, one row per sample.
     #[serde(default)]
     pub series: Option<String>,
-    /// Report of the program about its run.
+    /// Report of the program about its run, as JSON.
     #[serde(default)]
     pub report: Option<String>,
 }
 
-/// File with the grains.
+/// File with the grains and its format.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
-    /// Path of the file.
+    /// Path of the file. For VTK files it may contain `*` in place of the step.
     pub path: String,
     /// Format of the file.
     pub format: GrainFormat,
-    /// Names of its columns, for example `x = "position_x"`.
+    /// Names of columns that differ from those of LAMMPS, for example `x = "position_x"`.
     #[serde(default)]
     pub map: BTreeMap<String, String>,
 }
 
 impl Grains {
-    /// Returns the names of the columns.
+    /// Returns the names of columns in the file that differ from those of LAMMPS.
     #[must_use]
     pub fn names(&self) -> Names {
         Names(self.map.iter().map(|(ours, theirs)| (ours.clone(), theirs.clone())).collect())
     }
 }
 
-/// Format of grains.
+/// Format of a file with grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GrainFormat {
@@ -168,8 +171,7 @@ pub enum GrainFormat {
     Csv,
     /// NumPy arrays `position`, `velocity` and `spin` of the shape (samples, grains, 3), and `step`.
     Npz,
-    /// VTK files, one per sample, where `*` in the path replaces the step. An HDF5 file with all samples is possible
-    /// too.
+    /// VTK files, one per sample, with `*` in the path for the step, or one HDF5 file (`.vtkhdf`) with all samples.
     #[serde(alias = "vtkhdf")]
     Vtk,
 }
@@ -178,11 +180,11 @@ pub enum GrainFormat {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Time of a run (s).
+    /// Time limit of a run (s), 600 by default.
     pub seconds: u64,
-    /// Address space of each process (MiB). Without a value there is no limit.
+    /// Maximum address space of each process (MiB). No limit by default.
     pub memory_mib: Option<u64>,
-    /// Number of threads.
+    /// Number of threads, 1 by default.
     pub threads: u16,
 }
 
@@ -192,13 +194,13 @@ impl Default for Limits {
     }
 }
 
-/// Error in a manifest: file, key, expected and found content.
+/// Error in a manifest, with file, position, expected and actual content.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{file}: {place}expected {expected}, found {found}")]
 pub struct ManifestError {
     /// Path of the manifest.
     pub file: String,
-    /// Key or line of the error followed by a colon, or empty for the whole file.
+    /// Key or line of the error followed by a colon; empty for the whole file.
     pub place: String,
     /// Expected content.
     pub expected: String,
@@ -207,16 +209,16 @@ pub struct ManifestError {
 }
 
 impl Manifest {
-    /// Returns the command that is started, once per run or once for all runs.
+    /// Returns the command to start: `run` or, if the manifest has one, `worker`.
     #[must_use]
     pub fn command(&self) -> &[String] {
         if self.worker.is_empty() { &self.run } else { &self.worker }
     }
 
-    /// Reads a manifest.
+    /// Reads and checks a manifest.
     ///
     /// # Errors
-    /// If the manifest is not valid. The error contains the key, the expected and the actual content.
+    /// If the manifest is not valid. The error contains the position, the expected and the actual content.
     pub fn read(path: &Path) -> Result<Self, ManifestError> {
         let file = one_line(&path.to_string_lossy());
         let error = |place: &str, expected: &str, found: String| ManifestError {
@@ -235,7 +237,7 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// Checks all values. The error consists of the key, the expected and the actual content.
+    /// Checks all values. An error consists of the key, the expected and the actual content.
     fn check(&self) -> Result<(), (&'static str, String, String)> {
         let wrong = |key, expected: &str, found: String| Err((key, expected.to_owned(), found));
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || IN_NAMES.contains(letter);
@@ -243,15 +245,15 @@ impl Manifest {
             return wrong("name", "up to 40 letters, digits, `-`, `_`, `.` and blanks", quoted(&self.name));
         }
         match (self.run.is_empty(), self.worker.is_empty()) {
-            (true, true) => return wrong("run", "a program and its words, or a `worker`", "neither".to_owned()),
+            (true, true) => return wrong("run", "a program with its arguments, or a `worker`", "neither".to_owned()),
             (false, false) => return wrong("run", "one of `run` and `worker`", "both".to_owned()),
             _ => {}
         }
         if !self.run.is_empty() && !self.run.iter().any(|word| word.contains("{scene}")) {
-            return wrong("run", "a word with `{scene}`, the scene of the run", quoted(&self.run.join(" ")));
+            return wrong("run", "an argument with `{scene}`, the path of the scene", quoted(&self.run.join(" ")));
         }
         if let Some(other) = self.can.dimension.iter().find(|count| ![2, 3].contains(*count)) {
-            return wrong("can.dimension", "2 and 3 alone", other.to_string());
+            return wrong("can.dimension", "only 2 and 3", other.to_string());
         }
         if self.can.dimension.is_empty() {
             return wrong("can.dimension", "2, 3 or both", "none".to_owned());
@@ -263,7 +265,7 @@ impl Manifest {
         if let Some(other) = self.knobs.critical_fraction.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
             return wrong(
                 "knobs.critical-fraction",
-                "parts of the critical step, above 0 and below 1",
+                "fractions of the critical step, above 0 and below 1",
                 other.to_string(),
             );
         }
@@ -273,13 +275,17 @@ impl Manifest {
         if self.can.laws.is_empty() && self.can.deformable.is_empty() {
             return wrong(
                 "can.laws",
-                "a contact law, or laws of materials that deform (`can.deformable`)",
+                "a contact law, or laws of deformable materials (`can.deformable`)",
                 "none".to_owned(),
             );
         }
         let output = &self.output;
         if output.grains.is_none() && output.series.is_none() {
-            return wrong("output", "`grains`, or of a program whose bodies deform a `series`", "neither".to_owned());
+            return wrong(
+                "output",
+                "`grains`, or a `series` if the bodies of the program deform",
+                "neither".to_owned(),
+            );
         }
         let path = output.grains.as_ref().map(|grains| &grains.path);
         let files = [("output.grains.path", path), ("output.contacts", output.contacts.as_ref())];
@@ -292,7 +298,7 @@ impl Manifest {
         }
         let is_dump = output.grains.as_ref().is_some_and(|grains| grains.format == GrainFormat::Lammps);
         if output.contacts.is_some() && !is_dump {
-            return wrong("output.contacts", "grains as a dump beside it", "grains in another format".to_owned());
+            return wrong("output.contacts", "grains in the format `lammps`", "grains in another format".to_owned());
         }
         let Limits { seconds, memory_mib, threads } = self.limits;
         if seconds == 0 || threads == 0 || memory_mib == Some(0) {

@@ -1,11 +1,12 @@
-//! External programs as solvers. A manifest describes a program. Each run is one process with input and output files.
+//! External programs as solvers. A manifest describes a program. A run is a process, or a request to a running worker,
+//! with input and output files.
 //!
-//! The program is started in a new folder. A file contains the scene with all values resolved ([`Resolved`]). The
-//! exit code is 0 after a run, and [`CANNOT`] with the reason on standard output if the program cannot express the
-//! scene. Any other code is a failure.
+//! The program is started in a new folder with a scene file, in which all values are explicit ([`Resolved`]). The exit
+//! code is 0 after a successful run. If the program cannot express the scene, the exit code is [`CANNOT`], and standard
+//! output contains the reason. Any other exit code is a failure.
 //!
-//! The program writes its grains at every sample. Claims, negative controls, conformance tests and studies apply to
-//! it as to any solver.
+//! The program writes the grains at every sample. Claims, negative controls, conformance tests and studies apply to it
+//! as to any other solver.
 
 mod can;
 mod deformable;
@@ -40,19 +41,19 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// File with the scene in the folder of the run.
+/// Name of the scene file in the folder of the run, without its extension.
 const SCENE: &str = "scene";
 /// Time limit for the command that prints the version.
 const FOR_VERSION: Duration = Duration::from_secs(20);
-/// Time limit for the command before the first run.
+/// Time limit for the command `prepare`.
 const FOR_PREPARATION: Duration = Duration::from_secs(1800);
-/// Maximum size of the text that a program prints (B).
+/// Maximum size of a program's standard output (B).
 const MOST_PRINTED: u64 = 16 << 20;
-/// Stored results, which `run --update-stored` writes next to the manifest.
+/// File of stored results next to the manifest, which `run --update-stored` writes.
 const KEPT: &str = "judged.json";
-/// Largest number of files in the folder of a manifest.
+/// Maximum number of files in the folder of a manifest and its subfolders.
 const MOST_FILES: usize = 10_000;
-/// Resolution of the conformance tests, a fiftieth of the critical time step.
+/// Default resolution of the conformance tests: 1/50 of the critical time step.
 const CONFORMING: Resolution = Resolution::CriticalFraction(0.02);
 
 /// External program with its manifest.
@@ -64,9 +65,9 @@ pub struct ExternalProgram {
     prepared: OnceLock<Result<(), String>>,
     version: OnceLock<Option<String>>,
     edition: OnceLock<Result<String, String>>,
-    /// Worker processes that wait for a run.
+    /// Worker processes that wait for a request.
     idle: Mutex<Vec<Worker>>,
-    /// Time of a run with zero steps (s), by number of grains.
+    /// Wall-clock time of a run without steps (s), by number of grains.
     start_up: Mutex<BTreeMap<usize, f64>>,
 }
 
@@ -96,7 +97,8 @@ impl ExternalProgram {
         &self.manifest
     }
 
-    /// Returns the conformance properties that the program must satisfy. They are solver-independent.
+    /// Returns the solver-independent conformance properties that the program must satisfy. They are tested with the
+    /// smallest time step in the manifest, by default with 1/50 of the critical time step.
     #[must_use]
     pub fn terms(&self) -> Terms {
         let finest = self.manifest.knobs.critical_fraction.iter().copied().reduce(f64::min);
@@ -104,17 +106,17 @@ impl ExternalProgram {
         if self.manifest.can.dimension.contains(&3) { terms } else { terms.in_the_plane() }
     }
 
-    /// Returns the path of a program by its name. It is a file beside the manifest or in `PATH`.
+    /// Returns the path of an executable, which is a file beside the manifest or on `PATH`.
     fn executable(&self, name: &str) -> Result<PathBuf, String> {
         let beside = self.folder.join(name);
         if name.contains('/') || beside.is_file() {
-            return if beside.is_file() { Ok(beside) } else { Err(format!("{} is no file", beside.display())) };
+            return if beside.is_file() { Ok(beside) } else { Err(format!("{} is not a file", beside.display())) };
         }
-        on_path(name).ok_or_else(|| format!("there is no `{}` beside the manifest or on PATH", one_line(name)))
+        on_path(name).ok_or_else(|| format!("there is no `{}` next to the manifest or on PATH", one_line(name)))
     }
 
-    /// Returns the arguments of a command with placeholders in braces replaced. Files beside the manifest are
-    /// replaced by their paths.
+    /// Returns the arguments of a command. Placeholders in braces and names of files beside the manifest are replaced
+    /// by paths.
     fn words(&self, command: &[String], scene: &Path, out: &Path) -> Vec<String> {
         let word = |word: &String| {
             let beside = self.folder.join(word);
@@ -134,7 +136,8 @@ impl ExternalProgram {
         process::Limits { deadline: Deadline::after(time), bytes, memory, threads: limits.threads }
     }
 
-    /// Executes a command other than that of a run, and returns its output.
+    /// Executes a command that is not a run, in the folder of the manifest. Returns standard output, or standard error
+    /// if it is empty.
     fn aside(&self, command: &[String], time: Duration) -> Result<String, String> {
         let Some(name) = command.first() else { return Ok(String::new()) };
         let executable = self.executable(name)?;
@@ -162,7 +165,7 @@ impl ExternalProgram {
         Ok(String::from_utf8_lossy(if screen.is_empty() { &errors } else { &screen }).into_owned())
     }
 
-    /// Executes the command before the first run, once.
+    /// Executes the command `prepare` once.
     fn prepare(&self) -> Result<(), RunError> {
         let done = self.prepared.get_or_init(|| self.aside(&self.manifest.prepare, FOR_PREPARATION).map(drop));
         done.clone().map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
@@ -175,23 +178,23 @@ impl ExternalProgram {
     }
 
     /// Returns a hash of the adapter, which is the same on every machine. It covers the files in the folder of the
-    /// manifest and its subfolders, and the files named in the manifest. Stored results are omitted.
+    /// manifest and its subfolders, and the files that the manifest lists. The file of stored results is excluded.
     ///
     /// # Errors
-    /// If a file cannot be read, or the folder has too many files.
+    /// If a file cannot be read or the folder has too many files.
     pub fn fingerprint(&self) -> io::Result<String> {
         self.hash(&self.own_files()?)
     }
 
-    /// Returns a hash of the adapter and of the executables and other files that its commands name.
+    /// Returns a hash of the adapter, and of the executables and other files that its commands name.
     ///
-    /// The command before the first run is executed first, because it may write some of these files.
+    /// The command `prepare` is executed first, because it may write some of these files.
     ///
     /// # Errors
-    /// If a file cannot be read, or the folder of the manifest has too many files. The error is a message.
+    /// If a file cannot be read or the folder of the manifest has too many files. The error is a message.
     pub fn edition(&self) -> Result<String, String> {
         let ask = || {
-            // A program that cannot be prepared is reported by its runs.
+            // Errors of `prepare` are reported by the runs.
             let _ = self.prepare();
             let hash = self.files().and_then(|files| self.hash(&files));
             hash.map_err(|error| format!("{}: {error}", self.folder.display()))
@@ -202,7 +205,7 @@ impl ExternalProgram {
     /// Returns the files that [`Self::edition`] covers.
     ///
     /// # Errors
-    /// If a folder cannot be read, or the folder of the manifest has too many files.
+    /// If a folder cannot be read or the folder of the manifest has too many files.
     pub fn files(&self) -> io::Result<Vec<PathBuf>> {
         let mut files = self.own_files()?;
         for command in [&self.manifest.prepare, &self.manifest.run, &self.manifest.worker] {
@@ -214,7 +217,7 @@ impl ExternalProgram {
         Ok(files)
     }
 
-    /// Returns the files in the folder of the manifest and its subfolders, and the files named in the manifest.
+    /// Returns the files in the folder of the manifest and its subfolders, and the files that the manifest lists.
     fn own_files(&self) -> io::Result<Vec<PathBuf>> {
         let mut files = Vec::new();
         let mut open = vec![self.folder.clone()];
@@ -228,7 +231,7 @@ impl ExternalProgram {
                 }
             }
             if files.len() > MOST_FILES {
-                let message = format!("expected at most {MOST_FILES} files beside the manifest, found more");
+                let message = format!("expected at most {MOST_FILES} files in the folder of the manifest, found more");
                 return Err(io::Error::other(message));
             }
         }
@@ -250,7 +253,7 @@ impl ExternalProgram {
         Ok(hash.finalize().to_hex()[..32].to_owned())
     }
 
-    /// Returns the first line of the printed version.
+    /// Returns the first line that the version command prints, or `None` if there is no such command or it fails.
     #[must_use]
     pub fn version(&self) -> Option<String> {
         let ask = || {
@@ -260,13 +263,13 @@ impl ExternalProgram {
         self.version.get_or_init(ask).clone()
     }
 
-    /// Returns the path of the program that is started.
+    /// Returns the path of the executable of a run or a worker.
     fn program(&self) -> Result<PathBuf, RunError> {
         let found = self.executable(&self.manifest.command()[0]);
         found.map_err(|reason| RunError::NotAvailable { solver: self.name(), reason })
     }
 
-    /// Returns the run of a scene.
+    /// Returns the input files, command and limits for the run of a scene.
     fn launch(&self, given: &DiscretizedScene<'_>) -> Result<Launch<'_>, RunError> {
         let Manifest { scene: format, worker, limits, output, .. } = &self.manifest;
         let not_run = |reason: String| {
@@ -288,7 +291,8 @@ impl ExternalProgram {
         })
     }
 
-    /// Returns the time of a run with zero steps (s).
+    /// Returns the wall-clock time of a run without steps (s), or 0 if this run fails. It is measured once per number
+    /// of grains.
     fn start_up(&self, given: &DiscretizedScene<'_>) -> f64 {
         let grains = given.scene.grains.len();
         let times = || self.start_up.lock().unwrap_or_else(PoisonError::into_inner);
@@ -327,8 +331,8 @@ impl ExternalProgram {
     }
 }
 
-/// Returns true for a folder that contains no sources of an adapter. Such folders are hidden folders, caches, Python
-/// environments, and outputs and plans of grainbench.
+/// Returns true for a folder that contains no sources of the adapter: hidden folders, caches, Python environments, and
+/// outputs and plans of this program.
 fn is_derived(folder: &Path) -> bool {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let has = |file: &str| folder.join(file).is_file();
@@ -376,7 +380,7 @@ fn observe_grains(
     })
 }
 
-/// Returns the files of a pattern with `*` in the folder, or the single file of a path without it.
+/// Returns the files in the folder that match a pattern with `*`, or the single file of a path without `*`.
 fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     let Some((before, after)) = pattern.split_once('*') else { return Ok(vec![plain_file(folder, pattern)?]) };
     let entries = fs::read_dir(folder).map_err(|error| Failure::Output(error.to_string()))?;
@@ -390,7 +394,7 @@ fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     }
 }
 
-/// Removes the path of the scratch folder from a text, because it means nothing to the user.
+/// Removes the path of the scratch folder from a text, because the folder is temporary.
 fn without(folder: &Path, text: &str) -> String {
     text.replace(&format!("{}/", folder.display()), "")
 }

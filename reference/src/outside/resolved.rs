@@ -1,4 +1,4 @@
-//! Scene for external programs. All values are explicit and in SI units, and no other source is needed.
+//! Scene for external programs. All values are explicit and in SI units, so that no other source is needed.
 
 use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle, vector};
 use super::manifest::SceneFormat;
@@ -14,71 +14,72 @@ use serde::Serialize;
 use std::f64::consts::PI;
 use std::io;
 
-/// Version of the file format.
+/// Version of the file format of resolved scenes.
 const FORMAT: u32 = 1;
 
 /// Scene with explicit values and its time steps.
 ///
-/// Lengths are in m, times in s, masses in kg (for discs per metre of depth), and angles in rad. Vectors have three
-/// components. Scenes in two dimensions use x and y for positions, and z for spins.
+/// Lengths are in m, times in s, masses in kg and angles in rad. The mass, inertia and stiffness of a disc are per
+/// metre of depth. Vectors have three components; scenes in two dimensions use x and y of positions and z of spins.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Resolved {
-    /// Version of the file format.
+    /// Version of the file format, 1.
     pub format: u32,
     /// Title of the scene.
     pub title: String,
-    /// Number of dimensions.
+    /// Number of dimensions, 2 or 3.
     pub dimension: usize,
-    /// Shape of the grains: `disc` or `sphere`.
+    /// Shape of all grains: `disc` or `sphere`.
     pub grain_shape: &'static str,
-    /// Effects that the scene requires.
+    /// Names of the physical effects that the scene uses, such as `friction`.
     pub effects: Vec<&'static str>,
-    /// Steps and samples.
+    /// Time steps and samples.
     pub steps: Steps,
-    /// Gravity (m/s²).
+    /// Acceleration of gravity (m/s²).
     pub gravity: [f64; 3],
-    /// Mass-proportional damping α of every grain (1/s), with the force −α m v and the torque −α I ω.
+    /// Mass-proportional damping α of every grain (1/s), 0 for none. The force is −α m v and the torque −α I ω.
     pub global_damping: f64,
-    /// Box of the scene, if there is one.
+    /// Box of the scene; absent if the scene has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub domain: Option<Domain>,
     /// Names of the materials.
     pub materials: Vec<String>,
     /// Contact law of each pair of materials that can come into contact.
     pub laws: Vec<Law>,
-    /// Grains at the start.
+    /// Grains at the start of the run.
     pub grains: Vec<Grain>,
-    /// Walls at the start.
+    /// Walls at the start of the run.
     pub walls: Vec<ResolvedWall>,
-    /// Groups of grains with prescribed motion, independent of forces.
+    /// Groups of grains with prescribed motion, which forces do not affect.
     pub driven: Vec<Driven>,
-    /// Grid, if bodies deform. In this case springs and dashpots of `laws` are ignored, and only friction applies.
+    /// Grid of a run with deformable bodies, otherwise absent. With a grid, springs and dashpots of `laws` are ignored,
+    /// and only friction applies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
-    /// Deformable materials, if there is a grid.
+    /// Deformable materials; absent without a grid.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub deformable: Vec<Material>,
-    /// Bodies that are not grains.
+    /// Deformable bodies other than grains; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<Body>,
-    /// Damped relaxation before time zero.
+    /// Damped relaxation before the run; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle: Option<Settle>,
-    /// Probes of bodies and of points inside them.
+    /// Probes of bodies and of points inside bodies; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<BodyProbe>,
-    /// Columns that are allowed in a table of the series.
+    /// Columns of the scene's series. A table of the program may contain them.
     pub columns: Vec<String>,
 }
 
-/// Scene with time steps and grid for a program.
+/// Scene with the time steps and the grid of a run.
 #[derive(Clone, Copy)]
 pub struct DiscretizedScene<'s> {
     /// The scene.
     pub scene: &'s Scene,
-    /// Time steps of the scene.
+    /// Time steps and samples of the run.
     pub stepping: Stepping,
-    /// Grid, if bodies deform.
+    /// Grid of the run; `None` if no bodies deform.
     pub grid: Option<Grid>,
 }
 
@@ -86,7 +87,7 @@ impl<'s> DiscretizedScene<'s> {
     /// Returns the time steps and the grid of a scene at a resolution.
     ///
     /// # Errors
-    /// If the resolution is not valid for the scene, with the reason.
+    /// If the resolution is not valid for the scene. The error is the reason.
     pub fn new(scene: &'s Scene, resolution: &Resolution) -> Result<Self, String> {
         let Resolution::Grid { cells, points, courant } = *resolution else {
             return Ok(Self { scene, stepping: Stepping::new(scene, resolution)?, grid: None });
@@ -97,16 +98,17 @@ impl<'s> DiscretizedScene<'s> {
     }
 }
 
-/// Steps and samples.
+/// Time steps and samples of a run.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Steps {
     /// Time step (s).
     pub time_step: f64,
     /// Number of steps.
     pub count: u64,
-    /// Number of steps between samples. There is a sample at the start and at the end.
+    /// Number of steps between samples. There are also samples at the start and at the end.
     pub sample_every: u64,
-    /// Critical time step 2√(m_min/k_max) (s), if there is one.
+    /// Critical time step 2√(m_min/k_max) from the smallest mass and the largest stiffness (s); absent without
+    /// stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step: Option<f64>,
 }
@@ -125,42 +127,43 @@ pub struct Domain {
 /// Contact law between two materials.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Law {
-    /// Names of the materials.
+    /// Names of the two materials.
     pub between: [String; 2],
-    /// Law `linear`, `hertz-mindlin` or `coulomb`, with its parameters.
+    /// Type of law (key `law`: `linear`, `hertz-mindlin` or `coulomb`) with its stiffnesses or moduli.
     #[serde(flatten)]
     pub springs: Springs,
-    /// Coefficient of friction μ.
+    /// Coefficient of friction μ, 0 for none.
     pub friction: f64,
-    /// Cohesion c (N) in |F_s| ≤ μ F_n + c.
+    /// Cohesion c (N) in the friction limit |F_s| ≤ μ F_n + c, 0 for none.
     pub cohesion: f64,
-    /// Stiffness-proportional damping β (s). The dashpots are β k_n and β k_s.
+    /// Stiffness-proportional damping β (s), 0 for none. The dashpots are β k_n and β k_s.
     pub stiffness_damping: f64,
-    /// Mass-proportional normal damping γ_n (1/s). The dashpot is γ_n m_eff.
+    /// Mass-proportional normal damping γ_n (1/s), 0 for none. The dashpot is γ_n m_eff, with m_eff = m₁m₂/(m₁+m₂), or
+    /// m at a wall.
     pub normal_damping: f64,
-    /// Mass-proportional tangential damping γ_t (1/s). The dashpot is γ_t m_eff.
+    /// Mass-proportional tangential damping γ_t (1/s), 0 for none. The dashpot is γ_t m_eff.
     pub tangential_damping: f64,
-    /// Coefficient of restitution e, if the scene has one.
+    /// Coefficient of restitution e, which sets a normal dashpot; absent if the scene has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
-    /// Coefficient of rolling resistance μ_r. The rolling moment is at most μ_r R_eff F_n.
+    /// Coefficient of rolling resistance μ_r, 0 for none. The rolling moment is at most μ_r R_eff F_n.
     pub rolling_friction: f64,
-    /// Damping ratio of the rolling spring.
+    /// Damping ratio of the rolling spring, 0 for none.
     pub rolling_damping: f64,
 }
 
-/// Grain at the start.
+/// Grain at the start of the run.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Grain {
     /// Id, counted from 1.
     pub id: usize,
-    /// Name of its material.
+    /// Name of the grain's material.
     pub material: String,
     /// Radius (m).
     pub radius: f64,
-    /// Mass (kg).
+    /// Mass (kg; kg/m for discs).
     pub mass: f64,
-    /// Moment of inertia (kg m²).
+    /// Moment of inertia (kg m²; kg m for discs).
     pub inertia: f64,
     /// Position of the centre (m).
     pub position: [f64; 3],
@@ -170,19 +173,19 @@ pub struct Grain {
     pub spin: [f64; 3],
 }
 
-/// Wall at the start.
+/// Wall at the start of the run.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ResolvedWall {
     /// Name of the wall.
     pub name: String,
-    /// Name of its material.
+    /// Name of the wall's material.
     pub material: String,
     /// Initial shape.
     #[serde(flatten)]
     pub shape: Shape,
-    /// Initial centre of rotation (m). It moves with the wall.
+    /// Initial centre of rotation (m), which moves with the wall.
     pub centre: [f64; 3],
-    /// Phases of the motion, which are added. The list is empty for a wall at rest.
+    /// Phases of the motion. The velocities of simultaneous phases are added. The list is empty for a wall at rest.
     pub motion: Vec<Phase>,
 }
 
@@ -192,18 +195,18 @@ pub struct ResolvedWall {
 pub enum Shape {
     /// Plane. The space behind it is solid.
     Plane {
-        /// Point on the plane (m).
+        /// A point on the plane (m).
         point: [f64; 3],
-        /// Unit vector out of the solid.
+        /// Unit normal vector, which points out of the solid.
         normal: [f64; 3],
     },
-    /// Line segment in two dimensions, by its ends (m).
+    /// Line segment in two dimensions, given by its ends (m).
     Segment([[f64; 3]; 2]),
     /// Rectangle in three dimensions.
     Rectangle {
-        /// Corner (m).
+        /// Corner of the rectangle (m).
         corner: [f64; 3],
-        /// Perpendicular edges from the corner (m).
+        /// Perpendicular edge vectors from the corner (m).
         edges: [[f64; 3]; 2],
     },
     /// Side of a cylinder or a part of a cone.
@@ -213,37 +216,38 @@ pub enum Shape {
         /// Radius at each end (m).
         radii: [f64; 2],
     },
-    /// Corners of every triangle of a mesh (m). They are counterclockwise when seen from the side of the normal.
+    /// Triangles of a mesh, given by their corners (m). The corners are counterclockwise when seen from the side of the
+    /// normal.
     Mesh(Vec<[[f64; 3]; 3]>),
 }
 
-/// Phase of constant velocity and spin.
+/// Phase of a motion with constant velocity and spin.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Phase {
     /// Velocity (m/s).
     pub velocity: [f64; 3],
     /// Angular velocity about the centre (rad/s).
     pub spin: [f64; 3],
-    /// Start (s).
+    /// Start time (s).
     pub start: f64,
-    /// End (s). Without it, the phase lasts until the end of the run.
+    /// End time (s); absent if the phase lasts until the end of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
 }
 
-/// Grains with a prescribed velocity, without rotation.
+/// Group of grains with a prescribed velocity and without rotation.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Driven {
     /// Name of the group.
     pub name: String,
-    /// Ids of the grains.
+    /// Ids of the grains in the group.
     pub grains: Vec<usize>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],
 }
 
 impl Resolved {
-    /// Returns a scene with explicit values.
+    /// Returns the resolved scene of a run.
     #[must_use]
     pub fn new(given: &DiscretizedScene<'_>) -> Self {
         let DiscretizedScene { scene, stepping, grid } = given;
@@ -307,10 +311,10 @@ impl Resolved {
 }
 
 impl Resolved {
-    /// Writes the content of the file.
+    /// Writes the resolved scene as JSON or TOML.
     ///
     /// # Errors
-    /// When a value cannot be serialized, or a write fails.
+    /// When a value cannot be serialized or a write fails.
     pub fn write(&self, format: SceneFormat, out: &mut dyn io::Write) -> io::Result<()> {
         match format {
             SceneFormat::Json => Ok(serde_json::to_writer(out, self)?),
@@ -318,10 +322,10 @@ impl Resolved {
         }
     }
 
-    /// Returns the content of the file.
+    /// Returns the resolved scene as JSON or TOML text.
     ///
     /// # Errors
-    /// When a value cannot be serialized, with the reason.
+    /// When a value cannot be serialized. The error is the reason.
     pub fn text(&self, format: SceneFormat) -> Result<String, String> {
         let mut bytes = Vec::new();
         self.write(format, &mut bytes).map_err(|error| error.to_string())?;
@@ -353,7 +357,7 @@ fn law(between: [String; 2], law: &ContactLaw) -> Law {
         stiffness_damping: law.stiffness_damping,
         normal_damping: law.normal_damping,
         tangential_damping: law.tangential_damping,
-        // Coefficient of restitution e from ζ = −ln e/√(π² + ln² e).
+        // The inverse of ζ = −ln e/√(π² + ln² e).
         restitution: (damping > 0.0).then(|| (-PI * damping / (1.0 - damping * damping).sqrt()).exp()),
         rolling_friction: law.rolling_friction,
         rolling_damping: law.rolling_damping,

@@ -18,7 +18,7 @@ pub(crate) enum Number {
 }
 
 impl Number {
-    /// Returns the type for a type name in a legacy VTK file.
+    /// Returns the number type of a type name in a legacy VTK file.
     pub(crate) fn of_legacy(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "vtktypechar" => Self::I8,
@@ -35,7 +35,7 @@ impl Number {
         })
     }
 
-    /// Returns the type for a type name in an XML file.
+    /// Returns the number type of a type name in an XML file.
     pub(crate) fn of_xml(word: &str) -> Option<Self> {
         Some(match word {
             "Int8" => Self::I8,
@@ -52,7 +52,7 @@ impl Number {
         })
     }
 
-    /// Returns the type for a type name of NumPy without byte order.
+    /// Returns the number type of a type name of NumPy, without its byte order.
     pub(crate) fn of_numpy(word: &str) -> Option<Self> {
         Some(match word {
             "i1" => Self::I8,
@@ -79,12 +79,12 @@ impl Number {
         }
     }
 
-    /// Returns the digits of numbers of this type that are stored as binary.
+    /// Returns the digits of binary numbers of this type.
     pub(crate) fn digits(self) -> Digits {
         if self == Self::F32 { Digits::exact().single() } else { Digits::exact() }
     }
 
-    /// Decodes numbers from bytes. The number of bytes is a multiple of the size.
+    /// Decodes numbers from bytes, whose count is a multiple of the size. `is_big` is true for big-endian numbers.
     pub(crate) fn decode(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
         let one = |chunk: &[u8]| {
             let mut wide = [0_u8; 8];

@@ -5,8 +5,8 @@ use std::io::{ErrorKind, Read};
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends must be
-/// refused before it fills the memory.
+/// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends is refused
+/// before it fills the memory.
 pub(crate) const LONGEST_LINE: usize = 1 << 16;
 
 /// Size of a read request (B).
@@ -19,7 +19,7 @@ pub(crate) struct RawLine<'b> {
     /// Line number, counted from 1.
     pub(crate) number: u64,
     pub(crate) bytes: &'b [u8],
-    /// True if the line had a line end. Only the last line of an input can lack it.
+    /// True if the line has a line end. Only the last line of an input may lack it.
     pub(crate) ended: bool,
 }
 
@@ -33,18 +33,18 @@ impl<'b> RawLine<'b> {
     }
 }
 
-/// Splits an input into lines.
+/// Reader that splits an input into lines.
 pub(crate) struct Blocks<'r> {
     reader: Box<dyn Read + 'r>,
     name: String,
     buffer: Vec<u8>,
-    /// Start of the data that have been read but not returned.
+    /// Start of the data that have been read but not returned as lines.
     start: usize,
-    /// End of these data.
+    /// End of the data that have been read but not returned as lines.
     end: usize,
     at_end: bool,
     number: u64,
-    /// True if the last returned line had a line end.
+    /// True if the last returned line has a line end.
     ended: bool,
 }
 
@@ -72,7 +72,7 @@ impl<'r> Blocks<'r> {
         self.number
     }
 
-    /// Returns the error. It is marked as a truncation if the last returned line has no line end.
+    /// Returns the error, marked as a truncation if the last returned line has no line end.
     pub(crate) fn cut_if_unended(&self, error: ReadError) -> ReadError {
         if self.ended { error } else { error.cut() }
     }
@@ -113,7 +113,7 @@ impl<'r> Blocks<'r> {
         self.buffer.copy_within(self.start..self.end, 0);
         self.end -= self.start;
         self.start = 0;
-        // The buffer always has room for a line of maximum length and one more byte.
+        // The buffer always has space for a line of maximum length and one more byte.
         loop {
             match self.reader.read(&mut self.buffer[self.end..]) {
                 Ok(count) => {
@@ -127,21 +127,20 @@ impl<'r> Blocks<'r> {
         }
     }
 
-    /// Returns the error of a line that is too long. Bytes that are not text are a more useful message than the
-    /// length.
+    /// Returns the error of a line that is too long. If its beginning is not text, the error reports this instead.
     fn too_long(&self) -> ReadError {
         let number = self.number + 1;
         let waiting = &self.buffer[self.start..self.end];
         let beginning = &waiting[..waiting.len().min(LONGEST_LINE)];
         not_text_at(beginning, false).map_or_else(
-            || ReadError::at(&self.name, number, format!("a line of at most {LONGEST_LINE} bytes"), "a longer one"),
+            || ReadError::at(&self.name, number, format!("a line of at most {LONGEST_LINE} bytes"), "a longer line"),
             |place| not_text(&self.name, number, beginning, place),
         )
     }
 }
 
-/// Returns the first position that is not text: bytes that are not UTF-8, and control characters other than blanks.
-/// If `whole` is false, a character may be truncated at the end of the bytes.
+/// Returns the first position that is not text: a byte that is not UTF-8, or a control character other than white
+/// space. If `whole` is false, the last character may be truncated.
 fn not_text_at(bytes: &[u8], whole: bool) -> Option<usize> {
     let binary = |byte: &u8| *byte == 0x7f || (*byte < 0x20 && !byte.is_ascii_whitespace());
     let invalid = match std::str::from_utf8(bytes) {
@@ -159,7 +158,7 @@ fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
     if !before.is_empty() {
         found = format!("{found} after {}", quoted(&last_characters(&before)));
     }
-    ReadError::at(file, number, "plain text (UTF-8)", found).with_column(before.chars().count() + 1)
+    ReadError::at(file, number, "plain text", found).with_column(before.chars().count() + 1)
 }
 
 /// Returns the last characters of `text`, enough to identify the position.

@@ -7,15 +7,15 @@ use nalgebra::Vector3;
 
 use crate::pair_forces::PairForce;
 
-/// Sources of forces on a grain, from another grain and from a wall, by indices in the scene. The result is `None` if
-/// the force is unknown.
+/// Functions that return the force on a grain. `of_pair(a, b)` is the force of grain b on grain a, and `of_wall(wall,
+/// grain)` is the force of a wall on a grain, by indices. The result is `None` if the force is unknown.
 pub(crate) struct Forces<'f> {
     pub(crate) of_pair: &'f dyn Fn(usize, usize) -> Option<PairForce>,
     pub(crate) of_wall: &'f dyn Fn(usize, usize) -> Option<PairForce>,
 }
 
-/// Returns the requested contacts that exist. Unknown forces are NaN. The magnitude of each force is increased by
-/// `shift` times its uncertainty by printed digits.
+/// Returns the contacts that the probes request, if they exist. Unknown forces are NaN. Normal force and magnitude of
+/// the shear force are increased by `shift` times the uncertainty due to printed digits.
 pub(crate) fn contacts(
     scene: &Scene,
     time: f64,
@@ -43,7 +43,8 @@ pub(crate) fn contacts(
             _ => continue,
         };
         let overlap = reach - distance;
-        // If few digits were printed, the force is a better indicator of contact than the overlap.
+        // A force other than zero proves a contact, even if the computed overlap is not positive because few digits are
+        // printed.
         let pushed = force.is_some_and(|known| known.force != Vector3::zeros());
         if !(overlap > 0.0 || pushed) {
             continue;
@@ -66,7 +67,7 @@ pub(crate) fn contacts(
     found
 }
 
-/// Returns the unit vector and the length of a vector.
+/// Returns the direction and the length of a vector.
 fn direction(line: Vector3<f64>) -> (Vector3<f64>, f64) {
     let length = line.norm();
     (line / length, length)
@@ -84,7 +85,7 @@ fn to_wall(at: Vector3<f64>, shape: &WallShape) -> (Vector3<f64>, f64) {
     }
 }
 
-/// Returns the vector between two centres for the nearest image along periodic axes.
+/// Returns the vector `line` between two centres after the shift to the nearest image along periodic axes.
 fn nearest_image(scene: &Scene, mut line: Vector3<f64>) -> Vector3<f64> {
     if let Some(domain) = &scene.domain {
         for axis in (0..3).filter(|&axis| domain.periodic[axis]) {

@@ -1,4 +1,4 @@
-//! Data files that `read_data` of LAMMPS and LIGGGHTS reads and `write_data` writes.
+//! Data files, which `write_data` writes and `read_data` of LAMMPS and LIGGGHTS reads.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -14,7 +14,7 @@ use crate::read::read_error::ReadError;
 pub struct DataFile {
     /// First line, which the programs ignore.
     pub title: String,
-    /// Lower and upper corner of the box.
+    /// Lower and upper corner of the box, in the units of the file.
     pub bounds: ([f64; 3], [f64; 3]),
     /// Grains in the order of the file.
     pub atoms: Vec<Atom>,
@@ -30,22 +30,22 @@ pub fn read_data_file(path: &Path) -> Result<DataFile, ReadError> {
     parse_data(BufReader::new(file), &name)
 }
 
-/// Reads a data file, plain or compressed by gzip or zstd, from `reader`. `name` is its name in error messages.
+/// Reads a data file from `reader`, plain or compressed by gzip or zstd. `name` is the name of the file in error
+/// messages.
 ///
 /// The header contains the number of atoms, the number of atom types and the three bounds of the box, in any order.
 /// `Atoms` has lines `id type diameter density x y z`, optionally with three image counts at the end. `Velocities`
 /// has lines `id vx vy vz wx wy wz`.
 ///
-/// `Masses`, `Pair Coeffs` and `PairIJ Coeffs` are skipped. A position can be outside of the box. Comments begin with
-/// `#`.
+/// `Masses`, `Pair Coeffs` and `PairIJ Coeffs` are skipped. A position may be outside the box. Comments begin with `#`.
 ///
 /// # Errors
-/// If the input is truncated, is not text, or has content that is not listed above. Such content is never skipped,
+/// If the input is truncated, is not text, or has content other than described above. Other content is never skipped,
 /// because it could change the meaning of the file.
 pub fn parse_data(reader: impl BufRead, name: &str) -> Result<DataFile, ReadError> {
     let mut lines = LineReader::new(reader, name)?;
     let Some(title) = lines.next_line()?.map(|line| line.text.trim().to_owned()) else {
-        return Err(lines.error_at_end("a data file, its title first", "an empty file"));
+        return Err(lines.error_at_end("a data file that begins with a title", "an empty file"));
     };
     let mut parser = DataParser::new();
     while let Some(line) = lines.next_line()? {

@@ -1,4 +1,4 @@
-//! Header of a data file with numbers of atoms and types, and the box.
+//! Header of a data file: numbers of atoms and atom types, and the box.
 
 use crate::read::fields::Fields;
 use crate::read::line_reader::Line;
@@ -7,7 +7,7 @@ use crate::read::read_error::{ReadError, quoted};
 /// Keywords of the three bounds.
 const BOUNDS: [[&str; 2]; 3] = [["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]];
 
-/// Values of the header that have been read.
+/// Values of the header that have been read so far.
 #[derive(Default)]
 pub(crate) struct DataHeader {
     atoms: Option<u64>,
@@ -16,24 +16,23 @@ pub(crate) struct DataHeader {
 }
 
 impl DataHeader {
-    /// Reads a line of the header. Returns false for any other line that begins with a letter, such as the keyword of
-    /// a section.
+    /// Reads a line of the header. Returns false for a line that begins with a letter, such as the name of a section,
+    /// and is no header line.
     pub(crate) fn take(&mut self, line: Line<'_>, content: &str) -> Result<bool, ReadError> {
         let words: Vec<&str> = content.split_whitespace().collect();
         let mut fields = Fields::between_blanks(line, content);
         match words[..] {
             [.., "xy", "xz", "yz"] => {
-                return Err(
-                    line.error("a box with right angles", "tilt factors `xy xz yz` (a triclinic box is not read)")
-                );
+                return Err(line
+                    .error("a box with right angles", "tilt factors `xy xz yz` (triclinic boxes are not supported)"));
             }
             [.., "atoms"] => {
-                let count = fields.whole("a number of atoms from 1 on in front of `atoms`", 1)?;
+                let count = fields.whole("a number of atoms, 1 or more, before `atoms`", 1)?;
                 expect_words(&words, 2, line, "`N atoms`")?;
                 once(&mut self.atoms, count, line, "`N atoms`")?;
             }
             [.., "atom", "types"] => {
-                let what = "a number of types from 1 on in front of `atom types`";
+                let what = "a number of types, 1 or more, before `atom types`";
                 let count = fields.whole(what, 1)?;
                 expect_words(&words, 3, line, "`N atom types`")?;
                 once(&mut self.types, count, line, "`N atom types`")?;
@@ -62,10 +61,10 @@ impl DataHeader {
         Ok(true)
     }
 
-    /// Returns an error if the header is incomplete. `missing` creates the error.
+    /// Checks that the header is complete. `missing` creates the error from the expected and the actual content.
     pub(crate) fn complete(&self, missing: impl Fn(String, String) -> ReadError) -> Result<(), ReadError> {
         let absent = |what: &str| {
-            let expected = format!("a header line `{what}` in front of the sections");
+            let expected = format!("a header line `{what}` before the sections");
             Err(missing(expected, "none".to_owned()))
         };
         if self.atoms.is_none() {
@@ -82,12 +81,12 @@ impl DataHeader {
         Ok(())
     }
 
-    /// Returns the declared number of atoms, or 0 before it has been read.
+    /// Returns the declared number of atoms, or 0 if it has not been read.
     pub(crate) fn atom_count(&self) -> u64 {
         self.atoms.unwrap_or_default()
     }
 
-    /// Returns the declared number of types, or 0 before it has been read.
+    /// Returns the declared number of atom types, or 0 if it has not been read.
     pub(crate) fn type_count(&self) -> u32 {
         self.types.unwrap_or_default()
     }
@@ -99,7 +98,7 @@ impl DataHeader {
     }
 }
 
-/// Returns an error if a header line has a wrong number of words.
+/// Returns an error unless a header line has `count` words. `form` is the expected form of the line.
 fn expect_words(words: &[&str], count: usize, line: Line<'_>, form: &str) -> Result<(), ReadError> {
     if words.len() == count {
         return Ok(());
@@ -107,10 +106,10 @@ fn expect_words(words: &[&str], count: usize, line: Line<'_>, form: &str) -> Res
     Err(line.error(form, quoted(&words.join(" "))))
 }
 
-/// Stores a value that must occur once.
+/// Stores a value, or returns an error if it is already stored.
 fn once<T>(place: &mut Option<T>, value: T, line: Line<'_>, form: &str) -> Result<(), ReadError> {
     match place.replace(value) {
         None => Ok(()),
-        Some(_) => Err(line.error(format!("one header line {form}"), "a second one")),
+        Some(_) => Err(line.error(format!("one header line {form}"), "a second line of this form")),
     }
 }

@@ -9,17 +9,17 @@ use crate::read::fields::Fields;
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Section after the header.
+/// Section of a data file after the header.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Section {
     Atoms,
     Velocities,
-    /// Section that is skipped, because it contains no data of grains.
+    /// Section without data of grains, which is skipped.
     PassedOver,
 }
 
 impl Section {
-    /// Returns the section of a keyword line without its comment.
+    /// Returns the section that a keyword line without comment names.
     fn named(keyword: &str) -> Option<Self> {
         match keyword.split_whitespace().collect::<Vec<_>>()[..] {
             ["Atoms"] => Some(Self::Atoms),
@@ -30,21 +30,21 @@ impl Section {
     }
 }
 
-/// Position of the next line in the file.
+/// Position of the next line in a data file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Header,
-    /// Directly below a keyword. The programs skip this line without reading it.
+    /// Line below the keyword of a section. The programs skip this line, so it must be blank.
     BelowKeyword(Section),
     Within(Section),
 }
 
-/// Reads the lines of a data file after its title and returns the grains.
+/// Parser of the lines of a data file after its title.
 pub(crate) struct DataParser {
     stage: Stage,
     header: DataHeader,
     atoms: Vec<Atom>,
-    /// Index of each grain by its id, and true if its velocity has been read.
+    /// Index of each grain in `atoms` by its id, and true if its velocity has been read.
     known: HashMap<u32, (usize, bool)>,
     atoms_seen: bool,
     velocities_seen: bool,
@@ -59,7 +59,7 @@ impl DataParser {
         Self {
             stage: Stage::Header,
             header: DataHeader::default(),
-            // The declared number is not trusted. Memory grows with the lines that are present.
+            // No memory is reserved for the declared number of atoms, which may be wrong.
             atoms: Vec::new(),
             known: HashMap::new(),
             atoms_seen: false,
@@ -79,7 +79,7 @@ impl DataParser {
             self.stage = Stage::Within(section);
             if !is_blank {
                 let found = quoted(content.trim());
-                return Err(line.error("a blank line below the section's keyword", found));
+                return Err(line.error("a blank line below the keyword of the section", found));
             }
         }
         if is_blank {
@@ -93,7 +93,7 @@ impl DataParser {
                 Ok(())
             }
             Stage::BelowKeyword(section) | Stage::Within(section) => {
-                // Every entry of every section begins with a number, every keyword with a letter.
+                // Entries of sections begin with a number, and keywords with a letter.
                 if content.trim_start().starts_with(char::is_alphabetic) {
                     self.close(section, |expected, found| line.error(expected, found))?;
                     return self.open(line, content, comment);
@@ -107,7 +107,7 @@ impl DataParser {
         }
     }
 
-    /// Returns the box and the grains at the end of the input. `missing` creates the error for missing content.
+    /// Returns the box and the grains after the last line. `missing` creates the error for missing content.
     pub(crate) fn finish(
         self,
         missing: impl Fn(String, String) -> ReadError,
@@ -136,7 +136,7 @@ impl DataParser {
         match section {
             Section::Atoms => {
                 if std::mem::replace(&mut self.atoms_seen, true) {
-                    return Err(line.error("one section `Atoms`", "a second one"));
+                    return Err(line.error("one section `Atoms`", "a second section"));
                 }
                 if !matches!(comment, "" | "sphere" | "granular") {
                     let found = quoted(&format!("Atoms # {comment}"));
@@ -145,10 +145,10 @@ impl DataParser {
             }
             Section::Velocities => {
                 if std::mem::replace(&mut self.velocities_seen, true) {
-                    return Err(line.error("one section `Velocities`", "a second one"));
+                    return Err(line.error("one section `Velocities`", "a second section"));
                 }
                 if !self.atoms_seen {
-                    let expected = "the section `Atoms` in front of `Velocities`";
+                    let expected = "the section `Atoms` before `Velocities`";
                     return Err(line.error(expected, "`Velocities`"));
                 }
             }
@@ -158,7 +158,7 @@ impl DataParser {
         Ok(())
     }
 
-    /// Checks that the section that ends here is complete.
+    /// Checks that a section is complete at its end. `missing` creates the error.
     fn close(&self, section: Section, missing: impl Fn(String, String) -> ReadError) -> Result<(), ReadError> {
         let (name, count) = match section {
             Section::Atoms => ("Atoms", self.atoms.len() as u64),
@@ -178,13 +178,13 @@ impl DataParser {
     fn take_atom(&mut self, line: Line<'_>, content: &str) -> Result<(), ReadError> {
         let declared = self.header.atom_count();
         if self.atoms.len() as u64 >= declared {
-            let expected = format!("{declared} atoms, the number in the header");
-            return Err(line.error(expected, format!("one more, {}", quoted(content.trim()))));
+            let expected = format!("{declared} atoms, as the header states");
+            return Err(line.error(expected, format!("a further atom, {}", quoted(content.trim()))));
         }
         let mut fields = Fields::between_blanks(line, content);
-        let id = fields.whole("an atom's id, a whole number from 1 on", 1_u32)?;
+        let id = fields.whole("the id of an atom, a whole number of 1 or more", 1_u32)?;
         let types = self.header.type_count();
-        let type_range = format!("an atom's type, a whole number from 1 to {types}");
+        let type_range = format!("the type of an atom, a whole number from 1 to {types}");
         let type_ = fields.whole_up_to(&type_range, 1_u32, types)?;
         let atom = Atom {
             id,
@@ -205,7 +205,7 @@ impl DataParser {
         let mass = atom.mass();
         if !mass.is_normal() {
             let found = format!("diameter {:e} and density {:e}", atom.diameter, atom.density);
-            return Err(line.error("a grain whose mass a number can hold", found));
+            return Err(line.error("a finite mass of the grain", found));
         }
         match self.known.entry(id) {
             Entry::Occupied(_) => Err(line.error("an id that no other atom has", format!("{id} again"))),
@@ -219,7 +219,7 @@ impl DataParser {
 
     fn take_velocity(&mut self, line: Line<'_>, content: &str) -> Result<(), ReadError> {
         let mut fields = Fields::between_blanks(line, content);
-        let id = fields.whole("an atom's id, a whole number from 1 on", 1_u32)?;
+        let id = fields.whole("the id of an atom, a whole number of 1 or more", 1_u32)?;
         let velocity = fields.vector(["vx, a finite number", "vy, a finite number", "vz, a finite number"])?;
         let spin = fields.vector(["wx, a finite number", "wy, a finite number", "wz, a finite number"])?;
         fields.end("id, vx, vy, vz, wx, wy, wz")?;
@@ -227,7 +227,7 @@ impl DataParser {
             return Err(line.error("the id of an atom of the section `Atoms`", format!("{id}")));
         };
         if std::mem::replace(moving, true) {
-            return Err(line.error("one velocity for an atom", format!("a second one for id {id}")));
+            return Err(line.error("one velocity for an atom", format!("a second velocity for id {id}")));
         }
         if let Some(atom) = self.atoms.get_mut(*index) {
             atom.velocity = velocity;

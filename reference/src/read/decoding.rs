@@ -1,4 +1,4 @@
-//! Detection of compression by the first bytes, never by the name.
+//! Detection of compression by the first bytes of a file, not by its name.
 
 use std::io::{self, BufRead, Cursor, Read};
 
@@ -9,8 +9,7 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// Beginnings of files that cannot be read. They are recognised for a better message than an error about bytes that
-/// are not text.
+/// First bytes of unsupported files, and the text for the error message.
 const UNREADABLE: [(&[u8], &str); 5] = [
     (&[0xfd, b'7', b'z', b'X', b'Z', 0], "a file compressed by xz (unpack it with `xz -dk`)"),
     (b"BZh", "a file compressed by bzip2 (unpack it with `bzip2 -dk`)"),
@@ -21,14 +20,14 @@ const UNREADABLE: [(&[u8], &str); 5] = [
 const BINARY_DUMP: &str =
     "a binary dump of LAMMPS (write it as text: a file name of `dump` that does not end in `.bin`)";
 
-/// Length of the longest of these beginnings (B).
+/// Length of the longest first bytes in [`UNREADABLE`] (B).
 const MARK: u64 = 18;
 
-/// Content of an input according to its first bytes.
+/// Content of an input, identified by its first bytes.
 pub(crate) enum InputContent<'r> {
-    /// Text, decompressed if it was gzip or zstd.
+    /// Text, decompressed if it is gzip or zstd.
     Text(Box<dyn Read + 'r>),
-    /// Unsupported format, as text.
+    /// Unsupported format, with its name.
     Unreadable(&'static str),
 }
 
@@ -43,7 +42,7 @@ pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<InputCont
     let (gzip, zstd) = (is(GZIP), is(ZSTD));
     let whole = Cursor::new(head).chain(reader);
     Ok(InputContent::Text(if gzip {
-        // A gzip file can be a sequence of gzip files, for example from `cat a.gz b.gz`.
+        // A gzip file may be a sequence of gzip files, for example from `cat a.gz b.gz`.
         Box::new(MultiGzDecoder::new(whole))
     } else if zstd {
         Box::new(ZstdFrames::new(whole))
@@ -52,7 +51,7 @@ pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<InputCont
     }))
 }
 
-/// Reader of a zstd file, which can be a sequence of frames.
+/// Reader of a zstd file, which may be a sequence of zstd frames.
 struct ZstdFrames<R: BufRead> {
     decoder: FrameDecoder,
     source: R,

@@ -1,13 +1,13 @@
-//! Number of printed digits of a column, and the resulting uncertainty of its numbers.
+//! Printed digits of a column of numbers, and the uncertainty of the numbers that follows from them.
 
-/// Number of values of a column that are examined regardless of their length. Later values are examined only if they
-/// are longer than all before, or the first with a fraction.
+/// Number of values at the start of a column that are all examined. A later value is examined only if it is longer than
+/// all examined values, or if it is the first with a fraction.
 const LOOKED_AT: u32 = 32;
 
-/// Default number of significant digits of `%g`.
+/// Default number of significant digits of the format `%g`.
 const USUAL: u32 = 6;
 
-/// Format of a column, derived from the texts of its numbers.
+/// Format of the numbers in a column, derived from their texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Digits {
     looked_at: u32,
@@ -15,23 +15,23 @@ pub struct Digits {
     significant: u32,
     /// Smallest and largest number of decimals of numbers without an exponent.
     decimals: Option<(u32, u32)>,
-    /// True if a number has decimals that end in a zero. A general format never prints such a zero.
+    /// True if a number has decimals that end in zero. The format `%g` never prints such a zero.
     padded: bool,
     /// True if a number has decimals other than a single zero.
     has_fraction: bool,
     /// True if a number has an exponent.
     has_exponent: bool,
-    /// True if the numbers have single precision (f32), however many digits are printed.
+    /// True if the numbers have single precision (f32), even if more digits are printed.
     single: bool,
 }
 
 impl Digits {
-    /// Returns the digits of numbers that are stored as binary.
+    /// Returns the digits of binary numbers, which are exact.
     pub(crate) fn exact() -> Self {
         Self { significant: 17, ..Self::default() }
     }
 
-    /// Returns the common digits of columns.
+    /// Returns the combined digits of columns.
     pub(crate) fn all<'d>(columns: impl IntoIterator<Item = &'d Self>) -> Self {
         columns.into_iter().fold(Self::default(), |all, digits| all.with(digits))
     }
@@ -47,7 +47,7 @@ impl Digits {
         self.significant
     }
 
-    /// Updates the digits with the text of one number.
+    /// Updates the digits by the text of a number.
     #[inline]
     pub(crate) fn see(&mut self, text: &[u8]) {
         let is_first_fraction = !self.has_fraction && !text.ends_with(b".0") && text.contains(&b'.');
@@ -63,7 +63,7 @@ impl Digits {
         let exponent = text.iter().position(|byte| matches!(byte, b'e' | b'E'));
         let mantissa = &text[..exponent.unwrap_or(text.len())];
         let digits = mantissa.iter().filter(|byte| byte.is_ascii_digit());
-        // Leading zeros do not count, except for zero itself.
+        // Leading zeros are not significant, except in zero itself.
         let counted = digits.skip_while(|byte| **byte == b'0').count();
         self.significant = self.significant.max(u32::try_from(counted).unwrap_or(u32::MAX));
         let point = mantissa.iter().position(|byte| *byte == b'.');
@@ -78,10 +78,10 @@ impl Digits {
         }
     }
 
-    /// Returns the uncertainty of a printed number, half a unit of the last printed digit of `value`.
+    /// Returns the uncertainty of a printed number `value`: half a unit of its last printed digit.
     ///
-    /// A general format removes trailing zeros, so a column of round numbers seems to have few digits. Such a column
-    /// is assumed to have the digits of the rest of the file, at most six, which is the default of the format.
+    /// The format `%g` removes trailing zeros, so a column of round numbers seems to have few digits. It is assumed to
+    /// have as many digits as the rest of the file, but at most six, the default of `%g`.
     #[must_use]
     pub fn uncertainty(&self, value: f64, of_file: &Digits) -> f64 {
         let is_padded = self.is_padded(of_file);
@@ -89,7 +89,7 @@ impl Digits {
             return 0.0;
         }
         let shown = self.significant.max(of_file.significant.min(USUAL)).clamp(1, 17);
-        // An f64 has no more digits.
+        // An f64 has no more than 17 digits.
         let general = if value == 0.0 || shown == 17 {
             0.5 * f64::EPSILON * value.abs()
         } else {
@@ -102,28 +102,27 @@ impl Digits {
             }
             _ => general,
         };
-        // This is the largest distance of a number from the nearest single-precision number.
+        // An f32 may differ from the exact number by this much.
         if self.single { printed.max(0.5 * f64::from(f32::EPSILON) * value.abs()) } else { printed }
     }
 
-    /// Returns half a unit of the last printed digit of `value`. It is zero for a whole number in a column of whole
-    /// numbers.
+    /// Returns half a unit of the last printed digit of `value`, or zero in a column of whole numbers.
     #[must_use]
     pub fn half_unit(&self, value: f64, of_file: &Digits) -> f64 {
         let is_whole = matches!(self.decimals, Some((_, 0))) && !self.has_exponent;
         if is_whole { 0.0 } else { self.uncertainty(value, of_file) }
     }
 
-    /// Returns true if trailing zeros are printed digits.
+    /// Returns true if trailing zeros count as printed digits.
     ///
-    /// If a column contains only numbers such as `0.0` and `2.0` and the file has more digits elsewhere, the numbers
-    /// are not rounded to tenths. Programs write whole numbers in this form.
+    /// If a column has only numbers such as `0.0` and `2.0`, and the file has more digits elsewhere, trailing zeros do
+    /// not count: programs write exact whole numbers in this form.
     fn is_padded(&self, of_file: &Digits) -> bool {
         let has_more = of_file.has_exponent || of_file.decimals.is_some_and(|(_, most)| most > 1);
         self.padded && (self.has_fraction || !has_more)
     }
 
-    /// Returns the digits of both columns together.
+    /// Returns the combined digits of two columns.
     #[must_use]
     pub fn with(mut self, other: &Self) -> Self {
         self.looked_at = self.looked_at.saturating_add(other.looked_at);
@@ -162,7 +161,7 @@ mod tests {
         close(digits.uncertainty(1.0, &digits), 0.5e-5);
         close(digits.uncertainty(-0.001_234_57, &digits), 0.5e-8);
         assert_eq!(digits.uncertainty(0.0, &digits), 0.0);
-        // A column with few digits is assumed to have more if the file has more.
+        // A column with few digits is assumed to have up to six digits if the file has more elsewhere.
         close(digits_of(&["0.5"]).uncertainty(0.5, &digits), 0.5e-6);
         close(digits_of(&["0.5"]).uncertainty(0.5, &digits_of(&["0.12345678901234567"])), 0.5e-6);
     }

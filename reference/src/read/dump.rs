@@ -12,7 +12,7 @@ use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
-/// Reads the snapshots of a dump one after the other. The memory is that of the largest snapshot.
+/// Reader of a dump, one snapshot after the other. It needs memory for the largest snapshot only.
 pub struct DumpReader<'r> {
     blocks: Blocks<'r>,
     form: RowForm,
@@ -24,10 +24,10 @@ pub struct DumpReader<'r> {
 }
 
 impl DumpReader<'static> {
-    /// Opens the dump at `path`, plain, gzip or zstd. Its name does not matter.
+    /// Opens the dump at `path`, plain, gzip or zstd. The name of the file does not matter.
     ///
     /// # Errors
-    /// If the file cannot be opened or has another compression.
+    /// If the file cannot be opened or has an unsupported compression.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let name = path.to_string_lossy();
         let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
@@ -36,7 +36,7 @@ impl DumpReader<'static> {
 }
 
 impl<'r> DumpReader<'r> {
-    /// Reads a dump from `reader`. `name` is its name in error messages.
+    /// Opens a dump from `reader`. `name` is the name of the dump in error messages.
     ///
     /// # Errors
     /// If the beginning cannot be read or has an unsupported compression.
@@ -46,7 +46,7 @@ impl<'r> DumpReader<'r> {
         Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Ids::default() })
     }
 
-    /// Sets the maximum number of rows in a snapshot of the scene.
+    /// Sets the maximum number of rows in a snapshot. By default the number is not limited.
     #[must_use]
     pub fn at_most(self, rows: u64) -> Self {
         Self { most_rows: rows, ..self }
@@ -60,28 +60,28 @@ impl<'r> DumpReader<'r> {
     }
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file. The digits of the columns
-    /// accumulate while their names stay the same.
+    /// accumulate as long as their names stay the same.
     ///
     /// # Errors
-    /// If the file is truncated, is not text or has unknown content. Also if it goes back in time, repeats a step
-    /// with other numbers, or repeats the id of an atom. See [`ReadError`].
+    /// If the file is truncated, is not text or has unknown content, if the step decreases, if a step is repeated with
+    /// other numbers, or if the id of an atom is repeated. See [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let header = DumpHeader::read(&mut self.blocks).map_err(|error| self.blocks.cut_if_unended(error))?;
         let Some(header) = header else {
             if self.last_step.is_none() {
-                return Err(self.error("a dump, `ITEM: TIMESTEP` first", "an empty file"));
+                return Err(self.error("a dump that begins with `ITEM: TIMESTEP`", "an empty file"));
             }
             return Ok(false);
         };
         if let Some((units, line)) = header.units {
             if let Some(before) = self.units.as_ref().filter(|before| **before != units) {
-                let expected = format!("the units `{before}`, as above");
+                let expected = format!("the units `{before}` of the earlier snapshots");
                 return Err(ReadError::at(self.blocks.name(), line, expected, quoted(&units)));
             }
             self.units = Some(units);
         }
         if let Some(last) = self.last_step.filter(|last| header.step < *last) {
-            let expected = format!("a step from {last} on, the one before");
+            let expected = format!("a step of at least {last}, the step of the previous snapshot");
             return Err(ReadError::at(self.blocks.name(), header.step_line, expected, header.step.to_string()));
         }
         let is_repeated = self.last_step == Some(header.step) && snapshot.step == header.step;
@@ -98,7 +98,7 @@ impl<'r> DumpReader<'r> {
         snapshot.kind = header.kind;
         (snapshot.bounds, snapshot.tilt, snapshot.periodic) = (header.bounds, header.tilt, header.periodic);
         snapshot.first_line = self.blocks.number() + 1;
-        // The declared number is not trusted. Memory grows with the rows that are present.
+        // Memory grows with the rows that are present, not with the declared number.
         snapshot.values.clear();
         if header.rows > self.most_rows {
             let expected = format!("at most {} rows, because the scene has no more", self.most_rows);
@@ -146,5 +146,5 @@ impl<'r> DumpReader<'r> {
     }
 }
 
-/// Maximum number of numbers in a snapshot (half a gigabyte).
+/// Maximum number of numbers in a snapshot. They need half a gigabyte of memory.
 const MOST_NUMBERS: usize = 1 << 26;

@@ -1,4 +1,4 @@
-//! Header of a snapshot.
+//! Header of a snapshot in a dump.
 
 use crate::read::blocks::Blocks;
 use crate::read::fields::Fields;
@@ -7,7 +7,8 @@ use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpKind;
 
-/// Maximum number of rows. More rows do not fit in memory, and the limit keeps line numbers within bounds.
+/// Maximum number of rows in a snapshot. More rows would not fit in memory, and the limit prevents an overflow of line
+/// numbers.
 const MOST_ROWS: u64 = u32::MAX as u64;
 
 /// Header of one snapshot.
@@ -27,18 +28,18 @@ pub(crate) struct DumpHeader {
     pub(crate) columns: Vec<NumberColumn>,
 }
 
-/// Items that have been read.
+/// Items of a header that have been read so far.
 #[derive(Default)]
 struct Parts {
     step: Option<(u64, u64)>,
     time: Option<f64>,
     units: Option<(String, u64)>,
-    /// Number of rows, and the word for a row.
+    /// Number of rows, and the word for a row, such as `ATOMS`.
     rows: Option<(u64, String)>,
     bounds: Option<Bounds>,
 }
 
-/// Box and its boundaries.
+/// Box of a snapshot.
 struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
@@ -47,7 +48,7 @@ struct Bounds {
 }
 
 impl DumpHeader {
-    /// Reads items up to the one with the names of the columns. Returns `None` at the end of the file.
+    /// Reads the items of a header up to the item with the column names. Returns `None` at the end of the file.
     pub(crate) fn read(blocks: &mut Blocks<'_>) -> Result<Option<Self>, ReadError> {
         let mut parts = Parts::default();
         let mut any = false;
@@ -72,7 +73,7 @@ impl DumpHeader {
                 ["UNITS"] => parts.read_units(blocks)?,
                 ["NUMBER", "OF", word] => {
                     let word = word.to_owned();
-                    let what = format!("a number of rows up to {MOST_ROWS}");
+                    let what = format!("a number of rows of at most {MOST_ROWS}");
                     let rows = one(blocks, &what, |fields| fields.whole_up_to(&what, 0, MOST_ROWS))?;
                     parts.rows = Some((rows, word));
                 }
@@ -118,7 +119,7 @@ impl Parts {
                 Ok([fields.finite(&what)?, fields.finite(&what)?, tilt(fields)?])
             })?;
             if low[axis] > high[axis] {
-                let (expected, found) = ("a lower bound that is not above the upper", format!("{:?}", low[axis]));
+                let (expected, found) = ("a lower bound that is not above the upper bound", format!("{:?}", low[axis]));
                 return Err(ReadError::at(blocks.name(), blocks.number(), expected, found));
             }
         }
@@ -128,7 +129,7 @@ impl Parts {
 
     fn finish(self, line: Line<'_>, word: &str, columns: &[&str]) -> Result<DumpHeader, ReadError> {
         let needed = |what: &str| {
-            let expected = format!("`ITEM: {what}` above the columns");
+            let expected = format!("`ITEM: {what}` before the columns");
             line.error(expected, "none")
         };
         let (step, step_line) = self.step.ok_or_else(|| needed("TIMESTEP"))?;
@@ -136,11 +137,13 @@ impl Parts {
         let Bounds { low, high, tilt, periodic } = self.bounds.ok_or_else(|| needed("BOX BOUNDS"))?;
         let kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
         if columns.is_empty() {
-            return Err(line.error(format!("names of columns behind `ITEM: {word}`"), "none"));
+            return Err(line.error(format!("names of columns after `ITEM: {word}`"), "none"));
         }
         for (place, name) in columns.iter().enumerate() {
             if columns[..place].contains(name) {
-                return Err(line.error("columns of different names", format!("two of the name {}", quoted(name))));
+                return Err(
+                    line.error("columns with different names", format!("two columns with the name {}", quoted(name)))
+                );
             }
         }
         let columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
@@ -167,17 +170,18 @@ impl Parts {
     }
 }
 
-/// Returns the error for a line that is not an item. If the first line is a number only, the file is an .xyz file.
+/// Returns the error of a line that is not an item. If the first line of a file is a single number, the error reports
+/// an .xyz file.
 fn not_an_item(line: Line<'_>, text: &str) -> ReadError {
     if line.number == 1 && text.trim().parse::<u64>().is_ok() {
         let expected = "a dump with ids and times, such as `dump … custom … id type x y z vx vy vz` writes";
-        return line.error(expected, "an .xyz file, which has neither");
+        return line.error(expected, "an .xyz file, which has neither ids nor times");
     }
     line.error("a line `ITEM: …`", quoted(text))
 }
 
-/// Returns the periodic axes from the words after `BOX BOUNDS`, and true if the box is tilted. Old files have no such
-/// words.
+/// Returns the periodic axes from the words after `BOX BOUNDS`, and true if the box is tilted. Without words for
+/// boundaries, as in old files, no axis is periodic.
 fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadError> {
     let known = |word: &&str| word.len() == 2 && word.bytes().all(|byte| b"pfsm".contains(&byte));
     match *words {
@@ -187,13 +191,13 @@ fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadE
         [x, y, z] if [x, y, z].iter().all(known) => Ok(([x, y, z].map(|word| word == "pp"), false)),
         ["abc", "origin", ..] => {
             let found = format!("{}, a general triclinic box", quoted(&words.join(" ")));
-            Err(line.error("a box with right angles, or one with the tilts `xy xz yz`", found))
+            Err(line.error("a box with right angles, or a box with the tilts `xy xz yz`", found))
         }
-        _ => Err(line.error("three boundaries such as `pp ff ff` behind `BOX BOUNDS`", quoted(&words.join(" ")))),
+        _ => Err(line.error("three boundaries such as `pp ff ff` after `BOX BOUNDS`", quoted(&words.join(" ")))),
     }
 }
 
-/// Reads the single line of an item.
+/// Reads the value of an item that consists of one line.
 fn one<T>(
     blocks: &mut Blocks<'_>,
     what: &str,

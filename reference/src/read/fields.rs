@@ -5,16 +5,16 @@ use std::str::FromStr;
 use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Reads the fields of a line. Every error names the column of the field.
+/// Reader of the fields of a line. Each error names the column (in characters) of the field.
 pub(crate) struct Fields<'l> {
     line: Line<'l>,
     content: &'l str,
-    /// Byte offset of the unread part.
+    /// Byte offset of the part that has not been read.
     offset: usize,
 }
 
 impl<'l> Fields<'l> {
-    /// Returns the fields of `content`, separated by blanks. `content` is the part of `line` before a comment.
+    /// Returns a reader of fields separated by blanks. `content` is the part of `line` before a comment.
     pub(crate) fn between_blanks(line: Line<'l>, content: &'l str) -> Self {
         Self { line, content, offset: 0 }
     }
@@ -54,7 +54,7 @@ impl<'l> Fields<'l> {
         self.rest().trim_start().is_empty()
     }
 
-    /// Returns an error if there is a field after those in `expected`.
+    /// Checks that all fields have been read. `expected` is the expected content for the error.
     pub(crate) fn end(&mut self, expected: &str) -> Result<(), ReadError> {
         if self.at_end() {
             return Ok(());
@@ -68,7 +68,7 @@ impl<'l> Fields<'l> {
         self.content.get(self.offset..).unwrap_or_default()
     }
 
-    /// Returns the next field and its column.
+    /// Returns the next field and its column (in characters).
     fn next(&mut self, what: &str) -> Result<(&'l str, usize), ReadError> {
         if self.at_end() {
             let column = self.content.trim_end().chars().count() + 1;
@@ -84,7 +84,7 @@ impl<'l> Fields<'l> {
         Ok((&field[..length], column.chars().count() + 1))
     }
 
-    /// Reads the next field as a value for which `fits` returns true.
+    /// Reads the next field as a value. Returns an error unless `fits` returns true for it.
     fn parsed<T: FromStr>(&mut self, what: &str, fits: impl Fn(&T) -> bool) -> Result<T, ReadError> {
         let (text, column) = self.next(what)?;
         let value = text.parse().ok().filter(fits);

@@ -1,4 +1,4 @@
-//! Interface of formats with snapshots of grains. To add a format, add a file in `formats`.
+//! Interface of file formats with snapshots of grains. Each format is a file in the folder `formats`.
 
 use super::read_error::ReadError;
 use super::snapshot::{DumpSnapshot, Numbering};
@@ -10,15 +10,15 @@ pub(crate) type OpenSnapshots = Result<Box<dyn Moments>, ReadError>;
 /// File format.
 #[derive(Debug)]
 pub(crate) struct Format {
-    /// Name of the format as text.
+    /// Name of the format for error messages, such as `a dump`.
     pub(crate) words: &'static str,
-    /// Test that identifies a file of this format.
+    /// Criterion that identifies a file of this format.
     pub(crate) told_by: FormatCriterion,
-    /// Default numbering of the snapshots, if the file contains none.
+    /// Numbering of a file with one snapshot. [`Numbering::Files`] applies to files with several snapshots too.
     pub(crate) numbering: Numbering,
-    /// Returns the kind of content of a file.
+    /// Function that returns the kind of content of a file.
     pub(crate) holds: fn(&Path) -> Result<FileContent, ReadError>,
-    /// Opens a file with a maximum number of rows per snapshot.
+    /// Function that opens a file. The second argument is the maximum number of rows in a snapshot.
     pub(crate) open: fn(&Path, u64) -> OpenSnapshots,
 }
 
@@ -27,9 +27,11 @@ pub(crate) struct Format {
 pub(crate) enum FormatCriterion {
     /// Test of the first bytes and the name.
     Beginning(fn(&Beginning<'_>) -> bool),
-    /// Beginning of the first non-blank line, if no format matches the first bytes.
+    /// Text at the beginning of the first line that is neither blank nor a comment. It is tested if no format matches
+    /// the first bytes.
     Line(&'static str),
-    /// Test of the column names in the first line that is neither blank nor a comment.
+    /// Test of the column names in the first line that is neither blank nor a comment. It is applied if no format
+    /// matches the first bytes.
     Names(fn(&[&str]) -> bool),
 }
 
@@ -39,28 +41,28 @@ pub(crate) struct Beginning<'a> {
     pub(crate) path: &'a Path,
     /// Bytes as stored.
     pub(crate) bytes: &'a [u8],
-    /// Bytes after decompression, or empty if the compression is not supported.
+    /// Bytes after decompression; empty if the compression is not supported.
     pub(crate) unpacked: &'a [u8],
 }
 
-/// Content of a file.
+/// Kind of content of a file.
 #[derive(Debug)]
 pub(crate) enum FileContent {
-    /// Snapshots with steps or in a defined order, and the step of the first one if it is known.
+    /// Snapshots with steps or in a defined order. The first step is `None` if it is unknown.
     Course(Option<u64>),
-    /// One snapshot. Its step is in the name of the file.
+    /// One snapshot, whose step is in the name of the file.
     Moment,
-    /// Names of other files with their times (s).
+    /// Collection of other files: their times (s) and paths.
     List(Vec<(f64, PathBuf)>),
 }
 
-/// Snapshots of a file, read one after the other.
+/// Reader of the snapshots of a file, one after the other.
 pub(crate) trait Moments {
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError>;
 }
 
-/// Snapshots that are read by index.
+/// Reader of snapshots that are accessed by index.
 pub(crate) struct IndexedSnapshots<F> {
     file: String,
     of: F,
@@ -68,7 +70,7 @@ pub(crate) struct IndexedSnapshots<F> {
 }
 
 impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> IndexedSnapshots<F> {
-    /// Returns the snapshots of a file. `read_at` returns the snapshot at an index, or `None` after the last one.
+    /// Returns a reader for a file. `read_at` returns the snapshot with an index, or `None` after the last snapshot.
     pub(crate) fn boxed(path: &Path, read_at: F) -> Box<dyn Moments> {
         Box::new(Self { file: path.to_string_lossy().into_owned(), of: read_at, next: 0 })
     }
@@ -86,7 +88,7 @@ impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for Indexe
     }
 }
 
-/// Returns an error if there are more grains than in the scene.
+/// Checks that there are at most `most_rows` grains, the limit that follows from the scene.
 pub(crate) fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<(), ReadError> {
     if grains as u64 <= most_rows {
         return Ok(());

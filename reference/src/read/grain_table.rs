@@ -1,5 +1,5 @@
-//! Tables of grains as snapshots. Rows with the same step or time form a snapshot, and columns have the names of
-//! dumps.
+//! Tables of grains. Rows with the same step or time form a snapshot. Columns have the names used in dumps or in
+//! ParaView.
 
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::ReadError;
@@ -8,13 +8,13 @@ use crate::read::table::{Table, read_table};
 use crate::read::vtk::{component, is_id};
 use std::path::Path;
 
-/// Suffixes of ParaView for the components of a vector, in a table of one moment and in one of all moments.
+/// Suffixes of ParaView for the components of a vector, in a table of one moment and in a table of all moments.
 const COMPONENTS: [[&str; 3]; 2] = [[":0", ":1", ":2"], ["_X", "_Y", "_Z"]];
 
-/// Name of the positions in ParaView.
+/// Name of the vector of positions in ParaView.
 const POINTS: &str = "points";
 
-/// Returns true if columns of these names belong to grains. They must contain ids and coordinates.
+/// Returns true if columns of these names belong to grains: they include ids and coordinates x and y.
 pub(crate) fn is_of_grains(names: &[&str]) -> bool {
     let names: Vec<String> = names.iter().map(|name| column_name(name)).collect();
     let has = |name: &str| names.iter().any(|other| other == name);
@@ -22,7 +22,7 @@ pub(crate) fn is_of_grains(names: &[&str]) -> bool {
     has("x") && has("y") && (has("id") || is_of_points)
 }
 
-/// Returns the name of a column in dumps.
+/// Returns the name that a column of a table has in a dump.
 fn column_name(name: &str) -> String {
     for suffixes in COMPONENTS {
         let Some((vector, axis)) =
@@ -38,15 +38,15 @@ fn column_name(name: &str) -> String {
     if is_id(name) { "id".to_owned() } else { name.to_owned() }
 }
 
-/// Grains at one moment.
+/// Snapshot of the grains at one moment.
 pub(crate) struct Moment {
     pub(crate) step: u64,
-    /// True if the table has a step or time for this moment.
+    /// True if the table has columns with steps, frame numbers or times.
     pub(crate) is_keyed: bool,
     pub(crate) snapshot: DumpSnapshot,
 }
 
-/// Columns of a table with steps, frames and times.
+/// Indices of the columns with steps, frames and times.
 struct Keys {
     step: Option<usize>,
     frame: Option<usize>,
@@ -59,7 +59,7 @@ impl Keys {
         Self { step: column(&["step"]), frame: column(&["TimeStep"]), time: column(&["Time", "time", "t", "time (s)"]) }
     }
 
-    /// Returns the step or frame and the time of a row. All rows of one moment have the same values.
+    /// Returns the step or frame number and the time of a row. Rows of one moment have equal results.
     fn of_row(&self, row: &[f64]) -> [Option<f64>; 2] {
         [self.step.or(self.frame), self.time].map(|at| at.map(|at| row[at]))
     }
@@ -68,7 +68,7 @@ impl Keys {
 /// Reads the moments of the table at a path.
 ///
 /// # Errors
-/// If the file cannot be read, has two columns of the same meaning, or goes back in time.
+/// If the file cannot be read, has two columns of the same meaning, or if a step, frame number or time decreases.
 pub(crate) fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
     let name = path.to_string_lossy();
     let table = read_table(path)?;
@@ -82,12 +82,14 @@ pub(crate) fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
         let line = row as u64 + 2;
         let before = row.checked_sub(1).map(|last| keys.of_row(table.rows_from(last, 1)));
         if let Some([number, time]) = before.filter(|before| goes_back(*before, key)) {
-            let expected = format!("a moment after {:?}", time.or(number).unwrap_or_default());
+            let expected = format!("a time after {:?}", time.or(number).unwrap_or_default());
             return Err(ReadError::at(&name, line, expected, format!("{:?}", key[1].or(key[0]).unwrap_or_default())));
         }
         let step = match key[0] {
             Some(step) if step >= 0.0 && step.fract() == 0.0 => step as u64,
-            Some(step) => return Err(ReadError::at(&name, line, "a step, a whole number from 0", step.to_string())),
+            Some(step) => {
+                return Err(ReadError::at(&name, line, "a step, a whole number of 0 or more", step.to_string()));
+            }
             None => moments.len() as u64,
         };
         moments.push(Moment {
@@ -112,14 +114,14 @@ fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
     before.into_iter().zip(key).any(|pair| matches!(pair, (Some(before), Some(now)) if now < before))
 }
 
-/// Returns the columns with the names of dumps.
+/// Returns the columns of a table, renamed as in dumps.
 fn columns(file: &str, table: &Table) -> Result<Vec<NumberColumn>, ReadError> {
     let mut columns: Vec<NumberColumn> = Vec::new();
     for column in &table.columns {
         let name = column_name(&column.name);
         if columns.iter().any(|other| other.name == name) {
-            let expected = format!("one column of the meaning `{name}`");
-            return Err(ReadError::at(file, 1, expected, format!("`{}` beside another", column.name)));
+            let expected = format!("one column for `{name}`");
+            return Err(ReadError::at(file, 1, expected, format!("`{}` as a second column", column.name)));
         }
         columns.push(NumberColumn { name, ..column.clone() });
     }

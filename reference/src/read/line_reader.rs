@@ -1,4 +1,4 @@
-//! Lines of text of bounded length, with their numbers.
+//! Lines of text with their numbers. The length of a line is limited.
 
 use std::io::BufRead;
 
@@ -6,12 +6,12 @@ use crate::read::blocks::{Blocks, RawLine};
 use crate::read::decoding::{InputContent, decoded};
 use crate::read::read_error::ReadError;
 
-/// Reads an input, plain, gzip or zstd, line by line. Input that is not text is an error.
+/// Reader of the lines of an input, which may be plain, gzip or zstd. Input that is not text is an error.
 pub(crate) struct LineReader<'r> {
     blocks: Blocks<'r>,
 }
 
-/// Line without its line end, with its position.
+/// Line without its line end, and its position.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'l> {
     pub(crate) file: &'l str,
@@ -20,12 +20,12 @@ pub(crate) struct Line<'l> {
 }
 
 impl<'l> Line<'l> {
-    /// Returns the bytes of the line.
+    /// Returns the line as bytes.
     pub(crate) fn raw(self) -> RawLine<'l> {
         RawLine { file: self.file, number: self.number, bytes: self.text.as_bytes(), ended: true }
     }
 
-    /// Returns an error about the whole line.
+    /// Returns an error that refers to the whole line.
     pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         ReadError::at(self.file, self.number, expected, found)
     }
@@ -54,7 +54,7 @@ impl<'r> LineReader<'r> {
         self.blocks.next_line()?.map(RawLine::text).transpose()
     }
 
-    /// Returns an error about content that is missing at the end of the input.
+    /// Returns the error of content that is missing at the end of the input.
     pub(crate) fn error_at_end(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
     }
@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn names_the_byte_that_is_no_text() {
-        assert_eq!(fault(b"fine\nab\xffcd\n"), "f:2:3: expected plain text (UTF-8), found the byte 0xff after `ab`");
-        assert_eq!(fault(b"\x00ELF"), "f:1:1: expected plain text (UTF-8), found the byte 0x00");
+        assert_eq!(fault(b"fine\nab\xffcd\n"), "f:2:3: expected plain text, found the byte 0xff after `ab`");
+        assert_eq!(fault(b"\x00ELF"), "f:1:1: expected plain text, found the byte 0x00");
         assert_eq!(fault("tab\tand é\r\n".as_bytes()), "none");
     }
 
@@ -87,7 +87,7 @@ mod tests {
         assert_eq!(fault(&[b'x'; crate::read::blocks::LONGEST_LINE]), "none");
         assert_eq!(
             fault(&[b'x'; crate::read::blocks::LONGEST_LINE + 1]),
-            "f:1: expected a line of at most 65536 bytes, found a longer one"
+            "f:1: expected a line of at most 65536 bytes, found a longer line"
         );
     }
 

@@ -12,12 +12,12 @@ use crate::read::table::Table;
 /// Output of one `run` command in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoggedRun {
-    /// Printed columns with the names of the program: `Step`, `Time`, `KinEng`, … Their order and alignment depend on
-    /// the release.
+    /// Printed columns, named as in the log: `Step`, `Time`, `KinEng`, … Their order and alignment depend on the
+    /// release of the program.
     pub thermo: Table,
-    /// Time step of the run, if the log contains a command `timestep` with a number before it.
+    /// Time step from the last `timestep` command before the run whose argument is a number; `None` if there is none.
     pub time_step: Option<f64>,
-    /// Summary at the end of the run, or `None` if the log is truncated.
+    /// Summary at the end of the run; `None` if the log is truncated.
     pub end: Option<LoopTime>,
 }
 
@@ -46,18 +46,18 @@ pub struct LoopTime {
 /// Log of a program.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
-    /// Line with the version of the program, if the log begins with it.
+    /// First line, if it names the program and its version; otherwise `None`.
     pub version: Option<String>,
-    /// Name of the unit system, if the log contains the command that sets it.
+    /// Name of the unit system; `None` if the log does not contain the command `units`.
     pub units: Option<String>,
-    /// Time step of the last `timestep` command with a number, if the log contains one.
+    /// Time step from the last `timestep` command whose argument is a number; `None` if there is none.
     pub time_step: Option<f64>,
     /// Runs in the order of the log.
     pub runs: Vec<LoggedRun>,
 }
 
 impl Log {
-    /// Returns the wall-clock time of all runs (s).
+    /// Returns the total loop time of all runs (s).
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.runs.iter().filter_map(|run| run.end).map(|end| end.seconds).sum()
@@ -67,20 +67,20 @@ impl Log {
 /// Reads the log at `path`, plain, gzip or zstd. See [`parse_log`].
 ///
 /// # Errors
-/// If the file cannot be read or is not such a log.
+/// If the file cannot be read or is not a log that [`parse_log`] reads.
 pub fn read_log(path: &Path) -> Result<Log, ReadError> {
     let name = path.to_string_lossy();
     let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
     parse_log(BufReader::new(file), &name)
 }
 
-/// Reads a log with `thermo_style one` or `custom`. `name` is its name in error messages.
+/// Reads a log with `thermo_style one` or `custom`. `name` is the name of the log in error messages.
 ///
-/// NaN is kept, because the program printed it. Warnings between the rows are skipped. The last run can be truncated.
+/// Printed NaN is kept. Blank lines and warnings between rows are skipped. The last run may be truncated.
 ///
 /// # Errors
-/// If the input cannot be read or has no run. Also if it has several lines of thermodynamic output per step, or a row
-/// without exactly one number per column.
+/// If the input cannot be read or contains no run, if a step has several lines of thermodynamic output, or if a row
+/// does not have one number per column.
 pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut lines = LineReader::new(reader, name)?;
     let mut log = Log::default();
@@ -98,7 +98,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
                     log.runs.push(LoggedRun { thermo, time_step: log.time_step, end });
                     expected = ExpectedLine::Text;
                 }
-                // Blank lines are skipped, and the next case skips warnings.
+                // Blank lines are skipped in this case, and warnings in the next one.
                 None => {}
                 Some(word) if word.starts_with(char::is_alphabetic) && word.parse::<f64>().is_err() => {}
                 Some(_) => ROW.read(line.raw(), columns, values)?,
@@ -117,7 +117,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
         }
         let mut words = words();
         expected = match (words.next(), words.next(), words.next()) {
-            // LAMMPS prints the first form. Older releases and LIGGGHTS print the second.
+            // LAMMPS prints the first form; LIGGGHTS and older releases of LAMMPS print the second.
             (Some("Per"), Some("MPI"), Some("rank")) | (Some("Memory"), Some("usage"), Some("per")) => {
                 ExpectedLine::Names
             }
@@ -143,7 +143,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     Ok(log)
 }
 
-/// Format of a row.
+/// Format of a row of numbers.
 const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Kept };
 
 /// Content that is expected in the next line of a log.
@@ -157,7 +157,7 @@ enum ExpectedLine {
     Rows(Vec<NumberColumn>, Vec<f64>),
 }
 
-/// Returns the columns if the line contains column names: different words, none a number, one of them `Step`.
+/// Returns the columns if a line consists of column names: distinct words that are not numbers, including `Step`.
 fn columns_of(line: Line<'_>) -> Option<Vec<NumberColumn>> {
     let words: Vec<&str> = line.text.split_whitespace().collect();
     let named = words.contains(&"Step")

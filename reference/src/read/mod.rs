@@ -1,4 +1,4 @@
-//! Readers for files, one per format. They return the content of a file, or an error. The error names the file and
+//! Readers for files, one per format. A reader returns the content of a file or an error. The error names the file and
 //! the position, and states the expected and the actual content.
 
 pub(crate) mod atom;

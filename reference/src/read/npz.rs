@@ -13,14 +13,14 @@ use std::io::Read;
 use std::path::Path;
 use zip::ZipArchive;
 
-/// First bytes of a file.
+/// First bytes of an `.npz` file.
 pub(crate) const MARK: &[u8] = b"PK\x03\x04";
-/// First bytes of an array.
+/// First bytes of an `.npy` file.
 const ARRAY: &[u8] = b"\x93NUMPY";
 /// Maximum size of all arrays together (B).
 const MOST: u64 = 1 << 30;
 
-/// Array. The last index varies fastest.
+/// Array of numbers, in which the last index varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 struct Array {
     shape: Vec<usize>,
@@ -28,27 +28,27 @@ struct Array {
     digits: Digits,
 }
 
-/// Grains at several moments.
+/// Grains at several moments, from one file.
 #[derive(Debug)]
 pub(crate) struct Course {
     name: String,
-    /// Step of each moment. If the file has no steps, it is the index of the moment.
+    /// Step of each moment. If the file has no steps, this is the index of the moment.
     steps: Vec<u64>,
-    /// Numbering of the moments. If the file also contains times, the steps are steps of the run. Otherwise they may
-    /// count frames.
+    /// Numbering of the moments. If the file has both steps and times, the steps are those of the run. Otherwise the
+    /// numbers may count frames.
     numbering: Numbering,
     /// Times (s), if the file contains them.
     times: Option<Vec<f64>>,
     grains: usize,
     columns: Vec<NumberColumn>,
-    /// Numbers of each column, and true if they differ between moments.
+    /// Numbers of each column, and true if the column has different numbers for each moment.
     numbers: Vec<(Vec<f64>, bool)>,
 }
 
-/// Arrays of grains, with their name, their columns, and true if the array is required.
+/// Known arrays of grains: name, columns, and true if the array is required.
 ///
-/// An array with three numbers per grain has the shape (moments, grains, 3). An array with one number per grain has
-/// the shape (moments, grains) or (grains).
+/// An array of vectors has the shape (moments, grains, 3). An array of numbers has the shape (moments, grains) or
+/// (grains).
 const KNOWN: [(&str, &[&str], bool); 5] = [
     ("position", &["x", "y", "z"], true),
     ("velocity", &["vx", "vy", "vz"], false),
@@ -57,8 +57,8 @@ const KNOWN: [(&str, &[&str], bool); 5] = [
     ("radius", &["radius"], false),
 ];
 
-/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and `step` or `time` of every
-/// moment.
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and the arrays `step` and `time` of
+/// moments. At least one of `step` and `time` is required.
 ///
 /// # Errors
 /// If the file cannot be read, lacks a required array, or has arrays of other shapes.
@@ -70,9 +70,10 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     let of_moments = |key: &str| -> Result<Option<Vec<f64>>, ReadError> {
         match arrays.get(key) {
             Some(array) if array.shape.len() == 1 => Ok(Some(array.numbers.clone())),
-            Some(array) => {
-                Err(fault(format!("one number a moment in the array `{key}`"), format!("the shape {:?}", array.shape)))
-            }
+            Some(array) => Err(fault(
+                format!("one number for each time in the array `{key}`"),
+                format!("the shape {:?}", array.shape),
+            )),
             None => Ok(None),
         }
     };
@@ -88,7 +89,7 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
         Some(steps) => {
             let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
             let steps: Result<Vec<u64>, f64> = steps.into_iter().map(whole).collect();
-            steps.map_err(|step| fault("whole steps from zero on".to_owned(), step.to_string()))?
+            steps.map_err(|step| fault("whole numbers of steps, zero or more".to_owned(), step.to_string()))?
         }
     };
     if let Some(at) = steps.windows(2).position(|pair| pair[1] <= pair[0]) {
@@ -160,7 +161,8 @@ impl Course {
 /// Returns all arrays of a file by name.
 fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError> {
     let file = File::open(path).map_err(|error| ReadError::opening(name, error))?;
-    let damaged = |error: zip::result::ZipError| ReadError::at(name, 1, "a whole `.npz`", quoted(&error.to_string()));
+    let damaged =
+        |error: zip::result::ZipError| ReadError::at(name, 1, "a complete `.npz` file", quoted(&error.to_string()));
     let mut archive = ZipArchive::new(file).map_err(damaged)?;
     let mut arrays = BTreeMap::new();
     let mut left = MOST;
@@ -169,7 +171,7 @@ fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError>
         let entry_name = entry.name().map_err(damaged)?.into_owned();
         let Some(key) = entry_name.strip_suffix(".npy").map(str::to_owned) else { continue };
         let mut bytes = Vec::new();
-        // The declared size of an entry is not trusted.
+        // Memory grows with the bytes that are present, not with the declared size.
         entry.take(left + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(name, 1, error))?;
         left = left
             .checked_sub(bytes.len() as u64)
@@ -184,9 +186,10 @@ fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError>
     Ok(arrays)
 }
 
-/// Returns an array of numbers, or `None` if it has another type. Errors contain the expected and the actual content.
+/// Returns an array, or `None` if its elements are not numbers. An error consists of the expected and the actual
+/// content.
 fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
-    let short = || ("a whole header".to_owned(), "the end of the file".to_owned());
+    let short = || ("a complete header".to_owned(), "the end of the file".to_owned());
     let rest = bytes.strip_prefix(ARRAY).ok_or_else(|| ("`.npy`".to_owned(), "something else".to_owned()))?;
     let (version, rest) = rest.split_at_checked(2).ok_or_else(short)?;
     let (length, rest) = rest.split_at_checked(if version[0] == 1 { 2 } else { 4 }).ok_or_else(short)?;
@@ -202,7 +205,7 @@ fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
         return Ok(None);
     };
     if order.starts_with("True") {
-        return Err(("the last index to run fastest".to_owned(), "`fortran_order`".to_owned()));
+        return Err(("arrays in C order (last index fastest)".to_owned(), "`fortran_order`".to_owned()));
     }
     let shape = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).map_or("", |(shape, _)| shape);
     let lengths = shape.split(',').map(str::trim).filter(|length| !length.is_empty()).map(str::parse);
@@ -234,7 +237,7 @@ mod tests {
             assert_eq!(course.grains(), 2);
             let last = course.snapshot(2).unwrap();
             assert_eq!((last.step, last.time), (25, Some(0.25)));
-            // Steps beside times give the time step.
+            // A file with steps and times has steps of the run.
             assert_eq!(last.numbering, Numbering::Steps);
             assert!(course.snapshot(3).is_none());
             let value = |column: &str, row: usize| last.row(row)[last.column(column).unwrap()];
@@ -256,7 +259,8 @@ mod tests {
         );
         assert_eq!(
             read("fortran.npz").unwrap_err(),
-            "fortran.npz:1: expected the last index to run fastest in the array `position`, found `fortran_order`"
+            "fortran.npz:1: expected arrays in C order (last index fastest) in the array `position`, found \
+             `fortran_order`"
         );
     }
 
@@ -274,7 +278,7 @@ mod tests {
             let mut bytes = whole.clone();
             bytes[at] ^= 1 << (at % 8);
             fs::write(&damaged, &bytes).unwrap();
-            // The file must be read or refused without a panic.
+            // Any result is allowed, but no panic.
             let _ = read_course(&damaged);
         }
     }

@@ -1,4 +1,4 @@
-//! Rows of numbers separated by blanks or commas, parsed from bytes.
+//! Parser of rows of numbers that are separated by blanks or by another separator.
 
 use crate::read::blocks::RawLine;
 use crate::read::digits::Digits;
@@ -11,12 +11,12 @@ pub struct NumberColumn {
     pub name: String,
     /// Printed digits of the numbers read so far.
     pub digits: Digits,
-    /// True for a column of words, such as `element`. Its numbers are NaN.
+    /// True for a column of words, such as `element`, whose numbers are NaN.
     pub is_text: bool,
 }
 
 impl NumberColumn {
-    /// Returns a column with a name.
+    /// Returns a column without digits so far. The columns `element` and `typelabel` contain words.
     pub(crate) fn new(name: &str) -> Self {
         let is_text = matches!(name, "element" | "typelabel");
         Self { name: name.to_owned(), digits: Digits::default(), is_text }
@@ -35,14 +35,14 @@ pub enum NonFiniteNumbers {
     /// NaN and infinity are errors in the file.
     #[default]
     Refused,
-    /// NaN and infinity are kept, so that the caller can report where in the run they occur.
+    /// NaN and infinity are kept, so that the caller can report the step at which they occur.
     Kept,
 }
 
-/// Format of rows, and permitted values.
+/// Separator of the numbers in a row, and treatment of NaN and infinity.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowForm {
-    /// Separator of two numbers. Without a value, numbers are separated by blanks.
+    /// Separator of numbers; `None` for blanks.
     pub(crate) separator: Option<u8>,
     pub(crate) not_finite: NonFiniteNumbers,
 }
@@ -104,7 +104,7 @@ impl RowForm {
         let rest = self.skip_blanks(bytes, at);
         if rest < bytes.len() {
             let last = columns.last().map(|column| column.name.as_str()).unwrap_or_default();
-            let what = format!("the end of the line behind the column {}", quoted(last));
+            let what = format!("the end of the line after the column {}", quoted(last));
             let rest = if bytes.get(rest) == self.separator.as_ref() { rest + 1 } else { rest };
             return Err(self.error_at(line, rest, &what, "one more field, "));
         }
@@ -127,9 +127,9 @@ impl RowForm {
         self.error_at(line, at, &format!("{kind} in the column {}", quoted(&column.name)), "")
     }
 
-    /// Returns the error for the field at byte `at`.
+    /// Returns the error of the field at byte `at` of a line. `kind` precedes the field in the message.
     fn error_at(self, line: RawLine<'_>, at: usize, expected: &str, kind: &str) -> ReadError {
-        // Bytes that are not text are the more important error.
+        // A byte that is not text is reported first.
         let text = match line.text() {
             Ok(line) => line.text,
             Err(error) => return error,

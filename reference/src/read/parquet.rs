@@ -13,19 +13,18 @@ use std::fs::File;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
-/// First bytes of a file.
+/// First bytes of a Parquet file.
 pub(crate) const MARK: &[u8] = b"PAR1";
-/// Maximum size of all numbers after decompression (B).
+/// Maximum size of all numbers of a file after decompression (B).
 const MOST: i64 = 1 << 30;
 
-/// Reads the table of a file. `name` is its name in error messages.
+/// Reads the table of a file. `name` is the name of the file in error messages.
 ///
 /// # Errors
-/// If the file is damaged or too large. Also if a column has a type other than numbers, or if a number is missing or
-/// not finite.
+/// If the file is damaged or too large, a column has a type other than numbers, or a number is missing or not finite.
 pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
-    // The `parquet` crate checks most of its input but trusts some lengths, so a damaged file can cause a panic. It
-    // must be an error instead.
+    // The `parquet` crate trusts some lengths in a file, so a damaged file can cause a panic, which is converted to an
+    // error.
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
         let previous_hook = panic::take_hook();
@@ -38,16 +37,16 @@ pub(super) fn read(file: File, name: &str) -> Result<Table, ReadError> {
     READING.set(true);
     let read = panic::catch_unwind(AssertUnwindSafe(|| whole(file, name)));
     READING.set(false);
-    read.unwrap_or_else(|_: Box<dyn Any + Send>| Err(damaged(name, "one that breaks off or is damaged")))
+    read.unwrap_or_else(|_: Box<dyn Any + Send>| Err(damaged(name, "a truncated or damaged file")))
 }
 
 thread_local! {
-    /// True while a file is being read. A panic then prints no message, because it becomes an error.
+    /// True while a file is being read. A panic then prints no message, because it is converted to an error.
     static READING: Cell<bool> = const { Cell::new(false) };
 }
 
 fn damaged(name: &str, found: &str) -> ReadError {
-    ReadError::at(name, 1, "a whole file of Parquet, plain or with Snappy's compression", found)
+    ReadError::at(name, 1, "a complete Parquet file, uncompressed or compressed by Snappy", found)
 }
 
 fn whole(file: File, name: &str) -> Result<Table, ReadError> {
@@ -88,7 +87,7 @@ fn whole(file: File, name: &str) -> Result<Table, ReadError> {
     Ok(Table::new(columns, values))
 }
 
-/// Returns the number of a field, or `None` if it has another type.
+/// Returns the value of a field as a number, or `None` if the field has another type.
 fn number(field: &Field) -> Option<f64> {
     Some(match *field {
         Field::Double(number) => number,
@@ -116,7 +115,7 @@ mod tests {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/grains_pandas.parquet")
     }
 
-    /// The file contains two grains at three steps with numbers of every width, written by pandas.
+    /// The file contains two grains at three steps. It was written by pandas, with number types of different widths.
     #[test]
     fn a_table_of_pandas_is_read() {
         let table = read_table(&data()).unwrap();
@@ -130,7 +129,7 @@ mod tests {
         assert_eq!(column("omegaz")[5], -1.0);
     }
 
-    /// A file that is truncated or changed at any byte must yield a table or an error, but no panic.
+    /// A file that is truncated or has one changed bit yields a table or an error, but no panic.
     #[test]
     fn a_damaged_file_is_an_error() {
         let whole = fs::read(data()).unwrap();

@@ -7,12 +7,12 @@ use std::io;
 /// Maximum length of an excerpt in an error (characters).
 const EXCERPT: usize = 60;
 
-/// Input that could not be read, with the file, the position, and the expected and the actual content.
+/// Error of input that cannot be read, with file, position, and the expected and the actual content.
 ///
-/// It is displayed on one line as `FILE:LINE: expected …, found …`. With a column it begins with `FILE:LINE:COLUMN:`.
-/// If the file could not be opened it begins with `FILE:`.
+/// The error is displayed on one line as `FILE:LINE: expected …, found …`. An error with a column begins with
+/// `FILE:LINE:COLUMN:`, and the error of a file that cannot be opened with `FILE:`.
 ///
-/// Lines and columns are counted from 1. Those of a compressed file refer to its text.
+/// Lines and columns are counted from 1. In a compressed file they refer to the decompressed text.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: expected {expected}, found {found}", Place(file, *line, *column))]
 pub struct ReadError {
@@ -39,7 +39,7 @@ impl ReadError {
         }
     }
 
-    /// Marks an input as truncated, for example because a job was killed.
+    /// Marks the error as a truncation of the input, for example because a job was killed.
     pub(crate) fn cut(self) -> Self {
         Self { is_cut: true, ..self }
     }
@@ -49,37 +49,37 @@ impl ReadError {
         self
     }
 
-    /// Returns an error of the operating system or the decompression while line `line` was being read.
+    /// Returns the error of the operating system or of the decompression at line `line`.
     pub(crate) fn reading(file: &str, line: u64, source: io::Error) -> Self {
         let found = one_line(&source.to_string());
         let is_cut = source.kind() == io::ErrorKind::UnexpectedEof;
         Self { source: Some(source), is_cut, ..Self::at(file, line, "readable data", found) }
     }
 
-    /// Returns the error for a file that could not be opened.
+    /// Returns the error of a file that cannot be opened.
     pub(crate) fn opening(file: &str, source: io::Error) -> Self {
         Self { line: None, expected: "a readable file".into(), ..Self::reading(file, 0, source) }
     }
 
-    /// Returns the given name of the input. Characters that would break the line are escaped.
+    /// Returns the name of the input, with escapes for characters that would break the line.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Returns true if the input is truncated. The content before this position is complete.
+    /// Returns true if the input is truncated. The content before the position of the error is then complete.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// Returns the line, counted from 1, or `None` if the file could not be opened.
+    /// Returns the line number, counted from 1, or `None` if the file cannot be opened.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
         self.line
     }
 
-    /// Returns the column in characters, counted from 1, if the error has one.
+    /// Returns the column in characters, counted from 1, or `None` if the error refers to a whole line.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         self.column
@@ -98,7 +98,7 @@ impl ReadError {
     }
 }
 
-/// Known part of the position of an error.
+/// Position of an error, as far as it is known.
 struct Place<'e>(&'e str, Option<u64>, Option<usize>);
 
 impl fmt::Display for Place<'_> {
@@ -114,7 +114,7 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-/// Returns an excerpt of `text` for errors. It is quoted, truncated and on one line.
+/// Returns a quoted excerpt of `text` on one line, for errors.
 pub(crate) fn quoted(text: &str) -> String {
     let mut excerpt: String = text.chars().take(EXCERPT).collect();
     if excerpt.len() < text.len() {
@@ -123,8 +123,7 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("`{}`", one_line(&excerpt))
 }
 
-/// Returns `text` with escapes for every character that could break or disguise the line: control characters,
-/// separators and direction marks.
+/// Returns `text` on one line. Control characters, line separators and direction marks are escaped.
 pub(crate) fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }

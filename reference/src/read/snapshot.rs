@@ -10,7 +10,7 @@ pub enum DumpKind {
     /// Grains from `dump custom` or `dump atom`.
     #[default]
     Atoms,
-    /// Entries of a `compute`, mostly contacts, from `dump local`.
+    /// Entries of a `compute`, usually contacts, from `dump local`.
     Entries,
 }
 
@@ -20,26 +20,26 @@ pub enum Numbering {
     /// Steps of the run.
     #[default]
     Steps,
-    /// Numbers in the names of files. They are steps or a count of files.
+    /// Numbers in the names of files, which are steps or a count of files.
     Files,
-    /// Count of frames.
+    /// Frame numbers.
     Frames,
 }
 
 /// Snapshot of a dump, in the units of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DumpSnapshot {
-    /// Step, or another number that orders the snapshots.
+    /// Step, or another number by which snapshots are ordered.
     pub step: u64,
-    /// Numbering of the snapshots.
+    /// Meaning of `step`.
     pub numbering: Numbering,
-    /// Time, if the file contains it.
+    /// Time; `None` if the file does not contain it.
     pub time: Option<f64>,
-    /// Name of the unit system, if the file has contained it so far.
+    /// Name of the unit system; `None` if the file has not contained it so far.
     pub units: Option<String>,
     /// Content of the rows.
     pub kind: DumpKind,
-    /// Lower and upper corner of the box. For a tilted box, they are those of the enclosing box with right angles.
+    /// Lower and upper corner of the box. For a tilted box, they belong to the enclosing box with right angles.
     pub bounds: ([f64; 3], [f64; 3]),
     /// Tilts `xy`, `xz` and `yz` of the box.
     pub tilt: [f64; 3],
@@ -49,7 +49,7 @@ pub struct DumpSnapshot {
     pub columns: Vec<NumberColumn>,
     /// Line number of the first row, counted from 1.
     pub first_line: u64,
-    /// Values, row by row.
+    /// Numbers, row by row.
     pub(crate) values: Vec<f64>,
 }
 
@@ -78,13 +78,15 @@ impl DumpSnapshot {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
-    /// Returns the coordinate along an axis (0, 1, 2), with its columns and its conversion.
+    /// Returns the conversion from the columns `x`, `xu`, `xs` or `xsu` to the coordinate along an axis (0, 1, 2: x, y,
+    /// z), or `None` if there is no such column.
     #[must_use]
     pub fn coordinate(&self, axis: usize) -> Option<Coordinate> {
         ["", "u", "s", "su"].into_iter().find_map(|suffix| self.coordinate_named(&column_name(axis, suffix), axis))
     }
 
-    /// Returns the coordinate along an axis from a column of any name. Columns such as `xs` and `xsu` are scaled.
+    /// Returns the conversion from the column `name` to the coordinate along an axis, or `None` if a column is missing.
+    /// Columns such as `xs` and `xsu` are scaled.
     #[must_use]
     pub fn coordinate_named(&self, name: &str, axis: usize) -> Option<Coordinate> {
         let column = self.column(name)?;
@@ -94,7 +96,7 @@ impl DumpSnapshot {
         }
     }
 
-    /// Returns the corners of the tilted box itself. The tilts are subtracted from the enclosing box.
+    /// Returns the lower and upper corner of the tilted box: the corners of the enclosing box minus the tilts.
     fn corners(&self) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = self.bounds;
         let [xy, xz, yz] = self.tilt;
@@ -105,7 +107,8 @@ impl DumpSnapshot {
         (low, high)
     }
 
-    /// Returns a scaled coordinate: x = xlo + xs lx + ys xy + zs xz, y = ylo + ys ly + zs yz, z = zlo + zs lz.
+    /// Returns the conversion of a scaled coordinate: x = xlo + xs lx + ys xy + zs xz, y = ylo + ys ly + zs yz, z = zlo
+    /// + zs lz.
     fn scaled(&self, column: usize, axis: usize, suffix: &str) -> Option<Coordinate> {
         let [xy, xz, yz] = self.tilt;
         let tilts = [[0.0, xy, xz], [0.0, 0.0, yz], [0.0; 3]][axis];
@@ -117,7 +120,8 @@ impl DumpSnapshot {
         Some(Coordinate { column, origin: low[axis], scale: high[axis] - low[axis], tilted })
     }
 
-    /// Returns the rows in the order of a column, for example the ids. Without a column, the order is that of the file.
+    /// Returns the row indices sorted by a column, for example by ids. Without a column, the rows stay in the order of
+    /// the file.
     pub(crate) fn rows_by(&self, column: Option<usize>) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.rows()).collect();
         if let Some(column) = column {
@@ -127,7 +131,7 @@ impl DumpSnapshot {
     }
 
     /// Finds the first number that differs from another snapshot by more than the uncertainty of printed digits.
-    /// Returns its row, and the expected and the actual value as text.
+    /// Returns the row of this number, and the expected and the actual value as text.
     ///
     /// Rows are matched by id. Columns that only one of the snapshots has are skipped.
     pub(crate) fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
@@ -152,39 +156,39 @@ impl DumpSnapshot {
         None
     }
 
-    /// Returns an error if the numbers differ from those of an earlier snapshot with the same step or time.
+    /// Checks that the numbers equal those of an earlier snapshot with the same step.
     pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
         let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
         let expected = format!("{expected} as before at step {}, which occurs twice", self.step);
         Err(ReadError::at(file, self.first_line + row as u64, expected, found))
     }
 
-    /// Returns the common digits of all columns of numbers.
+    /// Returns the combined digits of all columns of numbers.
     #[must_use]
     pub fn digits(&self) -> Digits {
         Digits::all(self.columns.iter().filter(|column| !column.is_text).map(|column| &column.digits))
     }
 }
 
-/// Returns the name of the column of a coordinate, the letter of the axis and a suffix.
+/// Returns the name of the column of a coordinate: the letter of the axis and a suffix.
 fn column_name(axis: usize, suffix: &str) -> String {
     format!("{}{suffix}", ["x", "y", "z"].get(axis).copied().unwrap_or_default())
 }
 
-/// Conversion of columns to a coordinate. Scaled columns are fractions of the box length, counted from the lower side
-/// of the box. In a tilted box they also contribute fractions of the tilts.
+/// Conversion from columns to a coordinate. A scaled column is the distance from the lower side of the box, divided by
+/// the box length. In a tilted box, the scaled columns of the other axes also contribute, multiplied by the tilts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
-    /// Index of the column.
+    /// Index of the column of this coordinate.
     pub column: usize,
     origin: f64,
     scale: f64,
-    /// Other columns and their tilts, by which they are multiplied.
+    /// Other columns, and the tilts by which they are multiplied.
     tilted: [Option<(usize, f64)>; 2],
 }
 
 impl Coordinate {
-    /// Returns the coordinate of a row from [`DumpSnapshot::row`].
+    /// Returns the coordinate from a row of numbers ([`DumpSnapshot::row`]).
     #[must_use]
     pub fn value(&self, row: &[f64]) -> f64 {
         let value = |column: usize| row.get(column).copied().unwrap_or(f64::NAN);
@@ -193,13 +197,14 @@ impl Coordinate {
         if tilted == 0.0 { straight } else { straight + tilted }
     }
 
-    /// Returns the derivative of the coordinate with respect to the column.
+    /// Returns the derivative of the coordinate with respect to the column [`Self::column`].
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Returns the columns that contribute to the coordinate, with the derivative for each.
+    /// Returns the indices of the columns that contribute to the coordinate, with the derivative of the coordinate for
+    /// each.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
         [(self.column, self.scale)].into_iter().chain(self.tilted.into_iter().flatten())
     }

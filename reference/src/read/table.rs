@@ -1,4 +1,4 @@
-//! Tables of numbers below a line of names, as CSV from any program or as Parquet.
+//! Tables of numbers with column names, as CSV or Parquet.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek};
@@ -10,7 +10,7 @@ use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
-/// Maximum number of numbers in a table. Their processing takes ten times as much memory.
+/// Maximum number of numbers in a table. Processing needs ten times as much memory as the numbers themselves.
 pub(super) const MOST_NUMBERS: usize = 1 << 24;
 
 /// Table of numbers.
@@ -43,13 +43,13 @@ impl Table {
         self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
     }
 
-    /// Returns the numbers of `rows` rows from `row` on, row by row.
+    /// Returns the numbers of `rows` rows from the row with index `row` on, row by row.
     pub(crate) fn rows_from(&self, row: usize, rows: usize) -> &[f64] {
         let width = self.columns.len();
         self.values.get(row * width..(row + rows) * width).unwrap_or_default()
     }
 
-    /// Returns the common digits of all columns.
+    /// Returns the combined digits of all columns.
     #[must_use]
     pub fn digits(&self) -> Digits {
         Digits::all(self.columns.iter().map(|column| &column.digits))
@@ -59,7 +59,7 @@ impl Table {
 /// Reads the table at `path`, which is Parquet, or text that is plain, gzip or zstd. See [`parse_table`].
 ///
 /// # Errors
-/// If the file cannot be read or is not such a table.
+/// If the file cannot be read or is not a table that [`parse_table`] reads.
 pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     let name = path.to_string_lossy();
     let mut file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
@@ -72,21 +72,22 @@ pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     parse_table(BufReader::new(file), &name)
 }
 
-/// Returns the separator of a line of names, and the names.
+/// Returns the separator in a line of column names, and the names.
 pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
     let separator = [b',', b';', b'\t'].into_iter().find(|byte| line.contains(char::from(*byte))).unwrap_or(b',');
     let fields = line.trim_end().split(char::from(separator));
     (separator, fields.map(|field| field.trim().trim_matches('"')).collect())
 }
 
-/// Reads a table with a line of names, followed by one line of numbers per row. `name` is its name in error messages.
+/// Reads a table with a line of column names, followed by one line of numbers per row. `name` is the name of the table
+/// in error messages.
 ///
-/// The separator is a comma, semicolon or tab, whichever occurs in the first line. Empty lines and lines that begin
-/// with `#` are skipped.
+/// The separator is a comma, a semicolon or a tab: the first of these that the line of names contains. Empty lines and
+/// lines that begin with `#` are skipped.
 ///
 /// # Errors
-/// If the input cannot be read, or has no names, a repeated name or no row. Also if a row has a missing or additional
-/// field, or a number that is not finite.
+/// If the input cannot be read, has no names, a repeated name or no row, or if a row has a missing or additional field,
+/// or a number that is not finite.
 pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
     let mut lines = blocks(reader, name)?;
     let mut form = RowForm { separator: None, not_finite: NonFiniteNumbers::Refused };
@@ -113,7 +114,9 @@ pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError>
                 return Err(line.error("a line with the names of the columns", quoted(line.text)));
             }
             if table.columns.iter().any(|column| column.name == field) {
-                return Err(line.error("columns of different names", format!("two of the name {}", quoted(field))));
+                return Err(
+                    line.error("columns with different names", format!("two columns with the name {}", quoted(field)))
+                );
             }
             table.columns.push(NumberColumn::new(field));
         }

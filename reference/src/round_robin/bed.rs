@@ -1,4 +1,4 @@
-//! Shared initial states of the impact case. They are tables of spheres, one of which is the ball.
+//! Shared initial states of the impact case: tables of spheres, namely the grains of a bed and one ball.
 
 use super::atoms::{DENSITY_M1, atoms, coordinates};
 use crate::read::line_reader::LineReader;
@@ -7,39 +7,38 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Radii of a grain and of the ball (m).
+/// Radius of the grains of the bed and radius of the ball (m).
 const RADII: [f64; 2] = [0.001, 0.01];
-/// Tolerance of a radius (m).
+/// Largest accepted difference between a radius in a file and the nominal radius (m).
 const ROUNDED: f64 = 1e-6;
 
 /// Centres of the ball and of the grains in the bed (m).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bed {
-    /// Centre of the ball.
+    /// Centre of the ball (m).
     pub ball: [f64; 3],
-    /// Centres of the grains, in the order of the file.
+    /// Centres of the grains (m), in the order of the file.
     pub grains: Vec<[f64; 3]>,
 }
 
-/// Returns the file names of the initial state with a given number of thousand grains, first by the authors, second
-/// by Yade.
+/// Returns the two possible file names of the initial state with `thousands` · 1000 grains: the name that the authors
+/// use, then the name that Yade uses.
 #[must_use]
 pub fn bed_names(thousands: usize) -> [String; 2] {
     [format!("{thousands}KParticles.txt"), format!("Case3_PenetrationTest_{thousands}000_Particles.txt")]
 }
 
-/// Returns the file of the initial state with a given number of thousand grains in a folder, if there is one.
+/// Returns the file of the initial state with `thousands` · 1000 grains in a folder, or `None` if there is none.
 #[must_use]
 pub fn bed_in(folder: &Path, thousands: usize) -> Option<PathBuf> {
     bed_names(thousands).map(|name| folder.join(name)).into_iter().find(|path| path.is_file())
 }
 
-/// Reads an initial state. After a line of titles, there is one line per sphere with its radius and three coordinates
-/// (m). The ball is identified by its radius.
+/// Reads an initial state. A line of titles is followed by one line per sphere with its radius and coordinates (m). The
+/// ball is identified by its radius.
 ///
 /// # Errors
-/// If the file cannot be read or a line is not valid. Also if there is not exactly one ball among the given number of
-/// thousand grains.
+/// If the file cannot be read, a line is not valid, or the file does not have one ball and `thousands` · 1000 grains.
 pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
     let file = path.to_string_lossy();
     let count = thousands * 1000;
@@ -62,7 +61,7 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
             Some(&[radius, x, y, z]) if is(radius, 1) && balls.is_empty() => balls.push([x, y, z]),
             _ => {
                 let expected = format!(
-                    "a radius, {} of {count} grains or {} of one ball, and three coordinates (m)",
+                    "a radius of {} for {count} grains or {} for one ball, and three coordinates (m)",
                     RADII[0], RADII[1]
                 );
                 return Err(line.error(expected, quoted(line.text.trim())));
@@ -72,7 +71,8 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
     match balls[..] {
         [ball] if grains.len() == count => Ok(Bed { ball, grains }),
         _ => {
-            let found = format!("{} grains and {} ball at the end of the file", grains.len(), balls.len());
+            let ball = if balls.is_empty() { "no ball" } else { "one ball" };
+            let found = format!("{} grains and {ball} at the end of the file", grains.len());
             Err(lines.error_at_end(format!("{count} grains and one ball"), found))
         }
     }
@@ -90,7 +90,7 @@ impl Bed {
 mod tests {
     use super::*;
 
-    /// Returns an initial state with `grains` grains in columns, with the given titles and end.
+    /// Returns the text of an initial state with `grains` grains in rows of 40, between the titles and the text `end`.
     fn text(titles: &str, grains: usize, end: &str) -> String {
         let grain = |number: usize| {
             format!("0.001\t{}\t{:.3}\t-.0\n", 0.002 * (number % 40) as f64, 0.002 * (number / 40) as f64)
@@ -122,8 +122,8 @@ mod tests {
         for (text, words) in [
             (String::new(), ":1: expected a line of titles"),
             (text("", 1000, BALL), ":1: expected a line of titles"),
-            (text(TITLES, 999, BALL), ":1001: expected 1000 grains and one ball, found 999 grains and 1 ball"),
-            (text(TITLES, 1000, ""), ":1001: expected 1000 grains and one ball, found 1000 grains and 0 ball"),
+            (text(TITLES, 999, BALL), ":1001: expected 1000 grains and one ball, found 999 grains and one ball"),
+            (text(TITLES, 1000, ""), ":1001: expected 1000 grains and one ball, found 1000 grains and no ball"),
             (text(TITLES, 1001, BALL), ":1002: expected a radius"),
             (text(TITLES, 1000, &BALL.repeat(2)), ":1003: expected a radius"),
             (text(TITLES, 3, "0.001 0 0\n"), ":5: expected a radius"),

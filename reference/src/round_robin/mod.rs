@@ -1,9 +1,9 @@
-//! Round robin of bulk processes (Dosta et al. 2024): numbers derived from its published time series, and readers for
-//! its shared initial states.
+//! Round robin of bulk processes (Dosta et al. 2024): numbers that are derived from its published time series, and
+//! readers of its shared initial states.
 //!
-//! The time series are third-party data and stay on the user's machine. The folder `reference/literature/dosta-2024`
-//! contains only derived numbers: means of codes, and standard deviations between codes and between beds. Its script
-//! `derive.py` computes them.
+//! The time series are third-party data and are not distributed. The folder `reference/literature/dosta-2024` contains
+//! only numbers that its script `derive.py` computes from them: means of codes, and standard deviations between codes
+//! and beds.
 
 mod atoms;
 mod bed;
@@ -19,26 +19,26 @@ pub const STEADY: [f64; 2] = [0.5, 3.5];
 /// Period shortly after the flow has started (s).
 pub const EARLY: [f64; 2] = [0.2, 0.8];
 
-/// Derived heights of the ball over time for 25 thousand grains. The columns are t (s), mean of the codes, and
-/// standard deviations between codes and between beds (mm).
+/// Height of the ball over time for 25 thousand grains. The columns are t (s), mean over the codes, standard deviation
+/// between codes, and standard deviation between beds (heights in mm).
 pub const IMPACT: &str = include_str!("../../literature/dosta-2024/impact-25k.csv");
 
-/// Consistency of the published data, as a heading and a table.
+/// Checks of the consistency of the published data, as a heading and a table in Markdown.
 pub const CONSISTENCY: &str = include_str!("../../literature/dosta-2024/consistency.md");
 
-/// Derived number of grains left in the silo over time, for the large orifice. The columns are t (s), mean of
-/// LIGGGHTS and MUSEN, and half their difference.
+/// Number of grains in the silo over time, for the large orifice. The columns are t (s), mean of LIGGGHTS and MUSEN,
+/// and half the difference of the two codes.
 pub const SILO: &str = include_str!("../../literature/dosta-2024/silo-large.csv");
 
-/// Derived number of grains M1 in zone 2 of the drum over time. The columns are t (s), mean of LIGGGHTS and MUSEN,
-/// and half their difference.
+/// Number of grains of material M1 in zone 2 of the drum over time. The columns are t (s), mean of LIGGGHTS and MUSEN,
+/// and half the difference of the two codes.
 pub const DRUM: &str = include_str!("../../literature/dosta-2024/drum-zone-2.csv");
 
-/// Scene that begins with the shared initial state of the drum. It needs `drum-m1.data` and `drum-m2.data`, which are
+/// Scene that starts from the shared initial state of the drum. It reads `drum-m1.data` and `drum-m2.data`, which are
 /// derived from this state.
 pub const DRUM_SCENE: &str = include_str!("../../literature/dosta-2024/drum.toml");
 
-/// Reads a stored table of time (s), mean and half the difference of two codes.
+/// Reads a table of time (s), mean, and half the difference of two codes.
 #[must_use]
 pub fn course(text: &str) -> Vec<[f64; 3]> {
     let row = |line: &str| -> Option<[f64; 3]> {

@@ -1,20 +1,21 @@
-//! Mean and standard deviations of a quantity between codes, and between beds of one code.
+//! Mean of a quantity, and its standard deviations between codes and between beds of one code.
 
 use std::collections::BTreeMap;
 
 /// Statistics of a quantity over all codes and beds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// Mean over codes of their means over beds.
+    /// Mean over all codes. The value of a code is the mean over its beds.
     pub mean: f64,
-    /// Standard deviation of the means of the codes.
+    /// Standard deviation of the codes' means.
     pub code: f64,
     /// Pooled standard deviation of the beds about the mean of their code.
     pub bed: f64,
 }
 
 impl Spread {
-    /// Returns the statistics of values by code, or `None` if there are fewer than two codes or no code has two beds.
+    /// Returns the statistics of values, each given with the name of its code. Returns `None` if there are fewer than
+    /// two codes or no code has two beds.
     #[must_use]
     pub fn from_values<'a>(values: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Self> {
         let mut codes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
@@ -35,15 +36,17 @@ impl Spread {
         })
     }
 
-    /// Returns the permitted difference of another code with `own` (m) beds from `published` (n) beds.
+    /// Returns the largest accepted difference between the mean of another code and the mean of the published codes.
+    /// The other code has m = `own` beds, and each published code has n = `published` beds.
     ///
-    /// It is 2 √(s_code² + s_bed² (1/m + 1/n)).
+    /// The difference is 2 √(s_code² + s_bed² (1/m + 1/n)), with the standard deviations s_code between codes and s_bed
+    /// between beds.
     #[must_use]
     pub fn allowed(&self, own: usize, published: usize) -> f64 {
         2.0 * self.deviation(own, published)
     }
 
-    /// Returns the standard deviation √(s_code² + s_bed² (1/m + 1/n)).
+    /// Returns the standard deviation √(s_code² + s_bed² (1/m + 1/n)) with m = `own` and n = `published`.
     #[must_use]
     pub fn deviation(&self, own: usize, published: usize) -> f64 {
         let beds = 1.0 / own as f64 + 1.0 / published as f64;

@@ -1,4 +1,4 @@
-//! Shared initial state of the drum. An `xyz` file of grains is converted to LAMMPS data files with the origin at the
+//! Shared initial state of the drum. An `xyz` file of grains is converted to LAMMPS data files whose origin is the
 //! centre of the drum.
 
 use super::atoms::{DENSITY_M1, atoms, coordinates};
@@ -10,17 +10,18 @@ use std::path::{Path, PathBuf};
 
 /// Centre of the drum in the coordinates of the file (m).
 const MIDDLE: [f64; 3] = [0.102, 0.032, 0.102];
-/// Maximum number of grains.
+/// Maximum number of grains in a file.
 const MOST: usize = 1_000_000;
 
 /// Centres of grains relative to the centre of the drum (m).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
-    /// Centres of M2 (type 0) and of M1 (type 1).
+    /// Centres of grains of material M2 (type 0) and M1 (type 1).
     pub kinds: [Vec<[f64; 3]>; 2],
 }
 
-/// Returns the shared initial state in a folder, the first file by name that ends in `.xyz`.
+/// Returns the file of the shared initial state in a folder: the first file in alphabetical order whose name ends in
+/// `.xyz`, or `None` if there is none.
 ///
 /// # Errors
 /// If the folder cannot be read.
@@ -30,8 +31,8 @@ pub fn start_in(folder: &Path) -> std::io::Result<Option<PathBuf>> {
     Ok(entries.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "xyz")).min())
 }
 
-/// Reads the initial state. The first line is the number of grains, the second the box. Each further line has the
-/// type of a grain, 0 or 1, and three coordinates (m).
+/// Reads the initial state. The first line is the number of grains, and the second line is the box. Each further line
+/// has the type of a grain, 0 or 1, and its coordinates (m).
 ///
 /// # Errors
 /// If the file cannot be read or a line is not valid.
@@ -62,13 +63,13 @@ pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     Ok(start)
 }
 
-/// Rounds a coordinate to 1e-9 m, finer than the file. This removes the rounding error of the subtraction.
+/// Rounds a coordinate to 1e-9 m, which is finer than the file, to remove the rounding error of the subtraction.
 fn rounded(at: f64) -> f64 {
     (at * 1e9).round() / 1e9
 }
 
 impl Start {
-    /// Returns both kinds of grains as data files for the scene of the drum, by name and text.
+    /// Returns the data files of both types of grains for the scene of the drum, by name and text.
     #[must_use]
     pub fn files(&self) -> [(&'static str, String); 2] {
         let kind_atoms = |kind: usize, diameter, density| atoms(&self.kinds[kind], diameter, density);

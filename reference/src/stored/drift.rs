@@ -1,33 +1,35 @@
-//! Difference of a rerun from the stored run.
+//! Difference of a rerun from a stored run.
 
 use grainbench_scene::record::Series;
 
-/// Difference of one column.
+/// Largest difference of one column between a rerun and a stored run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drift {
     /// Name of the column.
     pub name: String,
     /// Unit of the column.
     pub unit: String,
-    /// Stored value at the largest difference.
+    /// Stored value at the time of the largest difference.
     pub stored: f64,
-    /// Value of the rerun at the same time.
+    /// Value of the rerun at the time of the largest difference.
     pub rerun: f64,
-    /// Largest magnitude of all columns with this unit. For coordinates, it is the largest change.
+    /// Scale by which the difference is divided: the largest magnitude in all columns with this unit; for lengths (m),
+    /// the largest change since the start.
     pub scale: f64,
     /// Time of the largest difference (s).
     pub time: f64,
 }
 
 impl Drift {
-    /// Returns (rerun − stored)/scale.
+    /// Returns the relative difference (rerun − stored)/scale.
     #[must_use]
     pub fn error(&self) -> f64 {
         (self.rerun - self.stored) / self.scale
     }
 }
 
-/// Returns the difference of each column at the stored steps up to `last_step`. Values that the rerun lacks are NaN.
+/// Returns the largest difference of each column at the stored steps up to `last_step`. If the rerun lacks a value,
+/// [`Drift::rerun`] is NaN, which counts as the largest difference.
 #[must_use]
 pub fn drift(stored: &Series, rerun: &Series, last_step: u64) -> Vec<Drift> {
     let moved = |values: &[f64], unit: &str| -> f64 {

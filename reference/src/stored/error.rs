@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use crate::read::read_error::{ReadError, one_line};
 
-/// Stored run that is missing, incomplete or changed.
+/// Error of a stored run that is missing, incomplete or changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoredError {
-    /// A name could lead out of its folder.
+    /// The name of a run or a file is not a plain name.
     #[error("{place}: expected a plain name of letters, digits, `.`, `-` and `_`, found `{}`", name.escape_debug())]
     Name {
-        /// Position of the name.
+        /// Path of the file that contains the name.
         place: String,
-        /// Invalid name.
+        /// The invalid name.
         name: String,
     },
     /// A file of the run cannot be read.
@@ -25,10 +25,10 @@ pub enum StoredError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// The provenance is not valid.
+    /// The provenance file is not valid.
     #[error("{}:{line}: expected the provenance of a stored run, found {}", shown(path), one_line(source.message()))]
     Provenance {
-        /// Path of the provenance.
+        /// Path of the provenance file.
         path: PathBuf,
         /// Line number, counted from 1.
         line: usize,
@@ -40,17 +40,17 @@ pub enum StoredError {
     Changed {
         /// Path of the file.
         path: PathBuf,
-        /// Hash in the provenance.
+        /// BLAKE3 hash in the provenance.
         expected: String,
-        /// Actual hash of the file.
+        /// Actual BLAKE3 hash of the file.
         found: String,
     },
-    /// The provenance has no hash of a required file.
+    /// The provenance lacks the hash of a required file.
     #[error("{}: expected the hash of `{name}`, found none", shown(provenance))]
     Unlisted {
-        /// Path of the provenance.
+        /// Path of the provenance file.
         provenance: PathBuf,
-        /// Name of the file.
+        /// Name of the file without a hash.
         name: String,
     },
     /// A series of the run is damaged.
@@ -61,10 +61,10 @@ pub enum StoredError {
     Column {
         /// Path of the series.
         path: PathBuf,
-        /// Name of the column.
+        /// Name of the missing column.
         name: String,
     },
-    /// The run and its half-step run cannot be compared row by row.
+    /// The samples of the run and of its half-step run are at different times.
     #[error("{}: expected the times of `series.csv.gz`, found {found}", shown(path))]
     Twin {
         /// Path of the series of the half-step run.

@@ -1,4 +1,4 @@
-//! Creation of a stored run with an installed program.
+//! Creation of stored runs with an installed program.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -16,22 +16,22 @@ use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::LiveProgram;
 
-/// Maximum number of stored samples of a run, in addition to the last one.
+/// Maximum number of stored samples of a run, without the last sample.
 const MOST_SAMPLES: usize = 100;
-/// Size from which on a file of the deck is compressed (B).
+/// Size from which a file of the deck is compressed (B).
 const LARGE: usize = 1 << 14;
 
 /// Files of a stored run, by name and content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredRunFiles {
-    /// Name and content of each file. `provenance.toml` is the last one.
+    /// Name and content of each file, with `provenance.toml` last.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs the scene, and repeats the run with half the time step and with a perturbed initial state. Returns the files
+/// Runs a scene three times: as it is, with half the time step, and with a perturbed initial state. Returns the files
 /// of the stored run.
 ///
-/// `id` is the name in `reference build`, and `date` the day (YYYY-MM-DD).
+/// `id` is the name of the run in `reference build`. `title` describes the run, and `date` is the day (YYYY-MM-DD).
 ///
 /// # Errors
 /// If the program cannot express the scene, is not installed or fails, or if a value is not finite.
@@ -86,7 +86,7 @@ pub fn make(
     Ok(StoredRunFiles { files })
 }
 
-/// Returns about a hundred samples of a run as CSV with full precision.
+/// Returns about 100 samples of a run as CSV in full precision.
 fn table(record: &Record, program: Program) -> Result<String, RunError> {
     let series = thinned(&record.series);
     let mut text = "step,time".to_owned();
@@ -109,8 +109,8 @@ fn table(record: &Record, program: Program) -> Result<String, RunError> {
     Ok(text)
 }
 
-/// Returns the last step at which the perturbed run differs by at most [`PARTED`], or `None` if this holds until the
-/// end.
+/// Returns the last stored step up to which the perturbed run differs from `run` by at most [`PARTED`] of the scale of
+/// each column, or `None` if this is true until the end.
 fn predictable_steps(run: &Series, perturbed: &Series) -> Option<u64> {
     let parted = |step: u64| {
         drift(run, perturbed, step).iter().any(|column| column.error().is_nan() || column.error().abs() > PARTED)
@@ -119,7 +119,7 @@ fn predictable_steps(run: &Series, perturbed: &Series) -> Option<u64> {
     (first < run.step.len()).then(|| run.step[first.saturating_sub(1)])
 }
 
-/// Returns evenly spaced samples of a series, including the last one.
+/// Returns at most [`MOST_SAMPLES`] evenly spaced samples of a series, and the last sample.
 fn thinned(series: &Series) -> Series {
     let stride = series.step.len().div_ceil(MOST_SAMPLES).max(1);
     let keep: Vec<usize> =
@@ -133,7 +133,7 @@ fn thinned(series: &Series) -> Series {
     }
 }
 
-/// Returns a text compressed by gzip. Name and time are omitted, so that equal texts give equal files.
+/// Returns a text compressed by gzip. File name and time are omitted, so that equal texts give equal files.
 #[must_use]
 pub fn compressed(text: &str) -> Vec<u8> {
     let mut encoder = GzBuilder::new().mtime(0).write(Vec::new(), Compression::best());

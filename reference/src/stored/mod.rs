@@ -1,6 +1,6 @@
-//! Stored runs of other programs. They allow a comparison where these programs are not installed.
+//! Stored runs of external programs, for comparisons on machines where these programs are not installed.
 //!
-//! A stored run consists of the deck, the output at full precision, the output with half the time step, and the
+//! A stored run consists of the deck, the output in full precision, the output with half the time step, and the
 //! provenance.
 
 mod drift;
@@ -31,7 +31,7 @@ const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series.csv.gz";
 const HALF_STEP_SERIES: &str = "series-half-step.csv.gz";
 
-/// Stored run whose files have been verified by their hashes.
+/// Stored run. Its files have been verified by their hashes.
 #[derive(Debug, Clone)]
 pub struct StoredRun {
     directory: PathBuf,
@@ -40,14 +40,14 @@ pub struct StoredRun {
     half_step: Table,
 }
 
-/// Returns the folder of run `id` of a program in this crate.
+/// Returns the folder of the stored run `id` of a program.
 #[must_use]
 pub fn folder(program: Program, id: &str) -> PathBuf {
     Path::new(crate::FOLDER).join(program.name()).join(id)
 }
 
 impl StoredRun {
-    /// Loads the run in `directory`, with its `provenance.toml`, every file listed there, and its two series.
+    /// Loads the run in `directory`: its `provenance.toml`, every file that it lists, and both series.
     ///
     /// # Errors
     /// If a file is missing, changed or damaged. See [`StoredError`].
@@ -85,15 +85,16 @@ impl StoredRun {
         Stepping::new(scene, resolution).is_ok_and(|stepping| scene_hash(scene, &stepping) == self.provenance.scene)
     }
 
-    /// Returns the values of the scene's probes.
+    /// Returns the values of the scene's probes in the run.
     #[must_use]
     pub fn series(&self, scene: &Scene) -> Series {
         series(scene, &self.series)
     }
 
-    /// Returns the values of the probes at the same times with half the time step.
+    /// Returns the values of the scene's probes in the run with half the time step, at the times of the stored run.
     ///
-    /// Their difference from the run is an estimate of its time-step error. The steps are those of the run.
+    /// The difference of the two runs is an estimate of the time-step error of the stored run. The steps are numbered
+    /// as in the stored run.
     #[must_use]
     pub fn half_step(&self, scene: &Scene) -> Series {
         Series { step: self.series(scene).step, ..series(scene, &self.half_step) }
@@ -102,7 +103,7 @@ impl StoredRun {
     /// Returns the record of the run.
     ///
     /// # Errors
-    /// [`RunError::Stale`] if the run was made from another scene.
+    /// [`RunError::Stale`] if the run was made from another scene or time step.
     pub fn record(&self, scene: &Scene, resolution: &Resolution, program: Program) -> Result<Record, RunError> {
         let solver = program.name().to_owned();
         if !self.is_of(scene, resolution) {
@@ -137,7 +138,7 @@ pub fn unusable(program: Program, error: &StoredError) -> RunError {
     RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() }
 }
 
-/// Returns the columns of a table that belong to the scene's probes.
+/// Returns the columns of a table that belong to the scene's probes, with the steps and times.
 fn series(scene: &Scene, table: &Table) -> Series {
     let values =
         |name: &str| -> Vec<f64> { table.column(name).map(|at| table.values(at).collect()).unwrap_or_default() };
@@ -152,7 +153,7 @@ fn series(scene: &Scene, table: &Table) -> Series {
     series
 }
 
-/// Returns an error if a file differs from the stored one.
+/// Checks that a file has the hash in the provenance.
 fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredError> {
     check_name(name, &directory.join(PROVENANCE).to_string_lossy())?;
     let path = directory.join(name);
@@ -163,7 +164,7 @@ fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredErro
     }
 }
 
-/// Returns an error if a series lacks steps or times, or if the half-step run has other sample times.
+/// Checks that both series have times, that these times are equal, and that the series of the run has steps.
 fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), StoredError> {
     let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
         let path = directory.join(file);
@@ -176,7 +177,7 @@ fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), St
     if of_run.len() != of_half.len() {
         return Err(differing(format!("{} rows instead of {}", of_half.len(), of_run.len())));
     }
-    // The programs sum up the time steps, so equal times differ in their last digits.
+    // The programs sum up time steps, so equal times differ in their last digits.
     match of_run.iter().zip(&of_half).find(|(run, half)| (**run - **half).abs() > 1e-9 * run.max(**half)) {
         Some((run, half)) => Err(differing(format!("{half:?} instead of {run:?}"))),
         None => Ok(()),
@@ -196,7 +197,7 @@ fn read_provenance(path: &Path) -> Result<Provenance, StoredError> {
     })
 }
 
-/// Returns an error if a name is a path, because a stored run must not read files outside of its folder.
+/// Checks that a name is not a path, because a stored run must not read files outside its folder.
 fn check_name(name: &str, place: &str) -> Result<(), StoredError> {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
     if !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain) {

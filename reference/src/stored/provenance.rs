@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 pub struct Provenance {
     /// Program that made the run.
     pub program: String,
-    /// Line with which the program prints its version.
+    /// Line in which the program prints its version.
     pub version: String,
-    /// Day on which the run was made, YYYY-MM-DD.
+    /// Day of the run (YYYY-MM-DD).
     pub date: String,
-    /// Description of the run.
+    /// Short description of the run.
     pub title: String,
-    /// BLAKE3 hash of all data of the scene that the run depends on. See [`crate::stored::scene_hash`].
+    /// BLAKE3 hash of all data of the scene that affect the run. See [`crate::stored::scene_hash`].
     pub scene: String,
-    /// Last stored step up to which the run is predictable, or `None` if it is predictable to the end.
+    /// Last stored step up to which the run is predictable; `None` if it is predictable until the end.
     ///
-    /// A perturbed run in the same program has one position changed by one unit in the last place. Up to this step,
-    /// it differs by at most a billionth of the scale of each column.
+    /// A perturbed run starts with one position changed by one unit in the last place. Up to this step, the perturbed
+    /// run differs from the stored run by at most 1e-9 of the scale of each column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub predictable_steps: Option<u64>,
-    /// Shell commands that repeat the run in its folder, and the command that creates all files again.
+    /// Shell commands that repeat the run in its folder, and the command that creates all files of the stored run.
     pub commands: Vec<String>,
-    /// BLAKE3 hash of every file of the run, by name.
+    /// BLAKE3 hashes of all files of the run, by name.
     pub blake3: BTreeMap<String, String>,
 }

@@ -1,4 +1,4 @@
-//! Hash of a scene. Scenes with equal hashes give the same run of a program.
+//! Hash of a scene. For two scenes with equal hashes, a program computes the same run.
 
 use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -9,18 +9,18 @@ use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
 
-/// Returns the BLAKE3 hash of all data of a scene and its steps that a run of rigid grains depends on, in lower-case
-/// hexadecimal.
+/// Returns the BLAKE3 hash, in lower-case hexadecimal, of the time steps and of all data of a scene that affect a run
+/// of rigid grains.
 ///
-/// Titles, names of materials, the sampling interval and data of deformable bodies are omitted. Numbers have all
-/// their digits.
+/// Titles, names of materials, the sampling interval and data of deformable bodies are excluded. Numbers are hashed
+/// with all their digits.
 #[must_use]
 pub fn scene_hash(scene: &Scene, stepping: &Stepping) -> String {
     hash_of(scene, stepping, &lines_of(&scene.grains), text_of)
 }
 
-/// Returns a hash that uses the bits of grains and springs instead of their digits, as `2:` followed by the hash.
-/// Writing the digits takes a hundred times longer.
+/// Returns a hash like [`scene_hash`], but of the bits of grains and springs instead of their digits: `2:` followed by
+/// the hash. Writing the digits takes a hundred times as long.
 #[must_use]
 pub fn scene_hash_by_bits(scene: &Scene, stepping: &Stepping) -> String {
     let hash_of_bits = |bits: &[u8]| blake3::hash(bits).to_hex().to_string();
@@ -29,7 +29,7 @@ pub fn scene_hash_by_bits(scene: &Scene, stepping: &Stepping) -> String {
     format!("{BY_BITS}{}", hash_of(scene, stepping, &grains, springs))
 }
 
-/// Returns true if a scene and its steps match a hash of either kind.
+/// Returns true if a scene and its time steps have the hash `stored_hash`, by digits or by bits.
 #[must_use]
 pub fn is_scene_of(stored_hash: &str, scene: &Scene, stepping: &Stepping) -> bool {
     let found = if stored_hash.starts_with(BY_BITS) { scene_hash_by_bits } else { scene_hash };
@@ -38,7 +38,7 @@ pub fn is_scene_of(stored_hash: &str, scene: &Scene, stepping: &Stepping) -> boo
 
 const BY_BITS: &str = "2:";
 
-/// Returns the hash of a scene, given the texts for its grains and springs.
+/// Returns the hash of a scene. `grains` is the text of its grains, and `of_springs` returns the text of its springs.
 fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn(&Springs) -> Arc<str>) -> String {
     let mut text =
         format!("{:?} {:?} {:?} {}\n", scene.dimension, scene.grain_shape, scene.gravity, scene.global_damping);
@@ -81,16 +81,16 @@ fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Cache with the texts of the last few large lists, by the hash of their bits. The hash takes a hundredth of the
-/// time of the text.
+/// Cache of the texts of the last few long lists of grains or springs, by the hash of their bits. Computing the hash
+/// takes a hundredth of the time of writing the text.
 ///
-/// Every variant and every negative control that begins with the same list needs its text.
+/// All variants and negative controls that start from the same list share its text.
 struct ListCache(Mutex<Vec<(blake3::Hash, Lines)>>);
 
-/// Text of a list. The first thread that needs it writes it, and other threads wait for this list only.
+/// Text of a list. The first thread that needs the text writes it, and other threads wait.
 type Lines = Arc<OnceLock<Arc<str>>>;
 
-/// Minimum number of entries in a large list.
+/// Minimum number of entries of a list that is cached.
 const LARGE: usize = 1000;
 /// Maximum number of cached lists.
 const FEW: usize = 6;
@@ -103,8 +103,8 @@ impl ListCache {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// Returns the text of a list with `members` entries and these bits. If it is not in the cache, `write` creates
-    /// it.
+    /// Returns the text of a list with `members` entries and the given bits. If the text is not in the cache, `write`
+    /// creates it.
     fn text(&self, members: usize, bits: impl FnOnce() -> Vec<u8>, write: impl FnOnce() -> String) -> Arc<str> {
         if members < LARGE {
             return write().into();
@@ -113,7 +113,7 @@ impl ListCache {
         Arc::clone(lines.get_or_init(|| write().into()))
     }
 
-    /// Returns the cache entry of a list, which can still be empty.
+    /// Returns the cache entry of a list, whose text may not have been written yet.
     fn lines(&self, key: blake3::Hash) -> Lines {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, lines)) = known.iter().find(|(other, _)| *other == key) {
@@ -126,14 +126,14 @@ impl ListCache {
     }
 }
 
-/// Upper estimate of the length of a grain's line (B).
+/// Estimated maximum length of the line of a grain (B).
 const LINE: usize = 256;
 
-/// Returns the lines of all grains.
+/// Returns the text of all grains, one per line.
 fn lines_of(grains: &Grains) -> Arc<str> {
     let write = || {
         let mut text = Numbers(String::with_capacity(grains.len() * LINE));
-        // Sizes are often equal to those of the grain before.
+        // Material, radius, mass and inertia are often equal to those of the previous grain, so their text is reused.
         let (mut sizes, mut before) = (String::new(), None);
         for Grain { material, radius, mass, inertia, position, velocity, spin } in grains {
             let now = (material, [radius, mass, inertia].map(|size| size.to_bits()));
@@ -169,8 +169,7 @@ fn text_of(springs: &Springs) -> Arc<str> {
     SPRINGS.text(springs.pairs.len(), || springs.bits(), write)
 }
 
-/// Text of many numbers in the format of their debug output. The standard builders of nested lists take twice as
-/// long.
+/// Text of numbers in the format of their debug output. The standard builders of nested lists take twice as long.
 struct Numbers(String);
 
 impl Numbers {

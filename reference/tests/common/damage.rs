@@ -1,6 +1,6 @@
-//! Damage to files, and requirements on readers for any input.
+//! Random damage to files, and checks of the behaviour of readers.
 
-// Each test uses only a part of this module.
+// Each test file uses only a part of this module.
 #![allow(dead_code, unreachable_pub)]
 
 use grainbench_reference::{DumpReader, DumpSnapshot, ReadError};
@@ -30,7 +30,7 @@ Velocities
 3340 0.0010298775089176225 6.716749444959259e-05 0 0 0 0.5
 ";
 
-/// Texts that have a meaning for a reader or for the functions that it calls.
+/// Texts with a meaning for a reader or for the functions that it calls.
 pub(crate) const PIECES: [&str; 32] = [
     "ITEM: ",
     "ITEM: TIMESTEP\n",
@@ -66,7 +66,7 @@ pub(crate) const PIECES: [&str; 32] = [
     "-1 ",
 ];
 
-/// Damage at a position, which is given as a fraction of the length.
+/// Damage at one position of a file.
 #[derive(Debug, Clone)]
 pub(crate) enum Damage {
     Cut,
@@ -76,7 +76,7 @@ pub(crate) enum Damage {
     Repeat(usize),
 }
 
-/// Returns random damages with their positions.
+/// Returns a strategy for random damages. The position of each is a fraction of the length of the file.
 pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
     let one = prop_oneof![
         1 => Just(Damage::Cut),
@@ -88,7 +88,7 @@ pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
     prop::collection::vec((0.0..1.0, one), 1..5)
 }
 
-/// Applies damages to a text.
+/// Applies damages to a text, one after the other.
 pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     let mut bytes = text.to_vec();
     for (part, damage) in damages {
@@ -117,7 +117,7 @@ pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     bytes
 }
 
-/// Checks that an error contains its position, and the expected and actual content, on one line.
+/// Checks that the text of an error is one line with the position, the expected and the actual content.
 pub(crate) fn well_said(error: &ReadError) -> Result<(), TestCaseError> {
     let shown = error.to_string();
     prop_assert!(!shown.contains(|character: char| character.is_control()), "{shown:?}");
@@ -126,7 +126,7 @@ pub(crate) fn well_said(error: &ReadError) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Dumps that the programs wrote.
+/// Dumps written by LAMMPS and LIGGGHTS.
 pub(crate) const DUMPS: [&str; 5] = [
     include_str!("../data/lammps-nine.dump"),
     include_str!("../data/lammps-nine.local"),
@@ -134,12 +134,12 @@ pub(crate) const DUMPS: [&str; 5] = [
     include_str!("../data/liggghts-nine.dump"),
     include_str!("../data/liggghts-nine.local"),
 ];
-/// Logs that the programs wrote.
+/// Logs written by LAMMPS and LIGGGHTS.
 pub(crate) const LOGS: [&str; 2] = [include_str!("../data/lammps-two-runs.log"), include_str!("../data/liggghts.log")];
-/// Stored table.
+/// Table of a stored run.
 pub(crate) const TABLE: &str = include_str!("../data/series.csv");
 
-/// Reads a dump to the end. Returns true if all numbers are finite and each row is complete.
+/// Reads a dump to the end. Returns true if all numbers are finite and all rows are complete.
 pub(crate) fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
     let mut reader = DumpReader::new(bytes, "f")?;
     let mut snapshot = DumpSnapshot::default();

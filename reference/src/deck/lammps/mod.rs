@@ -45,9 +45,11 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     passing::refuse(scene)?;
     one_inertia(scene, inertia_factor(scene))?;
     if let Some(what) = scene.round_wall().filter(|_| scene.laws.iter().flatten().any(|law| law.is_hertz())) {
-        return Err(format!("{what}, and LAMMPS puts its curvature into Hertz' law, where it is a plane here"));
+        return Err(format!(
+            "{what}, and LAMMPS uses its curvature in Hertz' law, while the scene treats it as a plane"
+        ));
     }
-    // LAMMPS takes the density in a data file as that of a sphere, even in two dimensions.
+    // LAMMPS reads the density in a data file as that of a sphere, even in two dimensions.
     let data = data_file(scene, scene.materials.len() + passing::more_types(scene), box_of(scene), of_sphere);
     let advance = |wall: usize| passing::advance(scene, wall);
     let grains = passing::grains(scene);
@@ -59,8 +61,8 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     Ok(DeckFiles { files: vec![("in.lammps".to_owned(), input), ("data.grains".to_owned(), data)], logged, names })
 }
 
-/// Returns the names of the columns with the forces that probes request. In `fix wall/gran … contacts`, the force
-/// follows a flag. `pair/local` has separate columns for the normal and the tangential force.
+/// Returns the names of the columns with the forces that probes request. Column 1 of `fix wall/gran … contacts` is a
+/// flag, and columns 2 to 4 are the force. `pair/local` has separate columns for the normal and the tangential force.
 fn names(scene: &Scene) -> Names {
     let mut names = Vec::new();
     for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
@@ -86,7 +88,8 @@ fn forces_of_wall(number: usize) -> (String, [String; 3]) {
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
 }
 
-/// Returns the keyword that makes a wall write its forces, if they are needed.
+/// Returns the keyword that makes LAMMPS store the forces of a wall on each grain, if a probe or a piston needs them,
+/// otherwise an empty text.
 fn tells(scene: &Scene, number: u32) -> &'static str {
     let is_pressed = scene.walls[number as usize - 1].piston.is_some();
     if asks_for_wall(scene, number as usize) || is_pressed { " contacts" } else { "" }

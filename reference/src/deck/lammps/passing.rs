@@ -1,11 +1,11 @@
 //! Removal of grains, temporary walls, and pistons.
 //!
-//! `fix evaporate` deletes grains outside the box of `removal` at the same steps as our solvers. A wall that is
-//! removed moves so far backwards that it has no more contacts.
+//! `fix evaporate` deletes grains outside the box of `removal` at the same steps as our solvers. To remove a wall, the
+//! deck moves it so far away that it has no more contacts.
 //!
-//! A piston is a plane that follows an atom. The atom has the mass of the piston and no contacts. The forces on it
-//! are the applied force F, the force of the grains −F_n, and a drag. LAMMPS computes forces with velocities of half
-//! a step before. The velocity of the piston after a step is
+//! A piston is a plane that follows an atom without contacts. The atom has the mass M of the piston. The forces on it
+//! are the applied force F, the force −F_n of the grains, and a drag −M c v. LAMMPS computes forces with the velocity v
+//! of half a step before. With the time step Δt, the velocity of the piston after a step is
 //! v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2).
 //! LAMMPS obtains this velocity with the force (F − F_n − M c v)/(1 + c Δt/2).
 
@@ -21,16 +21,18 @@ use crate::deck::schedule::gone_at;
 pub(super) fn refuse(scene: &Scene) -> Result<(), String> {
     if !scene.stays.entries.is_empty() {
         return Err(
-            "its grains are poured at places and times of their own: LAMMPS (`fix pour`, `fix deposit`) draws \
-                    both itself, and takes a grain of a given place between two runs only; begin with the \
-                    deposit (`simulate --state`)"
+            "its grains are poured at given places and times, but LAMMPS (`fix pour`, `fix deposit`) chooses both at \
+                    random and can insert a grain at a given place only between two runs; start from the deposited \
+                    grains (`simulate --state`)"
                 .to_owned(),
         );
     }
     if scene.springs.is_some() {
-        return Err("its contacts remember something at the start, and a data file of LAMMPS holds no springs (`springs = false` \
-                    beside the state leaves that out)"
-            .to_owned());
+        return Err(
+            "its contacts have springs at the start, but a data file of LAMMPS contains no springs (`springs = \
+                    false` next to the state omits them)"
+                .to_owned(),
+        );
     }
     Ok(())
 }
@@ -40,7 +42,7 @@ pub(super) fn pistons(scene: &Scene) -> impl Iterator<Item = (usize, &Wall, Pist
     (1..).zip(&scene.walls).filter_map(|(number, wall)| Some((number, wall, wall.piston?)))
 }
 
-/// Returns the group of the scene's grains. Atoms that pistons follow are not part of it.
+/// Returns the group of the scene's grains. It excludes the atoms that pistons follow.
 pub(super) fn grains(scene: &Scene) -> &'static str {
     if pistons(scene).next().is_some() { "grains" } else { "all" }
 }
@@ -50,25 +52,29 @@ pub(super) fn more_types(scene: &Scene) -> usize {
     usize::from(pistons(scene).next().is_some())
 }
 
-/// Returns the id of the atom that a piston follows. The ids come after those of the grains.
+/// Returns the id of the atom that a piston follows. These ids follow those of the grains.
 fn atom(scene: &Scene, number: usize) -> usize {
     let before = pistons(scene).filter(|(other, ..)| *other <= number).count();
     scene.grains.len() + before
 }
 
-/// Returns the initial position of the atoms (m) and the axis along which they move. This axis is not periodic.
+/// Returns the initial position (m) of the atoms that pistons follow, and the axis along which they move: the first
+/// axis that is not periodic.
 fn start(scene: &Scene) -> Result<(Vector3<f64>, usize), String> {
     let (low, high) = box_of(scene);
     let periodic = scene.domain.map_or([false; 3], |domain| domain.periodic);
     let axis = (0..scene.dimension.count()).find(|&axis| !periodic[axis]);
-    let axis =
-        axis.ok_or("a piston in a box that is periodic along every axis, which has no plane to press".to_owned())?;
+    let axis = axis.ok_or(
+        "it has a piston in a box that is periodic along all axes, so the piston has no direction to move \
+                    in"
+        .to_owned(),
+    )?;
     // Near zero, a small displacement is printed with the most digits.
     let start = low.zip_map(&high, |low, high| 0.0_f64.clamp(low, high));
     Ok((start, axis))
 }
 
-/// Returns the lines that create the atoms of the pistons.
+/// Returns the commands that create the atoms of the pistons.
 pub(super) fn atoms(scene: &Scene) -> Result<Vec<String>, String> {
     let grains = scene.grains.len();
     if pistons(scene).next().is_none() {
@@ -89,7 +95,7 @@ pub(super) fn atoms(scene: &Scene) -> Result<Vec<String>, String> {
     Ok(lines)
 }
 
-/// Returns the lines with the forces on the pistons. They come after those of the walls.
+/// Returns the commands for the forces on the pistons. They must follow the commands of the walls.
 pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, String> {
     let mut lines = Vec::new();
     for (number, wall, piston) in pistons(scene) {
@@ -99,7 +105,7 @@ pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, S
         let along = AXES[axis];
         lines.push(format!("group piston{number} id {id}"));
         lines.push(format!("compute press{number} grains reduce sum {fix}[2] {fix}[3] {fix}[4]"));
-        // LAMMPS sums the force on the grains.
+        // LAMMPS sums the force on the grains, which is opposite to that on the piston.
         let on_grains: Vec<String> = (0..3)
             .filter(|&at| normal[at] != 0.0)
             .map(|at| format!("({:?})*c_press{number}[{}]", normal[at], at + 1))
@@ -121,15 +127,16 @@ pub(super) fn press(scene: &Scene, stepping: &Stepping) -> Result<Vec<String>, S
     Ok(lines)
 }
 
-/// Returns the displacement of a piston along its normal as a formula, or `None` if the wall is not a piston.
+/// Returns the displacement of a piston along its normal (m) as a LAMMPS formula, or `None` if the wall is not a
+/// piston.
 pub(super) fn advance(scene: &Scene, number: usize) -> Option<String> {
     pistons(scene).find(|(other, ..)| *other == number)?;
     let (place, axis) = start(scene).ok()?;
     Some(format!("({}[{}]-({:?}))", AXES[axis], atom(scene, number), place[axis]))
 }
 
-/// Returns the displacement of a wall along each axis in addition to its prescribed motion, as formulas. It contains
-/// the displacement of a piston along its normal, and the motion far backwards when the wall is removed.
+/// Returns formulas for the displacement of a wall along each axis (m) in addition to its prescribed motion. They
+/// contain the displacement of a piston along its normal, and the large displacement by which a wall is removed.
 pub(super) fn ways(scene: &Scene, wall: &Wall, number: usize, stepping: &Stepping) -> [String; 3] {
     let mut ways = [const { String::new() }; 3];
     let mut add = |axis: usize, term: String| {
@@ -155,7 +162,7 @@ pub(super) fn ways(scene: &Scene, wall: &Wall, number: usize, stepping: &Steppin
     ways
 }
 
-/// Returns the lines that remove grains.
+/// Returns the commands that remove grains.
 pub(super) fn removal(scene: &Scene) -> Vec<String> {
     let Some(removal) = scene.stays.removal else { return Vec::new() };
     let (low, high) = (removal.low, removal.high);

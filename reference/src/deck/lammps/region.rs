@@ -1,5 +1,5 @@
-//! Walls as regions of LAMMPS. Planes can have any direction, rectangles are blocks without thickness, and round
-//! walls are cylinders or cones. All regions can move and rotate.
+//! Walls as regions of LAMMPS. Planes may have any direction. Rectangles and segments are blocks without thickness.
+//! Round walls are cylinders or cones. All regions may move and rotate.
 
 use std::fmt::Write as _;
 
@@ -11,17 +11,17 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use crate::deck::Stepping;
 use crate::deck::outline::AXES;
 
-/// Region before its rotation, and its rotation at the start of the run.
+/// Region before its rotation, and its initial rotation.
 struct PlacedRegion {
     shape: String,
-    /// Point on the axis of rotation at the start (m).
+    /// Point on the initial axis of rotation (m).
     centre: Vector3<f64>,
-    /// Rotation vector at the start (rad).
+    /// Initial rotation vector (rad).
     rotation: Vector3<f64>,
 }
 
-/// Returns the commands that define the region `wallN` and its motion. The displacements `ways` along the axes are
-/// added to the motion.
+/// Returns the commands that define the region `wallN` and its motion, with the wall number N. The displacements `ways`
+/// along the axes are added to the prescribed motion.
 pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[String; 3]) -> Result<String, String> {
     let motion = &wall.motion;
     let PlacedRegion { shape, centre, rotation } = placed(wall)?;
@@ -44,7 +44,7 @@ pub(crate) fn region(wall: &Wall, number: u32, stepping: &Stepping, ways: &[Stri
     }
     let spin = motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
     if let Some(axis) = Unit::try_new(spin.unwrap_or(rotation), 0.0) {
-        // If a wall has both an initial rotation and a spin, they have the same axis.
+        // If a wall has both an initial rotation and a spin, their axes are the same.
         let start = rotation.dot(&axis);
         let turned = course(motion, |phase| phase.spin.dot(&axis), stepping);
         let angle = [format!("{start:?}"), turned].into_iter().filter(|part| !part.is_empty() && part != "0.0");
@@ -72,16 +72,18 @@ fn placed(wall: &Wall) -> Result<PlacedRegion, String> {
         WallShape::Rectangle { corner, edges } => rectangle(wall, corner, edges),
         WallShape::Round { axis, radii } => {
             let shape = round(axis, radii).ok_or_else(|| {
-                format!("wall `{}` is round about an axis that is not x, y or z: LAMMPS has no other", wall.name)
+                format!("the axis of wall `{}` is not x, y or z, as a round region of LAMMPS requires", wall.name)
             })?;
             Ok(PlacedRegion { shape, centre: motion.centre, rotation: Vector3::zeros() })
         }
-        WallShape::Mesh(_) => Err(format!("wall `{}` is a mesh of triangles: no region of LAMMPS is one", wall.name)),
+        WallShape::Mesh(_) => {
+            Err(format!("wall `{}` is a mesh of triangles, which no region of LAMMPS can represent", wall.name))
+        }
     }
 }
 
-/// Returns a cylinder or a cone about an axis of the box. Both ends are open, so grains touch the side from inside
-/// and outside.
+/// Returns a cylinder or a cone about an axis of the box, or `None` for another direction. Both ends are open, so
+/// grains can be in contact with the side from inside and outside.
 fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
     let along = (0..3).find(|&along| (0..3).all(|axis| axis == along || from[axis] == to[axis]))?;
     let across: Vec<f64> = (0..3).filter(|&axis| axis != along).map(|axis| from[axis]).collect();
@@ -94,7 +96,7 @@ fn round([from, to]: [Vector3<f64>; 2], radii: [f64; 2]) -> Option<String> {
     Some(format!("{name} {axis} {:?} {:?} {radii} {low:?} {high:?} open 1 open 2", across[0], across[1]))
 }
 
-/// Returns a block along the axes and its rotation about the centre of rotation, which give the rectangle.
+/// Returns a block along the axes, and the rotation about `centre` that turns the block into the rectangle.
 fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Result<PlacedRegion, String> {
     let along_axes = |edge: Vector3<f64>| edge.iter().filter(|part| **part != 0.0).count() == 1;
     let spin = wall.motion.phases.iter().map(|phase| phase.spin).find(|spin| *spin != Vector3::zeros());
@@ -102,7 +104,7 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     if along_axes(u) && along_axes(v) {
         return Ok(PlacedRegion { shape: block(corner, corner + u + v), centre, rotation: Vector3::zeros() });
     }
-    // The second edge of a segment is along z and stays there.
+    // The second edge of a segment is along z, before and after the rotation.
     let axes = if along_axes(v) && v.z != 0.0 {
         Matrix3::from_columns(&[u.normalize(), Vector3::z().cross(&u).normalize(), Vector3::z()])
     } else {
@@ -112,28 +114,28 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     if let Some(spin) = spin
         && rotation.cross(&spin).norm() > 1e-12 * rotation.norm() * spin.norm()
     {
-        let reason = "which turns about one axis and lies turned about another: LAMMPS has one rotation of a region";
-        return Err(format!("a rectangle such as `{}`, {reason}", wall.name));
+        let reason = "rotates about one axis and is tilted about another, but a region of LAMMPS has only one rotation";
+        return Err(format!("wall `{}` {reason}", wall.name));
     }
     let upright = |point: Vector3<f64>| centre + axes.transpose() * (point - centre);
     let (mut low, mut high) = (upright(corner), upright(corner + u + v));
     // Rounding must not give the block a thickness. It is flat along the second axis if the second edge is along z,
-    // and else along the third.
+    // otherwise along the third axis.
     let flat = if along_axes(v) && v.z != 0.0 { 1 } else { 2 };
     high[flat] = low[flat];
     (low, high) = (low.inf(&high), low.sup(&high));
     Ok(PlacedRegion { shape: block(low, high), centre, rotation })
 }
 
-/// Returns a block between two corners. A grain outside touches its nearest point.
+/// Returns a block between two corners. Grains are outside the block and in contact with its nearest point.
 fn block(a: Vector3<f64>, b: Vector3<f64>) -> String {
     let (low, high) = (a.inf(&b), a.sup(&b));
     let sides: Vec<String> = (0..3).map(|axis| format!("{:?} {:?}", low[axis], high[axis])).collect();
     format!("block {} side out", sides.join(" "))
 }
 
-/// Returns the displacement by functions along an axis, as a formula of step and time step. It is empty without
-/// functions.
+/// Returns a LAMMPS formula of step and time step for the displacement along an axis (m) by sines and ramps. It is
+/// empty if there are none.
 fn functions(motion: &Motion, axis: usize) -> String {
     let mut terms = Vec::new();
     for Function { kind, start, stop } in &motion.functions {
@@ -160,7 +162,8 @@ fn functions(motion: &Motion, axis: usize) -> String {
     terms.join("+")
 }
 
-/// Returns the time integral of a rate of the phases, as a formula of step and time step. It is empty without rates.
+/// Returns a LAMMPS formula of step and time step for the time integral of `rate`, summed over all phases of a motion.
+/// It is empty if the rate is zero.
 fn course(motion: &Motion, rate: impl Fn(&Phase) -> f64, stepping: &Stepping) -> String {
     let time = |moment: Moment| match moment {
         Moment::Seconds(time) => format!("{time:?}"),

@@ -1,5 +1,5 @@
-//! Contact models of LIGGGHTS: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`, and
-//! `rolling_friction epsd`.
+//! Contact laws in the models of LIGGGHTS: `hooke/stiffness`, `hertz/stiffness` and `hertz` with `tangential history`,
+//! and `rolling_friction epsd`.
 
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::effects::Effects;
@@ -9,7 +9,7 @@ use super::moduli::moduli;
 use crate::deck::dashpots::{Dashpots, Side};
 use crate::deck::outline::{grain_materials, hertz};
 
-/// Contact model of a scene.
+/// LIGGGHTS model for the contacts of a scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Model {
     effects: Effects,
@@ -20,13 +20,13 @@ impl Model {
         Self { effects: Effects::from_scene(scene) }
     }
 
-    /// Returns true for Hertz contacts whose dashpots give a coefficient of restitution. LIGGGHTS defines these by
-    /// moduli and all other contacts by stiffnesses.
+    /// Returns true for Hertz contacts whose dashpots follow from a coefficient of restitution. LIGGGHTS defines these
+    /// contacts by moduli and all other contacts by stiffnesses.
     fn has_moduli(self) -> bool {
         self.effects.hertz && self.effects.restitution
     }
 
-    /// Returns the name of the model.
+    /// Returns the model in the notation of LIGGGHTS.
     pub(crate) fn words(self) -> String {
         let normal = match (self.effects.hertz, self.has_moduli()) {
             (false, _) => "hooke/stiffness",
@@ -37,18 +37,19 @@ impl Model {
         format!("{normal} tangential history{rolling}")
     }
 
-    /// Returns the switches of the model. They come last on a line.
+    /// Returns the switches of the model, which come last in a command.
     pub(crate) fn switches(self) -> &'static str {
         if self.has_moduli() { " tangential_damping off" } else { "" }
     }
 
-    /// Returns the command that must come first. Without it, LIGGGHTS refuses Young's moduli above 1 GPa.
+    /// Returns the command that must precede the model. Without this command, LIGGGHTS refuses Young's moduli above 1
+    /// GPa.
     pub(crate) fn preparation(self) -> Option<&'static str> {
         self.has_moduli().then_some("hard_particles yes")
     }
 
-    /// Returns the properties of all types and pairs of types. There is one type per material for grains, followed by
-    /// one per material for walls.
+    /// Returns the properties of all atom types and pairs of types. There is one type per material for grains, followed
+    /// by one type per material for walls.
     pub(crate) fn properties(self, scene: &Scene) -> Result<String, String> {
         let types = 2 * scene.materials.len();
         let grains = grain_materials(scene);
@@ -71,7 +72,7 @@ impl Model {
             picks.push(("gammat", |(_, dashpots)| dashpots.tangential));
         }
         picks.push(("coefficientFriction", |(law, _)| law.friction));
-        // LIGGGHTS requires this property but does not use it with stiffnesses.
+        // LIGGGHTS requires this property, but does not use it in models with stiffnesses.
         let coefficient: Pick = if self.has_moduli() { |(law, _)| restitution(law) } else { |_| 0.5 };
         picks.push(("coefficientRestitution", coefficient));
         if self.effects.rolling_resistance {
@@ -93,7 +94,7 @@ impl Model {
         Ok(lines.join("\n"))
     }
 
-    /// Returns the law and the dashpots between two types, or `None` if the types never come into contact.
+    /// Returns the contact law and the dashpots between two types, or `None` if the types never come into contact.
     fn entry(
         self,
         scene: &Scene,
@@ -120,13 +121,13 @@ impl Model {
     }
 }
 
-/// Returns the type of walls of a material. Walls have separate types after those of the grains, because their
-/// dashpots may differ.
+/// Returns the atom type of walls of a material. Walls have their own types, because their dashpots may differ from
+/// those of grains.
 pub(crate) fn type_of_wall(scene: &Scene, material: u16) -> usize {
     scene.materials.len() + usize::from(material) + 1
 }
 
-/// Returns the coefficient of restitution of a damping ratio ζ, e = exp(−πζ/√(1 − ζ²)).
+/// Returns the coefficient of restitution e = exp(−πζ/√(1 − ζ²)) of the damping ratio ζ.
 fn restitution(law: &ContactLaw) -> f64 {
     let ratio = law.damping_ratio;
     (-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()).exp()

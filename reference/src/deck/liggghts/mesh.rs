@@ -8,10 +8,11 @@ use nalgebra::Vector3;
 /// Corners of a triangle (m).
 pub(crate) type Triangle = [Vector3<f64>; 3];
 
-/// Returns the triangles of a wall within `reach` (m) of `centre`.
+/// Returns the triangles of a wall.
 ///
-/// A plane becomes one triangle, so no grain ever crosses an edge between two triangles. In two dimensions a segment
-/// becomes a rectangle across the layer.
+/// A plane becomes one triangle, so that no grain crosses an edge between two triangles. The triangle extends by at
+/// least `reach` (m) from the point of the plane nearest to `centre`. In two dimensions, a segment becomes a rectangle
+/// that extends by `reach` on both sides of the plane z = 0.
 pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> Vec<Triangle> {
     match *shape {
         WallShape::Mesh(ref mesh) => mesh.triangles().collect(),
@@ -25,7 +26,7 @@ pub(crate) fn triangles(shape: &WallShape, centre: Vector3<f64>, reach: f64) -> 
             rectangle(a - depth, [b - a, depth * 2.0])
         }
         WallShape::Rectangle { corner, edges } => rectangle(corner, edges),
-        // Round walls are refused before, because triangles are flat.
+        // Decks with round walls are refused earlier, because triangles are flat.
         WallShape::Round { .. } => Vec::new(),
     }
 }
@@ -34,8 +35,8 @@ fn rectangle(corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Vec<Triangle> {
     vec![[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]
 }
 
-/// Returns two unit vectors orthogonal to a normal. If the normal is along an axis, so are they, which keeps
-/// coordinates exact.
+/// Returns two unit vectors that are orthogonal to a normal and to each other. If the normal is along an axis, the
+/// vectors are along axes too, so that coordinates are exact.
 fn tangents(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let away = (0..3).min_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
     let axis = Vector3::ith(away, 1.0);
@@ -43,7 +44,7 @@ fn tangents(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (u, normal.cross(&u))
 }
 
-/// Returns an STL file.
+/// Returns the text of an STL file with these triangles.
 pub(crate) fn stl(triangles: &[Triangle]) -> String {
     let mut text = "solid wall\n".to_owned();
     for triangle in triangles {

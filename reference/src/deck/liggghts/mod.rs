@@ -1,8 +1,9 @@
 //! Decks for LIGGGHTS. Contacts between grains and at walls use `hooke/stiffness tangential history` and related
 //! models.
 //!
-//! Two-dimensional scenes are run in two dimensions if every wall is a primitive. All other walls need meshes, which
-//! LIGGGHTS supports only in three dimensions. The grains are then one layer of spheres.
+//! Two-dimensional scenes of discs are run in two dimensions if every wall is a plane normal to an axis. Other walls
+//! need meshes, which LIGGGHTS supports only in three dimensions. With meshes, and for scenes of spheres, the grains
+//! are one layer of spheres in three dimensions.
 
 mod contact;
 mod mesh;
@@ -61,10 +62,10 @@ impl Peer for Liggghts {
 fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     passing::refuse(scene)?;
     if let Some(what) = scene.round_wall() {
-        return Err(format!("{what}: LIGGGHTS has cylinders without ends, and of a mesh flat triangles"));
+        return Err(format!("{what}, but LIGGGHTS has only cylinders without ends and meshes of flat triangles"));
     }
     if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
-        let reason = "which `move/mesh` has along a path of its own only, from the first step on";
+        let reason = "which `move/mesh` supports only along its own path and from the first step on";
         return Err(format!("wall `{}` moves by a sine or a ramp, {reason}", wall.name));
     }
     let mut meshes = Vec::new();
@@ -72,7 +73,8 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     let (centre, reach) = (0.5 * (low + high), (high - low).norm() + way(scene, stepping));
     for (number, wall) in (1..).zip(&scene.walls) {
         if AxisPlane::from_wall(wall).is_none() {
-            // A rotating plane comes into contact with grains at a part that is far from the grains at the start.
+            // A rotating plane may come into contact with grains at a point that is far away from the grains at the
+            // start.
             let aside = if turns(&wall.motion) { 2.0 * (wall.motion.centre - centre).norm() } else { 0.0 };
             meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach + aside) });
         }
@@ -81,9 +83,9 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     if flat {
         one_inertia(scene, 0.5)?;
     } else if Effects::from_scene(scene).friction || !is_flat(scene) {
-        // Without friction nothing rotates, and spheres can replace discs.
+        // Without friction, grains do not rotate, and spheres can replace discs.
         one_inertia(scene, 0.4).map_err(|reason| match (is_flat(scene), meshes.is_empty()) {
-            (true, false) => format!("this needs meshes for walls, which work in three dimensions only: {reason}"),
+            (true, false) => format!("its walls need meshes, which work only in three dimensions: {reason}"),
             _ => reason,
         })?;
     }
@@ -105,7 +107,8 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     Ok(DeckFiles { files, logged, names })
 }
 
-/// Returns the names of the columns with the forces that probes request. Meshes do not write forces per grain.
+/// Returns the names of the columns with the forces that probes request. Walls that are meshes have no forces per
+/// grain.
 fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
     let mut names = Vec::new();
     for (number, wall) in (1..).zip(&scene.walls).filter(|&(number, _)| asks_for_contacts_at(scene, number)) {
@@ -117,7 +120,7 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
         }
     }
     if asks_for_pairs(scene) {
-        // Column 3 is a flag for pairs across a periodic boundary.
+        // Column 3 is a flag for pairs across a periodic boundary. The force follows it.
         names.extend([("id1".to_owned(), "c_pairs[1]".to_owned()), ("id2".to_owned(), "c_pairs[2]".to_owned())]);
         for (axis, column) in AXES.into_iter().zip(4..) {
             names.push((format!("force_{axis}"), format!("c_pairs[{column}]")));
@@ -127,8 +130,8 @@ fn names(scene: &Scene, meshes: &[Mesh<'_>]) -> Names {
 }
 
 /// Returns the command that sums the forces of a wall on the grains, and the components of the sum. A mesh needs no
-/// command. The force that it reports acts on the mesh, so the sign changes. At the start it is zero, because nothing
-/// has been summed yet.
+/// command. LIGGGHTS reports the force on the mesh, so its sign is reversed here. This force is zero at the start,
+/// because LIGGGHTS has not summed it yet.
 fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     if meshes.iter().any(|mesh| mesh.number == number) {
         return (String::new(), [1, 2, 3].map(|at| format!("(-f_mesh{number}[{at}])")));
@@ -138,15 +141,15 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
 }
 
-/// Returns an upper bound on the displacement of a grain without contacts (m). Planes that are meshes must extend
-/// this far.
+/// Returns an upper bound on the displacement of a grain without contacts during the run (m). The meshes of planes must
+/// extend at least so far.
 fn way(scene: &Scene, stepping: &Stepping) -> f64 {
     let time = stepping.steps as f64 * stepping.time_step;
     let speed = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
     time * (speed + 0.5 * scene.gravity.norm() * time)
 }
 
-/// Returns the corners of a box around the grains and all meshes during the run (m).
+/// Returns the corners of a box around the grains and all meshes during the whole run (m).
 fn around(
     (low, high): (Vector3<f64>, Vector3<f64>),
     meshes: &[Mesh<'_>],
@@ -159,7 +162,7 @@ fn around(
         let motion = &mesh.wall.motion;
         let moved = motion.displacement(end, stepping.time_step).translation;
         for corner in mesh.triangles.iter().flatten() {
-            // A rotation by any angle keeps the distance to the centre.
+            // A rotation does not change the distance to the centre.
             let (centre, room) =
                 if turns(motion) { (motion.centre, (corner - motion.centre).norm()) } else { (*corner, 0.0) };
             for place in [centre, centre + moved] {
@@ -193,11 +196,11 @@ fn input(
     if flat {
         say("dimension 2");
     }
-    // A mesh must lie within the box, so the box cannot be fitted to the grains.
+    // Meshes must lie within the box, so a box with meshes has fixed sides.
     let open = if meshes.is_empty() { GROWING } else { "f" };
     let mut boundary = boundary(scene, open);
     if is_flat(scene) && !flat {
-        // A single layer in three dimensions has room above and below.
+        // A layer of spheres in three dimensions has free space above and below.
         boundary.truncate(boundary.len() - 1);
         boundary.push_str(open);
     }
@@ -249,7 +252,7 @@ fn input(
         say("fix plane all enforce2d");
     }
     say(printed);
-    // LIGGGHTS takes one format for the whole line.
+    // LIGGGHTS needs one format for the whole line.
     let of_walls = names.0.iter().map(|(_, column)| column.as_str()).filter(|column| column.starts_with("f_"));
     let columns: Vec<&str> = COLUMNS.into_iter().chain(of_walls).collect();
     let of_pairs: Vec<&str> =
@@ -280,7 +283,7 @@ fn input(
     Ok(text)
 }
 
-/// Returns the `run` commands. A new run begins when a mesh changes its velocity or spin and when a wall is removed.
+/// Returns the `run` commands. A new run begins whenever a mesh changes its velocity or spin, or a wall is removed.
 fn runs(scene: &Scene, stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<String, String> {
     let gone = passing::gone(scene, stepping);
     let mut changes = changes(meshes.iter().map(|mesh| &mesh.wall.motion), stepping)?;
@@ -320,7 +323,8 @@ fn runs(scene: &Scene, stepping: &Stepping, meshes: &[Mesh<'_>]) -> Result<Strin
                 (true, Some(_)) => {
                     let name = &mesh.wall.name;
                     return Err(format!(
-                        "`{name}` moves and turns at the same time, and `move/mesh rotate` turns about a point at rest"
+                        "`{name}` moves and rotates at the same time, but `move/mesh rotate` rotates about a fixed \
+                         point"
                     ));
                 }
             };

@@ -1,14 +1,14 @@
-//! Young's moduli and Poisson's ratios of types that give the effective moduli of pairs.
+//! Young's modulus and Poisson's ratio of each atom type. Together they give the effective moduli of all pairs.
 
 use grainbench_scene::contact_law::ContactLaw;
 
-/// Young's modulus of a rigid type (Pa), far above that of any real material.
+/// Young's modulus of a rigid atom type (Pa), far above that of any real material.
 const RIGID: f64 = 1e40;
-/// Fraction of a compliance that is attributed to rounding.
+/// Relative error of a compliance below which the error counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Contributions of one type to the compliances of its pairs (1/Pa). For the normal modulus, 1/E* = a₁ + a₂ with
-/// a = (1 − ν²)/E. For the shear modulus, 1/G* = b₁ + b₂ with b = 2(2 − ν)(1 + ν)/E.
+/// Contributions of one atom type to the compliances of its pairs (1/Pa). For the normal modulus, 1/E* = a₁ + a₂ with a
+/// = (1 − ν²)/E. For the shear modulus, 1/G* = b₁ + b₂ with b = 2(2 − ν)(1 + ν)/E.
 #[derive(Clone, Copy)]
 struct Shares {
     normal: f64,
@@ -20,7 +20,8 @@ impl Shares {
         Self { normal: 1.0 / law.effective_modulus(), tangential: 1.0 / law.effective_shear_modulus() }
     }
 
-    /// Returns E (Pa) and ν from b/a = 2(2 − ν)/(1 − ν).
+    /// Returns Young's modulus E (Pa) and Poisson's ratio ν, which follows from b/a = 2(2 − ν)/(1 − ν). Returns `None`
+    /// if ν is not between 0 and 0.5.
     fn moduli(self) -> Option<(f64, f64)> {
         let quotient = self.tangential / self.normal;
         let poisson = (quotient - 4.0) / (quotient - 2.0);
@@ -30,11 +31,12 @@ impl Shares {
     }
 }
 
-/// Returns Young's modulus (Pa) and Poisson's ratio of every type from the laws of all pairs. `laws` is a table with
-/// `types` entries per row. A type without partners is rigid.
+/// Returns Young's modulus (Pa) and Poisson's ratio of every atom type from the laws of all pairs. `laws` is a table
+/// with `types` entries per row. A type without partners is rigid.
 ///
-/// A type in contact with itself contributes half of the compliance of that pair. Any other type contributes the rest
-/// that its partners leave. If the contribution of the partner is not known yet, the rest is the whole compliance.
+/// If a type has a law for contacts with itself, its contribution is half of the compliance of this pair. Otherwise the
+/// contribution is the compliance of a pair minus the contribution of the partner (0 if not known yet), minimized over
+/// all partners.
 pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
     let pair = |a: usize, b: usize| laws[a * types + b].as_ref().map(Shares::of_pair);
     let mut shares: Vec<Option<Shares>> = (0..types)
@@ -60,16 +62,16 @@ pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f
         let whole = (0..types).filter_map(|b| pair(a, b)).map(|both| both.normal).fold(0.0, f64::max);
         let share = shares[a].filter(|share| share.normal.abs() > ROUNDING * whole);
         let found = share.map_or(Some((RIGID, 0.25)), Shares::moduli);
-        let (modulus, ratio) = found.ok_or_else(|| not_of_materials("of no material with 0 ≤ ν ≤ 1/2"))?;
+        let (modulus, ratio) = found.ok_or_else(|| not_of_materials("not those of any material with 0 ≤ ν ≤ 1/2"))?;
         if modulus < 0.0 {
-            return Err(not_of_materials("of no material"));
+            return Err(not_of_materials("not those of any material"));
         }
         for b in (0..types).filter(|&b| b <= a) {
             let (Some(both), Some(one), Some(other)) = (pair(a, b), shares[a], shares[b]) else { continue };
             if (one.normal + other.normal - both.normal).abs() > ROUNDING * both.normal
                 || (one.tangential + other.tangential - both.tangential).abs() > ROUNDING * both.tangential
             {
-                return Err(not_of_materials("not sums over two materials"));
+                return Err(not_of_materials("not combinations of the moduli of two materials"));
             }
         }
         young.push(modulus);
@@ -79,7 +81,7 @@ pub(crate) fn moduli(laws: &[Option<ContactLaw>], types: usize) -> Result<(Vec<f
 }
 
 fn not_of_materials(how: &str) -> String {
-    format!("`hertz` has moduli of materials, and those of the scene's pairs are {how}")
+    format!("`hertz` needs moduli of materials, but the moduli of the pairs in the scene are {how}")
 }
 
 #[cfg(test)]
@@ -89,7 +91,7 @@ mod tests {
     use super::*;
     use grainbench_scene::contact_law::Springs;
 
-    /// Returns the law of two materials with 1/E* and 1/G* as sums. The second material can be rigid.
+    /// Returns the contact law of two materials with given E and ν. Without a second material, the partner is rigid.
     fn law(first: (f64, f64), second: Option<(f64, f64)>) -> Option<ContactLaw> {
         let compliances =
             |(young, ratio): (f64, f64)| ((1.0 - ratio * ratio) / young, 2.0 * (2.0 - ratio) * (1.0 + ratio) / young);

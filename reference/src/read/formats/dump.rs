@@ -23,9 +23,9 @@ impl Moments for DumpReader<'_> {
     }
 }
 
-/// Returns the first step, or `None` if the file is damaged. The reader reports the damage later.
+/// Returns the first step, or `None` if it cannot be read. The reader of the dump then reports the error.
 fn first_step(path: &Path) -> Option<u64> {
-    /// Maximum number of lines before the step, which can contain units and time.
+    /// Maximum number of lines up to and including the step. Units and time may precede it.
     const MOST_LINES: usize = 8;
     let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &path.to_string_lossy()).ok()?;
     let mut is_next = false;

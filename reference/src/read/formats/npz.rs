@@ -5,8 +5,8 @@ use crate::read::npz::{MARK, read_course};
 use crate::read::snapshot::Numbering;
 
 pub(crate) static FORMAT: Format = Format {
-    words: "arrays of NumPy's",
-    // Other archives are refused when they are read as text.
+    words: "NumPy arrays",
+    // ZIP archives with other endings are read as text and then refused.
     told_by: FormatCriterion::Beginning(|beginning| {
         beginning.bytes.starts_with(MARK)
             && beginning.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))

@@ -5,7 +5,7 @@ use crate::read::snapshot::Numbering;
 use crate::read::vtk;
 
 pub(crate) static FORMAT: Format = Format {
-    words: "a file of VTK's",
+    words: "a VTK file",
     told_by: FormatCriterion::Beginning(|beginning| beginning.bytes.starts_with(vtk::MARK)),
     numbering: Numbering::Files,
     holds: |path| Ok(if vtk::has_steps(path)? { FileContent::Course(None) } else { FileContent::Moment }),

@@ -5,7 +5,7 @@ use crate::read::snapshot::Numbering;
 use crate::read::vtk::{self, Kind};
 
 pub(crate) static FORMAT: Format = Format {
-    words: "a file of VTK's",
+    words: "a VTK file",
     told_by: FormatCriterion::Beginning(|beginning| vtk::kind(beginning.unpacked) == Some(Kind::Points)),
     numbering: Numbering::Files,
     holds: |_| Ok(FileContent::Moment),

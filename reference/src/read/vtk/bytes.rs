@@ -1,4 +1,4 @@
-//! Bytes of a file with a reading position.
+//! Content of a file in memory with a reading position.
 
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
@@ -26,14 +26,14 @@ impl<'b> Bytes<'b> {
         self.file
     }
 
-    /// Returns an error at a byte.
+    /// Returns an error at the line that contains the byte `at`.
     pub(super) fn error_at(&self, at: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let before = &self.all[..at.min(self.all.len())];
         let line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
         ReadError::at(self.file, line, expected, found)
     }
 
-    /// Returns an error at the reading position. The found content is the next word.
+    /// Returns an error at the reading position, with the next word as the actual content.
     pub(super) fn error(&self, expected: impl Into<String>) -> ReadError {
         let rest = &self.all[self.at.min(self.all.len())..];
         let start = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
@@ -52,7 +52,7 @@ impl<'b> Bytes<'b> {
         Some(rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]))
     }
 
-    /// Returns the words of the next line that is not empty, without moving the reading position.
+    /// Returns the words of the next line that is not blank. The reading position does not change.
     pub(super) fn next_words(&self) -> Option<Vec<&'b str>> {
         let mut ahead = *self;
         loop {
@@ -77,9 +77,9 @@ impl<'b> Bytes<'b> {
         }
     }
 
-    /// Reads `count` printed numbers and updates their digits.
+    /// Reads `count` printed numbers and updates `digits` from their texts.
     pub(super) fn printed(&mut self, count: usize, digits: &mut Digits) -> Result<Vec<f64>, ReadError> {
-        // The declared number is not trusted. Memory grows with the numbers that are present.
+        // Memory grows with the numbers that are present, not with the declared number.
         let mut numbers = Vec::new();
         for _ in 0..count {
             let rest = &self.all[self.at..];

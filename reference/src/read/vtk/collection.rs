@@ -9,8 +9,8 @@ use std::path::{Component, Path, PathBuf};
 /// Reads the files of a collection with their times (s), in the order of the collection.
 ///
 /// # Errors
-/// If the collection cannot be read or lists no files. If an entry has no time, no file name, or the path of a file that
-/// does not exist or is outside the folder of the collection.
+/// If the collection cannot be read or lists no files, if an entry has no time or no file name, or if a file does not
+/// exist or is outside the folder of the collection.
 pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
     let name = path.to_string_lossy();
     let bytes = whole(path)?;
@@ -53,7 +53,7 @@ pub(crate) fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadEr
             Ok(Event::Eof) => break,
             Ok(_) => {}
             Err(error) => {
-                return Err(ReadError::at(&name, line(at), "a collection of VTK's", quoted(&error.to_string())));
+                return Err(ReadError::at(&name, line(at), "a VTK collection", quoted(&error.to_string())));
             }
         }
     }

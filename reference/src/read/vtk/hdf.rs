@@ -1,8 +1,8 @@
 //! Points of VTKHDF files (`.vtkhdf`) with `PolyData` or `UnstructuredGrid`, at one or several moments.
 //!
-//! Source: "VTKHDF File Format" of the VTK documentation, versions 1.0 to 2.3. Moment `s` has
-//! `Steps/NumberOfParts[s]` parts, starting at `Steps/PartOffsets[s]`, with `NumberOfPoints` each. Its points begin
-//! at `Steps/PointOffsets[s]`, and their data at `Steps/PointDataOffsets/NAME[s]`.
+//! Source: "VTKHDF File Format" of the VTK documentation, versions 1.0 to 2.3. Moment `s` has `Steps/NumberOfParts[s]`
+//! parts from `Steps/PartOffsets[s]` on, with `NumberOfPoints` points each. The points of the moment begin at
+//! `Steps/PointOffsets[s]`, and the data of the points at `Steps/PointDataOffsets/NAME[s]`.
 
 use super::points::{Array, Points};
 use crate::read::binary::Number;
@@ -16,23 +16,23 @@ use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
-/// First bytes of a file.
+/// First bytes of an HDF5 file.
 pub(crate) const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Maximum size of a file, and of all its arrays together after decompression (B).
 const MOST: usize = 1 << 30;
-/// Name of the time in a file of one moment.
+/// Name of the array that contains the time in a file of one moment.
 const TIME: &str = "TimeValue";
-/// Name of the only group at the root.
+/// Name of the group at the root.
 const ROOT: &str = "VTKHDF";
-/// Types that contain points.
+/// Types of data sets that contain points.
 const KINDS: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 
-/// Open file.
+/// Open VTKHDF file.
 struct File {
     name: String,
     root: Group,
-    /// Remaining number of bytes that may be decompressed. A small file can contain large arrays, or one array under
-    /// many names.
+    /// Remaining number of bytes that may be decompressed. A small file may contain large arrays, or one array under
+    /// several names.
     left: Cell<usize>,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct Moments {
     moments: Vec<Moment>,
 }
 
-/// Position of a moment in the arrays.
+/// Time of a moment, number of its points, and their first row in the positions and in each array.
 #[derive(Debug)]
 struct Moment {
     time: Option<f64>,
@@ -63,10 +63,10 @@ struct Moment {
     of: Vec<usize>,
 }
 
-/// Reads the grains of a file. The arrays are kept whole, because moments can share them.
+/// Reads the grains of a file at all moments. Arrays are kept whole, because moments may share them.
 ///
 /// # Errors
-/// If the file cannot be read, is truncated, or is not such a file.
+/// If the file cannot be read, is truncated or is not a VTKHDF file.
 pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
     let file = File::open(path)?;
     let positions = file.array(&file.root, "Points", Some(3))?;
@@ -81,7 +81,8 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
         Some(steps) => file.moments(&steps, &counts, &arrays)?,
         None => {
             let points: usize = counts.iter().sum();
-            // Rows beyond the declared number of points have no defined meaning.
+            // The number of rows must equal the declared number of points, because further rows would have no defined
+            // meaning.
             for array in [&positions].into_iter().chain(&arrays) {
                 let rows = array.numbers.len() / array.components;
                 if rows != points {
@@ -106,7 +107,7 @@ impl Moments {
         self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
     }
 
-    /// Returns the grains at a moment, whose index is the step. Returns `None` after the last moment.
+    /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
     ///
     /// # Errors
     /// If an array is too short or has a number that is not finite.
@@ -137,14 +138,14 @@ impl File {
         if length > MOST as u64 {
             return Err(fault(&format!("at most {MOST} bytes"), "more"));
         }
-        // Links to other files are not followed, because the user did not name these files.
+        // Links to other files are not followed, because the user has not named these files.
         let options = OpenOptions { max_read_bytes: MOST, max_chunk_bytes: MOST, ..OpenOptions::default() };
         let bytes = fs::read(path).map_err(|error| ReadError::opening(&name, error))?;
         let file = Hdf5File::from_vec_with_options(bytes, options);
         let file = file.map_err(|error| fault("an HDF5 file", &error.to_string()))?;
         let whole = file.superblock().eof_address;
         if length < whole {
-            return Err(fault(&format!("{whole} bytes, as the file says itself"), &length.to_string()));
+            return Err(fault(&format!("{whole} bytes, as the file states"), &length.to_string()));
         }
         let root = file.group(ROOT);
         let root = root.map_err(|error| fault("an HDF5 file with the group `VTKHDF`", &error.to_string()))?;
@@ -160,13 +161,13 @@ impl File {
         ReadError::at(&self.name, 1, expected, one_line(found))
     }
 
-    /// Returns the names of the groups and the arrays.
+    /// Returns the names of the subgroups and the arrays of a group.
     fn members(&self, group: &Group) -> Result<(Vec<String>, Vec<String>), ReadError> {
         let members = group.member_names();
         members.map_err(|error| self.fault(&format!("the content of `{}`", group.name()), &error.to_string()))
     }
 
-    /// Returns a subgroup, or `None` if there is none of that name. A damaged subgroup is an error.
+    /// Returns a subgroup, or `None` if there is none of this name. A damaged subgroup is an error.
     fn group(&self, parent: &Group, name: &str) -> Result<Option<Group>, ReadError> {
         if !self.members(parent)?.0.iter().any(|member| member == name) {
             return Ok(None);
@@ -179,7 +180,7 @@ impl File {
         Ok(self.members(group)?.1.iter().any(|member| member == name))
     }
 
-    /// Reads an array with one entry per row. `components` is the number of numbers per row, if it is known.
+    /// Reads an array with one entry per row. `components` is the number of components per row, if it is known.
     fn array(&self, group: &Group, name: &str, components: Option<usize>) -> Result<Array, ReadError> {
         let expected = format!("the array `{name}`");
         let read = || -> Result<(Dataset, usize), Error> {
@@ -200,12 +201,13 @@ impl File {
             _ => None,
         };
         let width = width.filter(|width| *width > 0 && components.is_none_or(|wanted| wanted == *width));
-        let width = width.ok_or_else(|| self.fault(&expected, &format!("one of the shape {:?}", dataset.shape())))?;
+        let width =
+            width.ok_or_else(|| self.fault(&expected, &format!("an array of the shape {:?}", dataset.shape())))?;
         let numbers = kind.decode(&bytes, cfg!(target_endian = "big"));
         Ok(Array { name: name.to_owned(), components: width, numbers, digits: kind.digits() })
     }
 
-    /// Reads whole numbers not less than zero.
+    /// Reads an array of whole numbers that are not negative.
     fn whole(&self, group: &Group, name: &str) -> Result<Vec<usize>, ReadError> {
         let is_whole = |number: &f64| *number >= 0.0 && number.fract() == 0.0 && *number <= MOST as f64;
         let numbers = self.array(group, name, Some(1))?.numbers;
@@ -223,7 +225,7 @@ impl File {
         }
     }
 
-    /// Reads the positions of the moments in a file of several moments.
+    /// Reads time, number of points and first rows of each moment in a file of several moments.
     fn moments(&self, steps: &Group, counts: &[usize], arrays: &[Array]) -> Result<Vec<Moment>, ReadError> {
         let times = self.array(steps, "Values", Some(1))?.numbers;
         let per_moment = |group: &Group, name: &str| -> Result<Vec<usize>, ReadError> {
@@ -231,9 +233,9 @@ impl File {
             if list.len() == times.len() {
                 return Ok(list);
             }
-            Err(self.fault(&format!("{} numbers in `{name}`, one a step", times.len()), &list.len().to_string()))
+            Err(self.fault(&format!("{} numbers in `{name}`, one for each step", times.len()), &list.len().to_string()))
         };
-        // Without this array there is one part per moment.
+        // If the array `NumberOfParts` is missing, each moment has one part.
         let parts = "NumberOfParts";
         let parts = if self.has(steps, parts)? { per_moment(steps, parts)? } else { vec![1; times.len()] };
         let first_part = per_moment(steps, "PartOffsets")?;
@@ -259,7 +261,7 @@ impl File {
     }
 }
 
-/// Returns the number type, or `None` if the type is not a number.
+/// Returns the number type of an HDF5 type, or `None` if the type is not a number.
 fn number(kind: &Datatype) -> Option<Number> {
     Some(match *kind {
         Datatype::FixedPoint { size: 1, signed: true, .. } => Number::I8,

@@ -1,4 +1,5 @@
-//! Legacy files. After three header lines, each section begins with a keyword. Binary numbers are big-endian.
+//! Legacy VTK files. Three header lines are followed by sections that begin with keywords. Binary numbers are
+//! big-endian.
 
 use super::bytes::Bytes;
 use super::points::{Array, Points};
@@ -13,7 +14,7 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     reader.body()
 }
 
-/// Entities that the arrays of a section belong to.
+/// Entities to which the arrays of a section belong.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ArrayEntities {
     /// Whole data set.
@@ -28,7 +29,7 @@ struct Reader<'b> {
 }
 
 impl<'b> Reader<'b> {
-    /// Reads the two lines with version and title, and the line with the encoding of numbers.
+    /// Reads the lines with version and title, and the line with the encoding of numbers.
     fn header(&mut self) -> Result<(), ReadError> {
         let _ = (self.bytes.line(), self.bytes.line());
         self.is_binary = match self.bytes.next_words().as_deref() {
@@ -57,7 +58,7 @@ impl<'b> Reader<'b> {
             let wrong = |expected: &str| here.error(expected);
             let entities = if entities_of == ArrayEntities::Cells { cells } else { points };
             let color = if self.is_binary { "unsigned_char" } else { "float" };
-            // Name, type and components of an array with one entry for each point or cell.
+            // Name, number type and number of components of an array with one row per point or cell.
             let array = match words[..] {
                 ["SCALARS", name, kind, ref rest @ ..] => {
                     let components = rest.first().map_or(Ok(1), |count| number(count, &here))?;
@@ -127,7 +128,7 @@ impl<'b> Reader<'b> {
         Ok(Points { time, positions, arrays })
     }
 
-    /// Skips cells and returns their number.
+    /// Skips the connectivity of the cells and returns the number of cells.
     fn connectivity(&mut self, count: usize, size: usize, here: &Bytes<'b>) -> Result<usize, ReadError> {
         let Some(["OFFSETS", kind]) =
             self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
@@ -147,7 +148,7 @@ impl<'b> Reader<'b> {
         Ok(count.saturating_sub(1))
     }
 
-    /// Reads the numbers of an array.
+    /// Reads the numbers of an array with `tuples` rows. `here` is the position for errors.
     fn array(
         &mut self,
         name: &str,
@@ -158,9 +159,9 @@ impl<'b> Reader<'b> {
     ) -> Result<Array, ReadError> {
         let kind =
             Number::of_legacy(kind).ok_or_else(|| here.error(format!("a type of numbers, found {}", quoted(kind))))?;
-        let count = components.checked_mul(tuples).ok_or_else(|| here.error("a number of numbers"))?;
+        let count = components.checked_mul(tuples).ok_or_else(|| here.error("a smaller number of values"))?;
         let (numbers, digits) = if self.is_binary {
-            let size = count.checked_mul(kind.size()).ok_or_else(|| here.error("a number of numbers"))?;
+            let size = count.checked_mul(kind.size()).ok_or_else(|| here.error("a smaller number of values"))?;
             (kind.decode(self.bytes.take(size)?, true), kind.digits())
         } else {
             let mut digits = Digits::default();
@@ -171,7 +172,7 @@ impl<'b> Reader<'b> {
     }
 }
 
-/// Stores an array if it belongs to points.
+/// Stores an array if it belongs to points; arrays of cells and of the data set are dropped.
 fn keep(arrays: &mut Vec<Array>, entities_of: ArrayEntities, array: Array) {
     if entities_of == ArrayEntities::Points {
         arrays.push(array);

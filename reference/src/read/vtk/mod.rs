@@ -1,5 +1,5 @@
-//! Points with their arrays from VTK files. Legacy files (`.vtk`) and XML files (`.vtp`, `.vtu`) can be text or
-//! binary. HDF5 files have the ending `.vtkhdf`.
+//! Points with their data from VTK files. Legacy files (`.vtk`) and XML files (`.vtp`, `.vtu`) may be text or binary.
+//! HDF5 files have the ending `.vtkhdf`.
 //!
 //! Source: "VTK File Formats" of the VTK documentation, up to version 5.1 of the legacy format and version 2.2 of the
 //! XML format.
@@ -29,7 +29,7 @@ const MOST: u64 = 1 << 30;
 /// First bytes of a legacy file.
 const LEGACY: &[u8] = b"# vtk DataFile";
 
-/// Returns the kind of a file from its first bytes, or `None` if it is not a VTK file.
+/// Returns the kind of a VTK file from its first bytes, or `None` for another file.
 pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
     if head.starts_with(LEGACY) {
         return Some(Kind::Points);
@@ -49,17 +49,17 @@ pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
 pub(crate) enum Kind {
     /// Points at one moment.
     Points,
-    /// List of files with their times.
+    /// Collection of files with their times.
     Collection,
 }
 
-/// Reads the points of a file, plain, gzip or zstd, as a snapshot of grains.
+/// Reads the points of a file as a snapshot of grains. The file may be plain, gzip or zstd.
 ///
-/// Arrays with one number per point keep their names. Vectors become `NAME_x`, `NAME_y` and `NAME_z`. Known names of
-/// velocities and spins become columns such as `vx` and `omegax`.
+/// Arrays with one number per point keep their names. Vectors become columns `NAME_x`, `NAME_y` and `NAME_z`.
+/// Velocities and spins with known names become columns such as `vx` and `omegax`.
 ///
 /// # Errors
-/// If the file cannot be read, is truncated, or is not such a file.
+/// If the file cannot be read, is truncated or is not a VTK file with points.
 pub(crate) fn read_points(path: &Path) -> Result<DumpSnapshot, ReadError> {
     parse(&path.to_string_lossy(), &whole(path)?)
 }

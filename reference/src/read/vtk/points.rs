@@ -1,11 +1,11 @@
-//! Points with their data from any of the formats, and their conversion to a snapshot of grains.
+//! Points with their data from VTK files, and their conversion to a snapshot of grains.
 
 use crate::read::digits::Digits;
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 
-/// Numbers of all points, one point after the other, with the components of each.
+/// Array with the components of all points, point by point.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Array {
     pub(super) name: String,
@@ -17,7 +17,7 @@ pub(super) struct Array {
 /// Points with their data.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Points {
-    /// Time, if the file contains it.
+    /// Time; `None` if the file does not contain it.
     pub(super) time: Option<f64>,
     /// Positions of the points.
     pub(super) positions: Array,
@@ -25,23 +25,23 @@ pub(super) struct Points {
     pub(super) arrays: Vec<Array>,
 }
 
-/// Names of a velocity in programs.
+/// Names of velocities in different programs, in lower case.
 const VELOCITY: [&str; 7] =
     ["v", "velocity", "vel", "velocity_lin", "linvelocity", "linear_velocity", "linear velocity"];
-/// Names of a spin in programs.
+/// Names of angular velocities in different programs, in lower case.
 const SPIN: [&str; 8] =
     ["omega", "spin", "angvel", "velocity_ang", "angvelocity", "angular_velocity", "angular velocity", "w"];
-/// Names of the id of a grain in programs.
+/// Names of grain ids in different programs, in lower case.
 const ID: [&str; 4] = ["id", "particle_id", "particleid", "particle id"];
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Returns true if the name is that of the id of a grain.
+/// Returns true if a name is a known name of grain ids.
 pub(crate) fn is_id(name: &str) -> bool {
     ID.contains(&name.to_lowercase().as_str())
 }
 
-/// Returns the name in dumps for a component of a vector.
+/// Returns the name that a component of a vector has in a dump.
 pub(crate) fn component(vector: &str, axis: usize) -> String {
     let lower = vector.to_lowercase();
     let is = |names: &[&str]| names.contains(&lower.as_str());
@@ -56,7 +56,7 @@ pub(crate) fn component(vector: &str, axis: usize) -> String {
 }
 
 impl Array {
-    /// Returns the names of the columns.
+    /// Returns the names of the columns that the array becomes.
     fn columns(&self) -> Vec<String> {
         match self.components {
             1 if is_id(&self.name) => vec!["id".to_owned()],
@@ -68,7 +68,7 @@ impl Array {
 }
 
 impl Points {
-    /// Returns a snapshot of grains. Its step is not set.
+    /// Returns a snapshot of the points as grains. The step is 0 and must be set by the caller.
     pub(super) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
         let points = self.positions.numbers.len() / 3;
         let mut columns: Vec<NumberColumn> = Vec::new();

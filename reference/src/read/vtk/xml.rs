@@ -1,4 +1,5 @@
-//! XML files of points, `PolyData` and `UnstructuredGrid`. Numbers are printed, encoded in place or appended.
+//! XML files with points, `PolyData` and `UnstructuredGrid`. Numbers are text, encoded in place, or in the appended
+//! data.
 
 use super::bytes::Bytes;
 use super::points::{Array, Points};
@@ -13,11 +14,11 @@ use quick_xml::events::{BytesRef, BytesStart, Event};
 use quick_xml::reader::Reader;
 use std::io::Read;
 
-/// Beginning of the part that is not XML.
+/// Start of the tag with appended data.
 const APPENDED: &[u8] = b"<AppendedData";
 /// Last tag of every file.
 const END: &[u8] = b"</VTKFile>";
-/// Name of the only supported compression.
+/// Name of the supported compression.
 const ZLIB: &str = "vtkZLibDataCompressor";
 
 /// Reads points and their data.
@@ -33,10 +34,10 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     file.points()
 }
 
-/// Data after the XML part.
+/// Appended data after the XML part.
 #[derive(Clone, Copy)]
 struct AppendedData<'b> {
-    /// Bytes after the underscore.
+    /// Bytes after the underscore that begins the data.
     data: &'b [u8],
     is_text: bool,
 }
@@ -67,7 +68,7 @@ struct File<'b> {
     bytes: Bytes<'b>,
     appended: Option<AppendedData<'b>>,
     is_big: bool,
-    /// True if lengths have eight bytes.
+    /// True if lengths are stored in eight bytes, false for four bytes.
     wide: bool,
     compressor: Option<String>,
 }
@@ -128,7 +129,7 @@ impl File<'_> {
         Ok(Points { time, positions, arrays })
     }
 
-    /// Returns the text of a reference such as `&#32;` or `&amp;`. Entities defined in a file are not supported.
+    /// Returns the text of a reference such as `&#32;` or `&amp;`. Entities that a file defines are not supported.
     fn resolved(&self, reference: &BytesRef<'_>, at: usize) -> Result<String, ReadError> {
         let name = String::from_utf8_lossy(reference);
         let letter = reference.resolve_char_ref().ok().flatten();
@@ -185,7 +186,8 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Reads a complete array if it contains data of points, and appends it to the same array of earlier pieces.
+    /// Reads an array at the end of its tag if it contains positions, data of points, or the time. Numbers of a further
+    /// piece of the file are appended to the array of the same name.
     fn close(
         &self,
         parent: &[u8],
@@ -262,9 +264,9 @@ impl File<'_> {
                         data.ok_or_else(|| fault("an offset inside the appended data", announced.offset.to_string()))?;
                     Stream { data, is_text: appended.is_text }
                 };
-                let bytes = self.unpacked(stream).map_err(|what| fault("whole encoded data", what))?;
+                let bytes = self.unpacked(stream).map_err(|what| fault("complete encoded data", what))?;
                 if bytes.len() % kind.size() != 0 {
-                    return Err(fault("a whole number of numbers", format!("{} bytes", bytes.len())));
+                    return Err(fault("a whole number of values", format!("{} bytes", bytes.len())));
                 }
                 (kind.decode(&bytes, self.is_big), kind.digits())
             }
@@ -273,7 +275,7 @@ impl File<'_> {
         Ok(Array { name: name.clone(), components: *components, numbers, digits })
     }
 
-    /// Decodes the bytes of numbers from their lengths and blocks.
+    /// Decodes the bytes of the numbers in an array. Their length precedes them; compressed data consist of blocks.
     fn unpacked(&self, mut stream: Stream<'_>) -> Result<Vec<u8>, String> {
         let size = if self.wide { 8 } else { 4 };
         let kind = if self.wide { Number::U64 } else { Number::U32 };
@@ -287,19 +289,24 @@ impl File<'_> {
                 stream.take(size)?;
                 stream.take(length)
             } else {
-                let whole = length.checked_add(size).ok_or("a length without bound")?;
+                let whole = length.checked_add(size).ok_or("a length above the limit")?;
                 Ok(stream.take(whole)?.split_off(size))
             };
         };
         if compressor != ZLIB {
-            return Err(format!("a compression by {}, and {ZLIB} alone is read", quoted(compressor)));
+            return Err(format!("a compression by {}; only {ZLIB} is supported", quoted(compressor)));
         }
         let blocks = lengths(&stream.clone_at_start().take(size)?)[0];
-        let head = blocks.checked_add(3).and_then(|words| words.checked_mul(size)).ok_or("blocks without number")?;
+        let head = blocks
+            .checked_add(3)
+            .and_then(|words| words.checked_mul(size))
+            .ok_or("a number of blocks above the limit")?;
         let head = lengths(&stream.take(head)?);
         let (most, packed) = (head[1].max(head[2]), &head[3..]);
-        let total =
-            packed.iter().try_fold(0_usize, |sum, length| sum.checked_add(*length)).ok_or("blocks without bound")?;
+        let total = packed
+            .iter()
+            .try_fold(0_usize, |sum, length| sum.checked_add(*length))
+            .ok_or("a total length of blocks above the limit")?;
         let mut data = &stream.take(total)?[..];
         let mut bytes = Vec::new();
         for length in packed {
@@ -315,7 +322,7 @@ impl File<'_> {
     }
 }
 
-/// Bytes, raw or in base 64. Each piece is encoded separately.
+/// Bytes that are stored as they are or as base-64 text.
 #[derive(Clone, Copy)]
 struct Stream<'s> {
     data: &'s [u8],
@@ -327,13 +334,14 @@ impl Stream<'_> {
         *self
     }
 
-    /// Returns true if the first `count` bytes are encoded separately.
+    /// Returns true if the first `count` bytes are encoded separately from the following bytes. In base-64 text,
+    /// padding then follows them.
     fn is_apart(&self, count: usize) -> bool {
         !self.is_text || !count.is_multiple_of(3) && self.data.get(count.div_ceil(3) * 4 - 1) == Some(&b'=')
     }
 
-    /// Reads the next `count` bytes. Base-64 text is read up to the group of letters with the last of them, and the
-    /// other bytes of this group are dropped.
+    /// Reads the next `count` bytes. Base-64 text is read up to the end of the group of letters with the last of these
+    /// bytes, and the other bytes of the group are ignored.
     fn take(&mut self, count: usize) -> Result<Vec<u8>, String> {
         let length = if self.is_text { count.div_ceil(3).saturating_mul(4) } else { count };
         let Some(piece) = self.data.get(..length) else {
