@@ -1,14 +1,14 @@
-//! Errors of planning, running and collecting.
+//! Errors when plans are made, run or reported.
 
 use grainbench_store::WriteError;
 use std::fmt::Display;
 use std::path::Path;
 use thiserror::Error;
 
-/// Error of a campaign.
+/// Error when a plan is made, run or reported.
 #[derive(Debug, Error)]
 pub enum Fault {
-    /// Invalid input: place, what was expected and what was found.
+    /// Invalid input. The message names the place, the expected and the actual content.
     #[error("{0}")]
     Input(String),
     /// The disk rejected a write.
@@ -20,7 +20,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Returns an input error with its place, what was expected and what was found.
+    /// Returns an input error from the place, the expected and the actual content.
     pub fn expected(place: impl Display, expected: impl Display, found: impl Display) -> Self {
         Self::Input(format!("{place}: expected {expected}, found {found}"))
     }

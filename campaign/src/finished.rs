@@ -16,7 +16,8 @@ pub struct Entry {
     pub state: State,
     /// Duration (s).
     pub seconds: f64,
-    /// System load during the task: the average number of runnable processes.
+    /// Average number of runnable processes on the machine when the task ended; `None` if the task is not timed or the
+    /// system reports no load.
     pub load: Option<f64>,
     /// Index of the worker in [`FinishedTasks::workers`].
     pub worker: usize,
@@ -27,11 +28,11 @@ pub struct Entry {
 /// Result of a task, deserialised from its JSON text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TaskResult<T> {
-    /// No result yet.
+    /// The task has no result yet.
     Nothing,
-    /// Result that the task stored.
+    /// Result of a finished task.
     Out(T),
-    /// Message of a crash of our program.
+    /// Error message: our program crashed, or the stored result cannot be read.
     Crash(String),
 }
 
@@ -42,9 +43,9 @@ pub struct FinishedTasks {
     pub entries: HashMap<Id, Entry>,
     /// Workers with a result file.
     pub workers: Vec<Worker>,
-    /// Number of truncated or damaged lines.
+    /// Number of truncated or damaged lines. A file with a damaged first line counts as one line.
     pub damaged: usize,
-    /// Number of results for tasks that already had a result.
+    /// Number of results for tasks that already had a successful result. They are ignored.
     pub twice: usize,
 }
 
@@ -63,7 +64,7 @@ impl FinishedTasks {
         };
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
-        // Sorted by name, which begins with the time.
+        // The names begin with the time, so this is the order of the starts of the workers.
         files.sort();
         for file in files {
             let bytes = fs::read(&file).map_err(|error| Fault::in_file(&file, "a file that can be read", error))?;
@@ -72,7 +73,8 @@ impl FinishedTasks {
         Ok(finished)
     }
 
-    /// Reads the result of a task.
+    /// Returns the result of a task, deserialised from its JSON text. [`Self::read`] must have been called with
+    /// `with_results`.
     #[must_use]
     pub fn result<T: DeserializeOwned>(&self, id: Id) -> TaskResult<T> {
         let Some(entry) = self.entries.get(&id) else { return TaskResult::Nothing };
@@ -100,7 +102,7 @@ impl FinishedTasks {
         self.workers.push(worker);
         let mut lines = lines.peekable();
         while let Some(line) = lines.next() {
-            // The text after the last newline is empty or a truncated line.
+            // The text after the last newline is empty or an incomplete line.
             let is_last = lines.peek().is_none();
             match Line::read(line).filter(|_| !is_last) {
                 Some(line) => self.take(&line, place, with_results),
@@ -110,7 +112,8 @@ impl FinishedTasks {
         }
     }
 
-    /// Adds a line. The first successful result of a task counts. A later result replaces the result of a failed task.
+    /// Adds the result in a line. If the task has a successful result already, the new result is ignored. A failed or
+    /// crashed result is replaced.
     fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
         let Line { id, state, seconds, load, json } = *line;
         let json = if with_results { json } else { "" };

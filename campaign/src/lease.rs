@@ -1,9 +1,9 @@
-//! Leases, which assign tasks to workers.
+//! Leases. A lease assigns tasks of a plan to one worker.
 //!
-//! A worker renews its lease at intervals. A lease expires if it is not renewed in time or if its process has ended;
-//! other workers may then take its unfinished tasks.
+//! A worker renews its lease at intervals. A lease expires if it is not renewed in time or if the process of its worker
+//! has ended. Other workers may then take its unfinished tasks.
 //!
-//! Times are file times of the shared file system, because the clocks of the machines differ.
+//! Times are file times of the shared file system, because the clocks of the machines may differ.
 
 use crate::fault::Fault;
 use crate::plan::RUNNING;
@@ -16,7 +16,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// Durations of the lock that is held while leases are read and one is added.
+/// Time limits of the lock on the directory of leases. The lock is held while leases are read and one is added. The
+/// longest wait is 60 s. A lock counts as abandoned after 20 s if its process cannot be checked.
 const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(60), abandoned_after: Duration::from_secs(20) };
 /// File extension of leases.
 const ENDING: &str = "json";
@@ -32,21 +33,21 @@ pub struct LeaseContents {
     pub process: u32,
     /// Job of a batch system; `None` outside one.
     pub job: Option<String>,
-    /// Ranges of leased task indices: the first index, and one past the last.
+    /// Ranges of leased task indices, each as the first index and one past the last.
     pub tasks: Vec<[usize; 2]>,
     /// Number of tasks that the worker has finished.
     pub done: usize,
 }
 
 impl LeaseContents {
-    /// Returns true if the lease covers a task.
+    /// Returns true if the lease covers the task with the index `place`.
     #[must_use]
     pub fn has(&self, place: usize) -> bool {
         self.tasks.iter().any(|[from, to]| (*from..*to).contains(&place))
     }
 }
 
-/// A held lease, whose file is removed on drop.
+/// Held lease. Its file is removed when this value is dropped.
 #[derive(Debug)]
 pub struct Lease {
     path: PathBuf,
@@ -54,12 +55,13 @@ pub struct Lease {
 }
 
 impl Lease {
-    /// Leases all tasks of a range that no other worker holds, and also returns the leases of the other workers.
+    /// Leases all tasks of a range that no other worker holds, and returns the lease and the leases of all other
+    /// workers.
     ///
-    /// The lease is `None` if other workers hold the whole range.
+    /// The lease is `None` if other workers hold the whole range. Leases expire `seconds` (s) after their last renewal.
     ///
     /// # Errors
-    /// When the lock is not released within a minute, or the disk rejects a write.
+    /// When the lock is not released within a minute, the leases cannot be read, or the disk rejects a write.
     pub fn take(
         plan: &Path,
         range: Range<usize>,
@@ -96,7 +98,7 @@ impl Lease {
         Ok((Some(lease), others))
     }
 
-    /// Returns true if the lease covers a task.
+    /// Returns true if the lease covers the task with the index `place`.
     #[must_use]
     pub fn has(&self, place: usize) -> bool {
         self.said.has(place)
@@ -118,7 +120,8 @@ impl Drop for Lease {
     }
 }
 
-/// Returns the valid leases and removes expired ones.
+/// Returns the valid leases, sorted by worker, and removes expired ones. A lease expires `seconds` (s) after its last
+/// renewal, or when the process of its worker has ended.
 ///
 /// # Errors
 /// When the directory of leases cannot be read.
@@ -148,7 +151,7 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
     Ok(found)
 }
 
-/// Returns the age of a file (s), or `None` if it does not exist.
+/// Returns the age (s) of a file at the time `now`, or `None` if the file does not exist.
 fn age(path: &Path, now: SystemTime) -> Option<f64> {
     let written = fs::metadata(path).and_then(|about| about.modified()).ok()?;
     Some(now.duration_since(written).unwrap_or_default().as_secs_f64())

@@ -1,10 +1,10 @@
 //! Campaigns: many runs from one plan.
 //!
-//! A [`plan`] is a directory with a line for each [`task`]. A worker runs a [`shard`] of tasks under a [`lease`] and
-//! appends the results to its own [`log`]. After a crash, each line of the log is either whole or ignored. [`finished`]
-//! tasks are not repeated by any worker. A batch system ([`slurm`]) only starts workers.
+//! A [`plan`] is a directory with a file of [`task`]s, one per line. A worker reserves the tasks of a [`shard`] by a
+//! [`lease`], runs them, and appends the results to its own [`log`]. Lines that are incomplete after a crash are
+//! ignored. No worker repeats [`finished`] tasks. A batch system ([`slurm`]) only starts workers.
 //!
-//! A plan belongs to a study of this program or to a [`sweep`], a design over scene keys, solvers and levels.
+//! The tasks come from a study of this program or from a [`sweep`], a design over scene keys, solvers and levels.
 
 pub mod fault;
 pub mod finished;

@@ -1,7 +1,8 @@
-//! Results of one worker: a file to which only this worker appends, one line for each task.
+//! Result file of one worker. Only this worker writes to it. The first line describes the worker, and each further line
+//! is the result of one task.
 //!
-//! A line is `ID STATE SECONDS LOAD SUM JSON`, with a checksum over all other fields. The checksum detects truncated or
-//! damaged lines. The tasks of these lines are repeated. The first line identifies the worker.
+//! The line of a task is `ID STATE SECONDS LOAD SUM JSON`. `SUM` is a checksum of the other fields. Tasks whose lines
+//! are truncated or damaged are repeated.
 
 use crate::task::Id;
 use grainbench_store::WriteError;
@@ -11,13 +12,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Beginning of the first line.
+/// Beginning of the first line, which the description of the worker follows.
 const MAGIC: &str = "grainbench-results 1 ";
 /// File extension of result files.
 pub const ENDING: &str = "log";
-/// Longest time between two syncs. A power failure loses at most the results of this time.
+/// Minimum time between two syncs to the disk when lines are added.
 const SYNC: Duration = Duration::from_secs(5);
-/// Hexadecimal digits of a checksum.
+/// Number of hexadecimal digits of a checksum.
 const DIGITS: usize = 16;
 
 /// Process that runs tasks of a plan, with its machine and job.
@@ -39,7 +40,7 @@ pub struct Worker {
     /// Cores that the batch system granted, or all cores of an exclusive node; `None` outside a batch system.
     #[serde(default)]
     pub granted: Option<usize>,
-    /// Start time.
+    /// Start time as text.
     pub began: String,
 }
 
@@ -48,9 +49,9 @@ pub struct Worker {
 pub enum State {
     /// The run ended without an error.
     Done,
-    /// The run ended with a typed error, which is the result.
+    /// The run ended with an error, which is stored as its result.
     Failed,
-    /// Our program panicked. There is a message and no result.
+    /// Our program panicked. The line has a message instead of a result.
     Crashed,
 }
 
@@ -77,9 +78,9 @@ pub struct Line<'a> {
     pub state: State,
     /// Duration (s).
     pub seconds: f64,
-    /// System load during the task (average number of runnable processes); `None` if unknown.
+    /// Average number of runnable processes when the task ended; `None` if unknown.
     pub load: Option<f64>,
-    /// Result as JSON.
+    /// Result as JSON; for a crashed task, the error message as a JSON string.
     pub json: &'a str,
 }
 
@@ -113,13 +114,13 @@ fn sum(head: &str, json: &str) -> String {
     hasher.finalize().to_hex()[..DIGITS].to_owned()
 }
 
-/// Reads the worker from the first line of a file.
+/// Reads the description of the worker from the first line of a file. Returns `None` if the line is damaged.
 #[must_use]
 pub fn worker(line: &str) -> Option<Worker> {
     serde_json::from_str(line.strip_prefix(MAGIC)?).ok()
 }
 
-/// Result file of a running worker.
+/// Open result file of a running worker.
 #[derive(Debug)]
 pub struct Log {
     file: File,
@@ -145,7 +146,7 @@ impl Log {
         Ok(log)
     }
 
-    /// Adds a line. If the write fails, the file is truncated to its last complete line.
+    /// Adds a line. If the write fails, the file is truncated to the end of its last complete line.
     ///
     /// # Errors
     /// When the disk rejects the write.
@@ -167,10 +168,10 @@ impl Log {
         }
     }
 
-    /// Flushes added lines to the disk.
+    /// Syncs all added lines to the disk.
     ///
     /// # Errors
-    /// When the disk rejects it.
+    /// When the disk rejects the write.
     pub fn sync(&mut self) -> Result<(), WriteError> {
         self.synced = Instant::now();
         match self.file.sync_data() {

@@ -1,4 +1,4 @@
-//! Plans. A plan is a directory with the tasks (`tasks.jsonl`) and their origin (`plan.toml`).
+//! Plans. A plan is a directory with tasks (`tasks.jsonl`) and a description of their origin (`plan.toml`).
 
 use crate::fault::Fault;
 use crate::shard;
@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 
 /// File with the origin of the plan.
 pub const HEAD: &str = "plan.toml";
-/// File with the tasks, one a line.
+/// File with the tasks, one per line.
 pub const TASKS: &str = "tasks.jsonl";
 /// Directory of result files.
 pub const RESULTS: &str = "results";
 /// Directory of leases.
 pub const RUNNING: &str = "running";
-/// Format version. It must be raised whenever the meaning of stored data changes.
+/// Format version of `plan.toml`. It must be raised whenever the meaning of stored data changes.
 const FORMAT: u32 = 1;
 /// Default time (s) after which a lease expires if it is not renewed.
 const LEASE: f64 = 60.0;
@@ -49,7 +49,7 @@ pub struct Head {
     pub tasks: usize,
     /// Hash of the file of tasks.
     pub hash: String,
-    /// Recommended number of shards.
+    /// Recommended number of shards. [`Plan::write`] replaces 0 by a number for the expected time.
     #[serde(alias = "chunks")]
     pub shards: u32,
     /// Expected time of all tasks on one core (s).
@@ -59,7 +59,7 @@ pub struct Head {
     /// Time (s) after which a lease expires if it is not renewed.
     #[serde(default = "lease")]
     pub lease_seconds: f64,
-    /// Hash of the program that wrote the plan. Only the same program may run the tasks.
+    /// Hash of the program that wrote the plan. No other program may run the tasks.
     pub program: String,
     /// Version and commit of the program.
     pub version: String,
@@ -69,7 +69,7 @@ pub struct Head {
     pub directory: PathBuf,
     /// Command line arguments.
     pub arguments: Vec<String>,
-    /// Hashes of the input files of tasks, by their paths.
+    /// Hashes of the input files of the tasks, by path.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
 }
@@ -79,7 +79,8 @@ const fn lease() -> f64 {
 }
 
 impl Head {
-    /// Returns the head of a plan for this program; `Plan::write` fills in the tasks.
+    /// Returns the contents of `plan.toml` for this program. [`Plan::write`] sets the number, the hash and the expected
+    /// time of the tasks.
     #[must_use]
     pub fn new(kind: Kind, arguments: Vec<String>, timed: bool) -> Self {
         Self {
@@ -101,7 +102,7 @@ impl Head {
     }
 }
 
-/// Plan read from its directory.
+/// Plan with its directory and tasks.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Directory of the plan.
@@ -113,7 +114,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Returns true if a directory holds a plan.
+    /// Returns true if a directory contains a `plan.toml`.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
         path.join(HEAD).is_file()
@@ -121,7 +122,7 @@ impl Plan {
 
     /// Writes a plan to a directory that is new, empty, or already has a plan.
     ///
-    /// Results of an earlier plan in the directory are kept. They count for tasks with equal ids.
+    /// Results of an earlier plan in the directory are kept. They count for tasks with the same ids in the new plan.
     ///
     /// # Errors
     /// When the directory has other contents, or the disk rejects a write.
@@ -135,8 +136,8 @@ impl Plan {
             head.shards = shard::count(&tasks);
         }
         let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
-        // The head is moved first. If the process is killed between the two moves, the directory has a head and can
-        // take a new plan.
+        // `plan.toml` is moved before the tasks. If the process is killed between the two moves, the directory counts
+        // as a plan and can be overwritten by a new plan.
         let mut out = StagedDir::new(path)?.without_manifest();
         out.write(HEAD, words)?;
         out.write(TASKS, text)?;
@@ -156,13 +157,13 @@ impl Plan {
         let file = path.join(TASKS);
         let text = text_of(&file)?;
         if hash(&text) != head.hash {
-            return Err(Fault::in_file(&file, format!("the tasks that {HEAD} was written for"), "others"));
+            return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
         }
         let tasks = task::read(&file, &text)?;
         Ok(Self { path: path.to_owned(), head, tasks })
     }
 
-    /// Reads the head of a plan.
+    /// Reads the contents of `plan.toml`.
     ///
     /// # Errors
     /// The error names the file, the place, what was expected and what was found.
@@ -171,14 +172,14 @@ impl Plan {
         if !file.is_file() {
             return Err(Fault::in_file(
                 path,
-                "a directory with a plan, which `--plan DIR` writes",
+                "a directory with a plan, written by `--plan DIR`",
                 format!("no {HEAD} in it"),
             ));
         }
         let text = text_of(&file)?;
         let head: Head = toml::from_str(&text).map_err(|error| {
             let place = format!("{}:{}", file.display(), line_of(&text, &error).unwrap_or(1));
-            Fault::expected(place, "a plan as `--plan DIR` writes it", error.message().replace('\n', ", "))
+            Fault::expected(place, "a plan in the form that `--plan DIR` writes", error.message().replace('\n', ", "))
         })?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
         if head.format != FORMAT {
@@ -193,10 +194,10 @@ impl Plan {
         Ok(head)
     }
 
-    /// Checks that the program and the inputs have not changed since the plan was made.
+    /// Checks that the running program is the one that wrote the plan, and that the input files have not changed.
     ///
     /// # Errors
-    /// The error names the program or the input that differs.
+    /// When the program or an input file differs. The error names it.
     pub fn check_program(&self) -> Result<(), Fault> {
         let head = &self.head;
         let here = grainbench_studies::identity::of_this_program();
@@ -205,12 +206,12 @@ impl Plan {
             return Err(Fault::in_file(
                 &self.path,
                 expected,
-                "another build; write the plan again, unchanged tasks stay finished",
+                "another build; write the plan again (unchanged tasks stay finished)",
             ));
         }
         for (path, known) in &head.inputs {
             if hash_of_file(&head.directory.join(path)) != *known {
-                let found = "a changed file; write the plan again, unchanged tasks stay finished";
+                let found = "a changed file; write the plan again (unchanged tasks stay finished)";
                 return Err(Fault::expected(path, "the file of the plan", found));
             }
         }
@@ -223,10 +224,10 @@ impl Plan {
 /// # Errors
 /// When the directory has other contents or cannot be read.
 pub fn check_place(path: &Path) -> Result<(), Fault> {
-    let expected = "a new directory, an empty one, or one with a plan";
+    let expected = "a new directory, an empty directory or a directory with a plan";
     match fs::read_dir(path) {
         Ok(mut entries) => {
-            // A killed process leaves temporary files.
+            // Temporary files of killed processes are ignored.
             let is_left =
                 |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| is_scratch(&entry.file_name()));
             let is_ours = path.join(HEAD).is_file() || entries.all(is_left);

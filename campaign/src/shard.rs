@@ -7,12 +7,12 @@ use std::str::FromStr;
 
 /// Maximum number of shards.
 pub const MOST: u32 = 1_000_000;
-/// Shortest expected duration of a shard (s): a batch system takes about a second to start one.
+/// Shortest mean expected duration of the recommended shards (s). A batch system takes about a second to start a shard.
 pub const SECONDS: f64 = 60.0;
-/// Shortest duration that is assumed for a task (s); it covers the overhead of a task.
+/// Shortest assumed duration of a task (s), because each task has some overhead.
 const LEAST: f64 = 1e-3;
 
-/// One shard of a plan, counted from 1.
+/// One of the shards into which a plan is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// Number of this shard, from 1 to `count`.
@@ -45,7 +45,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Returns the range of task indices of each of `count` shards, in order.
+/// Returns the range of task indices of each of `count` shards, in the order of the shards.
 ///
 /// A shard may be empty. All tasks of a group are in one shard.
 #[must_use]
@@ -79,7 +79,8 @@ pub fn task_range(tasks: &[Task], shard: Shard) -> Range<usize> {
     all(tasks, shard.count).swap_remove(shard.index as usize - 1)
 }
 
-/// Returns the largest number of shards, at least one, that each last [`SECONDS`] or longer on average.
+/// Returns the recommended number of shards: the largest number whose mean expected duration is at least [`SECONDS`].
+/// It is at least 1 and at most the number of groups and ungrouped tasks.
 #[must_use]
 pub fn count(tasks: &[Task]) -> u32 {
     let total: f64 = tasks.iter().map(length).sum();

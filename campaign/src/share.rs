@@ -1,13 +1,14 @@
-//! Parallel work on numbered items.
+//! Parallel processing of numbered items.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Processes items by index on up to `at_once` threads until all are done or `goes_on` returns false.
+/// Calls `work` with each index below `pieces`, on up to `at_once` threads, until all are done or `goes_on` returns
+/// false.
 ///
-/// Returns the number of items that were not started.
+/// Returns the number of indices for which `work` was not called.
 ///
-/// The threads are not from a pool, because claims wait for shared runs. In a thread pool, a waiting thread may get
-/// another claim, and then a run could wait for itself.
+/// The threads are not from a pool, because `work` may wait for a run that another index has started. A waiting thread
+/// of a pool could start another index, and a run could then wait for itself.
 pub fn share(pieces: usize, at_once: usize, goes_on: impl Fn() -> bool + Sync, work: impl Fn(usize) + Sync) -> usize {
     let next = AtomicUsize::new(0);
     let take =

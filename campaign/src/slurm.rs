@@ -1,7 +1,7 @@
 //! Submission to Slurm: one job array over the shards with unfinished tasks.
 //!
-//! Slurm only starts workers. A task is finished when it has a result; accounting data are not used. If `squeue` does
-//! not answer, the state of the queue is unknown, not empty.
+//! Slurm only starts workers. A task is finished when its result is stored; accounting data of Slurm are not used. If
+//! `squeue` does not answer, the submission fails, because the queue is unknown.
 
 use crate::fault::Fault;
 use crate::finished::FinishedTasks;
@@ -18,7 +18,7 @@ use std::process::Command;
 
 /// Directory of job scripts, job output and the list of submissions.
 pub const FOLDER: &str = "slurm";
-/// File of submissions, one a line.
+/// File with one submission per line.
 const JOBS: &str = "jobs.jsonl";
 /// Options of `sbatch` that users may not set, because they would change the job array.
 const OURS: [&str; 4] = ["--array", "-a", "--wrap", "--output"];
@@ -28,17 +28,17 @@ const OURS: [&str; 4] = ["--array", "-a", "--wrap", "--output"];
 pub struct Job {
     /// Job number of the array.
     pub job: u64,
-    /// Number of shards of the plan in this submission.
+    /// Number of shards into which the plan is divided. Only those in `indexes` were submitted.
     #[serde(alias = "chunks")]
     pub shards: u32,
-    /// Submitted shard numbers, as ranges.
+    /// Numbers of the submitted shards as ranges, such as `1-4,7`.
     pub indexes: String,
 }
 
-/// Request for a submission.
+/// Program, options and permission for a submission.
 #[derive(Clone, Debug)]
 pub struct SubmitRequest<'a> {
-    /// Path of the program on the nodes.
+    /// Path of this program on the nodes.
     pub program: &'a Path,
     /// True to submit the remaining shards of a plan that was submitted before.
     pub again: bool,
@@ -49,8 +49,8 @@ pub struct SubmitRequest<'a> {
 /// Submits the shards with unfinished tasks; returns `None` if there are none.
 ///
 /// # Errors
-/// When Slurm does not answer or rejects the job, or when an option would change the job array. A plan that was
-/// submitted before is an error too, unless `again` is set.
+/// When Slurm does not answer or rejects the job, when an option would change the job array, or when the plan was
+/// submitted before and `again` is not set.
 pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fault> {
     if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected("options for sbatch", "an environment without shards", format!("`{option}`")));
@@ -58,8 +58,8 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     let before = jobs(&plan.path)?;
     if !asked.again && !before.is_empty() {
         let found =
-            format!("job {} of before", before.iter().map(|job| job.job.to_string()).collect::<Vec<_>>().join(", "));
-        return Err(Fault::in_file(&plan.path, "a plan that was not submitted, or `--resubmit`", found));
+            format!("earlier job {}", before.iter().map(|job| job.job.to_string()).collect::<Vec<_>>().join(", "));
+        return Err(Fault::in_file(&plan.path, "a plan that was not submitted yet, or `--resubmit`", found));
     }
     let most = most_in_array()?;
     let shards = before.last().map_or(plan.head.shards.min(most), |job| job.shards);
@@ -77,7 +77,7 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     let output = fs::canonicalize(&folder).unwrap_or(folder.clone()).join("%A_%a.out");
     command.arg("--parsable").arg(format!("--output={}", output.display())).args(asked.options).arg(&script);
     let answer = ask(&mut command)?;
-    // `JOB` or `JOB;CLUSTER`.
+    // The answer is `JOB` or `JOB;CLUSTER`.
     let number = answer.trim().split(';').next().and_then(|number| number.parse().ok());
     let job = number
         .ok_or_else(|| Fault::Batch(format!("sbatch: expected the number of a job, found `{}`", answer.trim())))?;
@@ -157,7 +157,7 @@ fn left(plan: &Plan, shards: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<
 fn text(plan: &Plan, program: &Path, shards: u32, indexes: &str) -> String {
     let place = fs::canonicalize(&plan.path).unwrap_or_else(|_| plan.path.clone());
     let name = place.file_name().map_or_else(|| "plan".to_owned(), |name| name.to_string_lossy().into_owned());
-    // Options in a script end at a space.
+    // An option in a job script ends at a space, so the job name must not contain one.
     let name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let [program, plan_path] = [program, &place].map(quoted);
@@ -175,7 +175,7 @@ fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
 }
 
-/// Formats increasing numbers as ranges.
+/// Formats increasing numbers as ranges, such as `1-4,7`.
 fn ranges(numbers: &[u32]) -> String {
     let range_text = |run: &[u32]| match run {
         [one] => one.to_string(),
@@ -185,7 +185,7 @@ fn ranges(numbers: &[u32]) -> String {
     numbers.chunk_by(|a, b| a + 1 == *b).map(range_text).collect::<Vec<_>>().join(",")
 }
 
-/// Returns the largest size of a job array at this site: indices must be below `MaxArraySize`.
+/// Returns the largest index of a job array at this site, at most [`MOST`]. Indices must be below `MaxArraySize`.
 fn most_in_array() -> Result<u32, Fault> {
     let answer = ask(Command::new("scontrol").args(["show", "config"]))?;
     let size = answer.lines().find_map(|line| {
@@ -194,14 +194,14 @@ fn most_in_array() -> Result<u32, Fault> {
     });
     match size {
         Some(0 | 1) => {
-            Err(Fault::Batch("scontrol: expected a MaxArraySize above 1: this site has no job arrays".to_owned()))
+            Err(Fault::Batch("scontrol: expected MaxArraySize above 1, found a site without job arrays".to_owned()))
         }
         Some(size) => Ok((size - 1).min(MOST)),
         None => Err(Fault::Batch("scontrol: expected MaxArraySize among the settings, found none".to_owned())),
     }
 }
 
-/// Returns the array elements of this user that are queued or running, by job number.
+/// Returns the indices of this user's array elements that are queued or running, by job number.
 fn queued() -> Result<BTreeMap<u64, BTreeSet<u32>>, Fault> {
     let answer = ask(Command::new("squeue").args(["--noheader", "--array", "--me", "--format=%F %K"]))?;
     let mut found: BTreeMap<u64, BTreeSet<u32>> = BTreeMap::new();

@@ -18,21 +18,23 @@ pub struct Status {
     pub done: usize,
     /// Number of tasks that ended in an error, which is their result.
     pub failed: usize,
-    /// Number of tasks at which our program crashed; they may be repeated.
+    /// Number of tasks in which our program panicked.
     pub crashed: usize,
-    /// Number of unfinished tasks that a worker has leased.
+    /// Number of unfinished tasks with a lease.
     pub running: usize,
     /// Number of unfinished tasks without a lease.
     pub waiting: usize,
-    /// Estimated remaining time (s): the expected time of unfinished tasks divided by the number of workers.
+    /// Estimated remaining time (s): the expected time of the unfinished tasks, divided by the number of active
+    /// workers, or by 1 if there is none.
     ///
-    /// The estimate is scaled by the ratio of actual to expected time of the finished tasks.
+    /// The quotient is multiplied by the ratio of actual to expected time of the finished tasks, or by 1 if none is
+    /// finished.
     pub seconds_left: f64,
     /// Active workers.
     pub workers: Vec<LeaseContents>,
-    /// Number of result lines that are cut off or damaged; their tasks are repeated.
+    /// Number of truncated or damaged result lines. Their tasks are repeated.
     pub damaged: usize,
-    /// Number of repeated results of tasks that were done already.
+    /// Number of results for tasks that already had a successful result.
     pub twice: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Tasks of a plan, one a line.
+//! Tasks of a plan. The file of tasks has one task per line.
 
 use crate::fault::Fault;
 use grainbench_scene::text::tamed;
@@ -9,23 +9,23 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// Hexadecimal digits of an id.
+/// Number of hexadecimal digits of an id.
 const DIGITS: usize = 32;
 
-/// Id of a task: the first half of the hash of its description.
+/// Id of a task: the first half of a hash of the program and the inputs of the task.
 ///
-/// Equal tasks of equal programs have equal ids in every plan.
+/// Equal tasks of the same program have equal ids in every plan.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id([u8; 16]);
 
 impl Id {
-    /// Returns the id from a hash in hexadecimal digits, or `None` if it has too few.
+    /// Returns the id from a hash in hexadecimal digits, or `None` if the hash is too short or has other characters.
     #[must_use]
     pub fn of_hash(hash: &str) -> Option<Self> {
         hash.get(..DIGITS)?.parse().ok()
     }
 
-    /// Computes the id from a description and the program that will run the task.
+    /// Computes the id from the hash of the program that will run the task and from the words that describe the task.
     #[must_use]
     pub fn of_words(program: &str, words: &[&str]) -> Self {
         let mut id = [0; 16];
@@ -76,43 +76,47 @@ impl<'de> Deserialize<'de> for Id {
     }
 }
 
-/// One run or measurement of a plan, with the inputs that determine its result.
+/// Run or measurement of a plan, with the inputs that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Task {
-    /// Hash of the inputs, which identifies the task in result files.
+    /// Id of the task in result files.
     pub id: Id,
-    /// Case and variant, or path of the scene file.
+    /// Case and variant (`CASE/VARIANT`), path of the scene file, or another name, such as `conformance`.
     pub scene: String,
-    /// Scene keys that are changed.
+    /// Scene keys with changed values.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, Value>,
-    /// Solver name, or the manifest of an external program.
+    /// Solver name. In a sweep, the path of the manifest of an external program.
     pub solver: String,
     /// Resolution level as text.
     pub level: String,
-    /// Target quantity.
+    /// Quantity that the task determines, or a description of the task, such as `figures`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub what: String,
-    /// Number of runs; above 1 only for timed tasks.
+    /// Number of repetitions of the run; above 1 only for timed tasks.
     pub repetitions: u32,
     /// Expected time (s) of all repetitions.
     pub seconds: f64,
-    /// Group number: tasks of one group are consecutive, and one worker runs them in alternation.
+    /// Group number. Tasks of a group are consecutive, and one worker runs their repetitions in alternation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<u32>,
 }
 
-/// Reads tasks, one a line.
+/// Reads tasks from text, one per line.
 ///
 /// # Errors
-/// The error names the file, the line, what was expected and what was found.
+/// When a line is not a task, or its expected time is negative or not finite. The error names the file and the line.
 pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     let mut tasks = Vec::new();
     for (at, line) in text.lines().enumerate() {
         let task: Task = serde_json::from_str(line).map_err(|error| {
             let found = tamed(&error.to_string(), |_| false);
-            Fault::expected(format!("{}:{}", path.display(), at + 1), "a task as `--plan DIR` writes it", found)
+            Fault::expected(
+                format!("{}:{}", path.display(), at + 1),
+                "a task in the form that `--plan DIR` writes",
+                found,
+            )
         })?;
         if !(task.seconds.is_finite() && task.seconds >= 0.0) {
             let place = format!("{}:{}", path.display(), at + 1);
@@ -123,10 +127,10 @@ pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     Ok(tasks)
 }
 
-/// Returns tasks as lines of JSON.
+/// Returns tasks as JSON, one per line.
 ///
 /// # Errors
-/// When a task has no JSON form, which does not occur for tasks of this project.
+/// When a task cannot be written as JSON, which does not occur for tasks of this project.
 pub fn lines(tasks: &[Task]) -> Result<String, Fault> {
     let mut text = String::with_capacity(300 * tasks.len());
     for task in tasks {

@@ -1,4 +1,5 @@
-//! Worker: runs the tasks of a shard that are neither finished nor leased, until the whole shard is finished.
+//! Worker. It runs the tasks of a shard that are neither finished nor leased to another worker, until the whole shard
+//! is finished.
 
 use crate::fault::Fault;
 use crate::finished::FinishedTasks;
@@ -16,29 +17,29 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Number of heartbeats within the duration of a lease.
+/// Number of renewals of a lease within the time in which it expires.
 const BEATS: f64 = 12.0;
-/// Shortest interval between checks of other workers' leases.
+/// Shortest pause between two checks of the plan while other workers hold the remaining tasks.
 const LOOK: Duration = Duration::from_millis(500);
-/// Ratio of the pause between checks to the duration of a check. Checks take at most 1/20 of the time.
+/// Ratio of the pause between two checks of the plan to the duration of a check. Checks take at most 1/20 of the time.
 const SHARE: u32 = 20;
 
-/// Request for a worker.
+/// Shard that a worker runs, and treatment of failed tasks.
 #[derive(Clone, Debug)]
 pub struct WorkRequest {
     /// Shard to run.
     pub shard: Shard,
-    /// True to repeat failed tasks.
+    /// True to repeat failed and crashed tasks.
     pub again: bool,
 }
 
 /// Observer of progress, which can also stop the worker.
 pub trait Watch: Send + Sync {
-    /// Returns true if the worker should start further tasks.
+    /// Returns true if the worker may start further tasks.
     fn goes_on(&self) -> bool {
         true
     }
-    /// Returns false if an interrupt may have spoilt the results. They are then not written.
+    /// Returns false if an interrupt may have spoilt results. They are then not written.
     fn are_results_valid(&self) -> bool {
         true
     }
@@ -46,7 +47,7 @@ pub trait Watch: Send + Sync {
     fn begins(&self, _tasks: usize) {}
     /// Called when a task is finished.
     fn finished(&self) {}
-    /// Called when the remaining tasks are leased to other workers and this worker waits for them.
+    /// Called when this worker waits because the remaining tasks are leased to other workers.
     fn waits(&self, _others: &[LeaseContents]) {}
 }
 
@@ -57,17 +58,17 @@ impl Watch for () {}
 pub struct Summary {
     /// Number of tasks in the shard.
     pub tasks: usize,
-    /// Number of tasks that were finished before.
+    /// Number of tasks that needed no run when this worker started.
     pub before: usize,
     /// Number of tasks that this worker ran.
     pub done: usize,
-    /// Number of failed or crashed tasks among `done`.
+    /// Number of the tasks in `done` that failed or crashed.
     pub failed: usize,
-    /// Number of remaining tasks.
+    /// Number of tasks that still need a run.
     pub left: usize,
 }
 
-/// Result sink: receives the results of tasks and writes them to the log.
+/// Result sink, which receives the results of tasks and writes them to the log.
 pub struct ResultSink {
     log: Mutex<Log>,
     watch: Arc<dyn Watch>,
@@ -93,7 +94,7 @@ impl ResultSink {
         }
     }
 
-    /// Writes a result that is already JSON on one line.
+    /// Writes the result of a task that took `seconds`. The result is JSON on one line.
     pub fn leave_text(&self, id: Id, state: State, seconds: f64, json: &str) {
         if !self.watch.are_results_valid() {
             return;
@@ -111,7 +112,8 @@ impl ResultSink {
         self.watch.finished();
     }
 
-    /// Runs one task and writes its state and result. A panic counts as a crash of this task only.
+    /// Runs one task and writes its state and result. If `work` panics, the task is recorded as crashed, and the worker
+    /// continues.
     pub fn attempt<T: Serialize>(&self, id: Id, work: impl FnOnce() -> (State, T)) {
         let start = Instant::now();
         match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
@@ -120,7 +122,8 @@ impl ResultSink {
         }
     }
 
-    /// Records a task at which our program panicked.
+    /// Records a task in which our program panicked. `seconds` is its duration (s), and `reason` the value of the
+    /// panic.
     pub fn crashed(&self, id: Id, seconds: f64, reason: &(dyn std::any::Any + Send)) {
         self.leave_text(id, State::Crashed, seconds, &quoted(panic_words(reason)));
     }
@@ -147,7 +150,7 @@ pub type TaskFunction<'a> = &'a dyn Fn(&[&Task], &Arc<ResultSink>) -> Result<(),
 /// Runs a shard of a plan; `does` runs the tasks.
 ///
 /// # Errors
-/// When the disk rejects a write; results written before are kept.
+/// When the disk rejects a write. Results that were written before are kept.
 pub fn work(
     plan: &Plan,
     asked: &WorkRequest,
@@ -172,7 +175,8 @@ pub fn work(
     let mut is_first = true;
     loop {
         let (lease, others) = Lease::take(&plan.path, range.clone(), &contents, seconds)?;
-        // Results are read after the lease is taken, so that no other worker can finish a leased task meanwhile.
+        // Results are read after the lease is taken. Otherwise another worker could finish a task after the reading and
+        // before the lease.
         let look = Instant::now();
         let finished = FinishedTasks::read(&plan.path, false)?;
         let look = look.elapsed();
@@ -237,7 +241,7 @@ fn begin(plan: &Plan, worker: &Worker, watch: Arc<dyn Watch>) -> Result<ResultSi
     })
 }
 
-/// Runs a function while a second thread renews the lease.
+/// Runs `work` while a second thread renews the lease and syncs the results to the disk every `every` seconds.
 fn with_a_heart<T>(lease: Option<&Lease>, desk: &ResultSink, every: f64, work: impl FnOnce() -> T) -> T {
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -247,7 +251,7 @@ fn with_a_heart<T>(lease: Option<&Lease>, desk: &ResultSink, every: f64, work: i
                 std::thread::park_timeout(Duration::from_secs_f64(every));
                 if last.elapsed().as_secs_f64() >= every {
                     last = Instant::now();
-                    // A full disk is reported when results are written.
+                    // An error of the disk is reported when results are written.
                     let _ = lease.map(|lease| lease.renew(desk.done.load(Ordering::Relaxed)));
                     let _ = desk.sync();
                 }

@@ -1,4 +1,5 @@
-//! Files on disk: written completely or not at all, with locks and without leftovers of ended processes.
+//! Writing of files and directories completely or not at all, locks of directories, and removal of temporary files of
+//! ended processes.
 
 pub mod lock;
 pub mod machine;

@@ -1,4 +1,4 @@
-//! Lock of a directory: one owner at a time changes its files.
+//! Lock of a directory. Only one process at a time may change the files of the directory.
 
 use crate::machine;
 use crate::scratch::{prefix, without_its_path};
@@ -11,15 +11,16 @@ use tempfile::Builder;
 
 /// Name of the lock file.
 pub const LOCK: &str = ".grainbench-lock";
-/// Pause between two attempts.
+/// Pause between two attempts to lock.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Durations of a lock.
+/// Time limits of a lock.
 #[derive(Clone, Copy, Debug)]
 pub struct LockTerms {
-    /// Longest wait for another owner.
+    /// Longest wait for a lock that another process holds.
     pub wait: Duration,
-    /// Age at which a lock is abandoned if its process cannot be checked, because it is on another machine.
+    /// Age at which a lock counts as abandoned if its process cannot be checked, for example a process of another
+    /// machine.
     pub abandoned_after: Duration,
 }
 
@@ -28,7 +29,7 @@ pub struct LockTerms {
 pub struct Lock(PathBuf);
 
 impl Lock {
-    /// Locks a directory. A lock whose owner has ended is removed.
+    /// Locks a directory. The lock of a process that has ended is removed.
     ///
     /// # Errors
     /// When another process does not release the lock in time ([`io::ErrorKind::ResourceBusy`]), or when the directory
@@ -37,7 +38,8 @@ impl Lock {
         let path = directory.join(LOCK);
         let start = Instant::now();
         loop {
-            // The lock file contains its owner from the start. An empty file left by a crash could never be attributed.
+            // The lock file names its owner as soon as it exists. The owner of an empty file would be unknown after a
+            // crash.
             let mut file = Builder::new().prefix(&prefix()).tempfile_in(directory).map_err(without_its_path)?;
             file.write_all(owner().as_bytes())?;
             match file.persist_noclobber(&path).map_err(|error| error.error) {
@@ -61,12 +63,12 @@ impl Drop for Lock {
     }
 }
 
-/// Returns the process number and the machine in words.
+/// Returns the text of a lock file of this process: its number and its machine.
 fn owner() -> String {
     format!("process {} on {}\n", process::id(), machine::name())
 }
 
-/// Returns the process number and the machine that a lock file names.
+/// Returns the process number and the machine from the text of a lock file, or `None` if the text has another form.
 fn owner_in(text: &str) -> Option<(u32, &str)> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let ["process", number, "on", host] = words[..] else { return None };
@@ -76,16 +78,16 @@ fn owner_in(text: &str) -> Option<(u32, &str)> {
 fn busy(path: &Path) -> io::Error {
     let text = fs::read_to_string(path).unwrap_or_default();
     let process = owner_in(&text).map_or("of unknown number".to_owned(), |(number, _)| number.to_string());
-    io::Error::new(io::ErrorKind::ResourceBusy, format!("process {process} is writing here ({LOCK})"))
+    io::Error::new(io::ErrorKind::ResourceBusy, format!("process {process} is writing to this directory ({LOCK})"))
 }
 
-/// Removes an abandoned lock. Returns false if the lock has an owner.
+/// Removes an abandoned lock. Returns false if another process holds the lock, so that the caller must wait.
 fn remove_abandoned(path: &Path, after: Duration) -> bool {
     let Ok(text) = fs::read_to_string(path) else { return !path.exists() };
     if !is_abandoned(path, &text, after) {
         return false;
     }
-    // Another contender may have replaced the abandoned lock by its own since it was read. That one is put back.
+    // Another process may meanwhile have replaced the abandoned lock by its own lock, which is then moved back.
     let Ok(aside) = Builder::new().prefix(&prefix()).tempdir_in(path.parent().unwrap_or(Path::new("."))) else {
         return false;
     };
@@ -106,14 +108,14 @@ fn is_abandoned(path: &Path, text: &str, after: Duration) -> bool {
     age(path).is_some_and(|age| age > after)
 }
 
-/// Returns the age of a file by the clock of its file system; none if it does not exist.
+/// Returns the age of a file by the clock of its file system, or `None` if the file does not exist.
 fn age(path: &Path) -> Option<Duration> {
     let written = fs::metadata(path).ok()?.modified().ok()?;
     Some(time_of(path.parent()?).duration_since(written).unwrap_or_default())
 }
 
-/// Returns the time of a file system, or the time of the local clock if the folder is not writable. The clocks of
-/// machines that share a file system differ.
+/// Returns the time of a file system. The clocks of machines that share a file system may differ. If the folder is not
+/// writable, returns the time of the local clock.
 #[must_use]
 pub fn time_of(folder: &Path) -> SystemTime {
     let file = Builder::new().prefix(&prefix()).tempfile_in(folder);

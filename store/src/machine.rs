@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Returns the host name, with the node name of a batch system appended if it differs.
+/// Returns the host name. The node name of a batch system is appended if it differs.
 #[must_use]
 pub fn name() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").ok();
@@ -19,13 +19,14 @@ pub fn name() -> String {
     }
 }
 
-/// Returns the system load of the last minute (processes that want a core), or `None` if the system does not report it.
+/// Returns the average number of runnable processes in the last minute, or `None` if the system does not report it.
 #[must_use]
 pub fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
-/// Returns true if a process of this machine exists, or `None` if the system does not report it.
+/// Returns true if a process with this number exists on this machine, or `None` if the system does not report
+/// processes.
 #[must_use]
 pub fn runs(process: u32) -> Option<bool> {
     std::path::Path::new("/proc/self").exists().then(|| std::path::Path::new(&format!("/proc/{process}")).exists())

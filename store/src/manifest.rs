@@ -1,5 +1,5 @@
-//! Manifest of an output directory, with the names of its files. It also states if all files are from one run, because a
-//! process that ends while it replaces files leaves files of two runs.
+//! Manifest of an output directory: the names of the files that this program wrote, and a mark of an interrupted
+//! replacement. If a process ends while it replaces files, the directory contains files of two runs.
 
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -11,18 +11,18 @@ use crate::write::write_file;
 /// Name of the manifest file.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-/// Our files in a directory.
+/// Manifest: the files that this program wrote to a directory.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    /// True if all files are from one run.
+    /// False from the beginning of a replacement of files until all files are replaced.
     pub(crate) whole: bool,
-    /// The files, relative to the directory.
+    /// Paths of the files relative to the directory.
     pub(crate) files: Vec<PathBuf>,
 }
 
 impl Manifest {
-    /// Reads the manifest of a directory; none if there is none.
+    /// Reads the manifest of a directory; returns `None` if it is missing or invalid.
     pub(crate) fn read(directory: &Path) -> Option<Self> {
         serde_json::from_str(&fs::read_to_string(directory.join(MANIFEST)).ok()?).ok()
     }
@@ -33,10 +33,10 @@ impl Manifest {
     }
 }
 
-/// Rejects a directory that contains files of two runs.
+/// Checks that a directory does not contain files of two runs.
 ///
 /// # Errors
-/// When the manifest states that the files are of two runs.
+/// When the manifest states that the replacement of files was interrupted.
 pub fn refuse_mixed(directory: &Path) -> Result<(), String> {
     match Manifest::read(directory) {
         Some(Manifest { whole: false, .. }) => Err(format!(

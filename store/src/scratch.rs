@@ -1,5 +1,5 @@
-//! Temporary hidden directories and files. Their names contain the process that made them. Leftovers of ended processes
-//! are thus distinct from files in use, and from files of the user with similar names.
+//! Temporary hidden directories and files. Their names contain the number and the machine of the process that created
+//! them. Files of ended processes are thus distinguished from files in use and from files of the user.
 
 use crate::machine;
 use std::fs;
@@ -12,43 +12,43 @@ use tempfile::{Builder, TempDir};
 
 /// Start of the names of all our temporary files.
 const PREFIX: &str = ".grainbench-";
-/// Age after which a file from another machine counts as a leftover, because its process cannot be checked.
+/// Age after which a temporary file of another machine counts as left over, because its process cannot be checked.
 const PATIENCE: Duration = Duration::from_secs(24 * 3600);
 
-/// Creates a hidden directory on the same file system as `parent`, so that a rename out of it is atomic.
+/// Creates a hidden directory on the same file system as `parent`, so that files can be moved out of it atomically.
 ///
-/// Files are created inside it and not by `NamedTempFile`, so that they get the permissions of ordinary new files.
-/// Leftovers of ended processes in `parent` are removed first.
+/// Files in this directory should be created with `std::fs`, which gives them the permissions of ordinary new files,
+/// unlike `NamedTempFile`. Temporary files of ended processes in `parent` are removed first.
 ///
 /// # Errors
 /// When the directory cannot be created.
 pub fn temporary_in(parent: &Path) -> io::Result<TempDir> {
-    // Leftovers that cannot be removed do not prevent writing.
+    // A failed removal does not prevent writing.
     let _ = remove_leftovers(parent);
     Builder::new().prefix(&prefix()).tempdir_in(parent).map_err(without_its_path)
 }
 
-/// Returns true for the name of a temporary file or a lock.
+/// Returns true if a name is that of a temporary file or a lock file of this program.
 #[must_use]
 pub fn is_scratch(name: &std::ffi::OsStr) -> bool {
     name.to_string_lossy().starts_with(PREFIX)
 }
 
-/// Returns the start of the names of this process. A random suffix without a dash follows.
+/// Returns the prefix of the names of temporary files of this process. A random suffix without a dash follows.
 pub(crate) fn prefix() -> String {
     format!("{PREFIX}{}@{}-", process::id(), machine::name())
 }
 
-/// Returns the process and the machine that a name contains.
+/// Returns the process number and the machine from the name of a temporary file, or `None` for other names.
 fn owner_in(name: &str) -> Option<(u32, &str)> {
     let (number, rest) = name.strip_prefix(PREFIX)?.split_once('@')?;
     Some((number.parse().ok()?, rest.rsplit_once('-')?.0))
 }
 
-/// Removes leftovers of ended processes from a folder. Files whose names have another form remain.
+/// Removes temporary files and directories of ended processes from a folder. Other files remain.
 ///
 /// # Errors
-/// When the folder cannot be read, or when a leftover cannot be removed.
+/// When the folder cannot be read or a file cannot be removed.
 pub fn remove_leftovers(folder: &Path) -> io::Result<()> {
     // The parent of a bare file name is the current directory.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -60,13 +60,14 @@ pub fn remove_leftovers(folder: &Path) -> io::Result<()> {
             continue;
         }
         let swept = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-        // Another process may have removed it at the same time.
+        // Another process may have removed the file at the same time.
         swept.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     }
     Ok(())
 }
 
-/// Returns true if a process has ended. For a process on another machine, returns true if its file is old.
+/// Returns true if a process has ended. If the process cannot be checked, returns true if its file is older than
+/// [`PATIENCE`].
 fn is_gone(process: u32, host: &str, made: &Path) -> bool {
     if host == machine::name()
         && let Some(runs) = machine::runs(process)
@@ -76,7 +77,7 @@ fn is_gone(process: u32, host: &str, made: &Path) -> bool {
     age_of(made).is_some_and(|age| age > PATIENCE)
 }
 
-/// Returns the time since a file was changed.
+/// Returns the time since the last change of a file.
 fn age_of(path: &Path) -> Option<Duration> {
     SystemTime::now().duration_since(fs::metadata(path).ok()?.modified().ok()?).ok()
 }

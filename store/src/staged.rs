@@ -1,4 +1,4 @@
-//! Writing a directory of files completely or not at all.
+//! Writing of a directory of files completely or not at all.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,31 +13,32 @@ use crate::manifest::{MANIFEST, Manifest};
 use crate::scratch::{remove_leftovers, temporary_in};
 use crate::write::{WriteError, parent_of};
 
-/// Durations of the lock of a directory while its files are replaced.
+/// Time limits of the lock of a directory while its files are replaced.
 const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(10), abandoned_after: Duration::from_secs(24 * 3600) };
 
-/// A set of files that will be moved to a directory. They are written to a hidden directory and moved at
-/// [`StagedDir::commit`]. If the value is dropped before that, no file remains.
+/// Files that will be moved to a directory together. They are first written to a hidden directory, and
+/// [`StagedDir::commit`] moves them. If the value is dropped before that, no file remains.
 #[derive(Debug)]
 pub struct StagedDir {
     target: PathBuf,
-    /// Holds `new` with the new files and, during the commit, `old` with the files that they replace.
+    /// Temporary directory with the new files in `new` and, during the commit, backups of replaced files in `old`.
     holder: Option<TempDir>,
     /// Files in the order in which they were written.
     files: Vec<PathBuf>,
-    /// The same names, by which a file is found that was written twice.
+    /// Names of `files` as a set, to find a file that was written twice.
     names: BTreeSet<PathBuf>,
     /// Missing parents of the target that were created, outermost first. They are removed if nothing is committed.
     made: Vec<PathBuf>,
-    /// True if a manifest is written with the files.
+    /// True to write a manifest with the files.
     manifest: bool,
 }
 
 impl StagedDir {
-    /// Prepares output for `target`. The target and its parents need not exist.
+    /// Prepares output to `target`. The target and its parents need not exist.
     ///
     /// # Errors
-    /// When `target` is a file, or when no file can be written next to it.
+    /// When `target` is a file, or when no temporary directory can be created in it or, if it does not exist, next to
+    /// it.
     pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
         let target = target.into();
         let (files, names, made) = (Vec::new(), BTreeSet::new(), Vec::new());
@@ -50,7 +51,7 @@ impl StagedDir {
         if self.target.exists() && !self.target.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file with this name exists"));
         }
-        // An existing directory may be `.` or have a read-only parent, so its files are collected inside it.
+        // If the directory exists, new files are collected inside it, because it may be `.` or have a read-only parent.
         let parent = if self.target.is_dir() { self.target.as_path() } else { parent_of(&self.target) };
         let mut missing: Vec<_> = parent
             .ancestors()
@@ -62,8 +63,8 @@ impl StagedDir {
             fs::create_dir(&path)?;
             self.made.push(path);
         }
-        // Leftovers of an ended process are next to the directory if it was new then, otherwise inside it. Failure to
-        // remove them does not prevent writing.
+        // Temporary files of an ended process are next to the directory if the directory was new, otherwise inside it.
+        // A failed removal does not prevent writing.
         let _ = remove_leftovers(parent_of(&self.target));
         let _ = remove_leftovers(parent);
         let holder = temporary_in(parent)?;
@@ -72,14 +73,14 @@ impl StagedDir {
         Ok(())
     }
 
-    /// Writes no manifest, for directories whose files are listed in another file.
+    /// Turns the manifest off, for directories whose files are listed in another file.
     #[must_use]
     pub fn without_manifest(mut self) -> Self {
         self.manifest = false;
         self
     }
 
-    /// Returns the directory that the files will be moved to.
+    /// Returns the directory to which the files will be moved.
     #[must_use]
     pub fn target(&self) -> &Path {
         &self.target
@@ -88,15 +89,15 @@ impl StagedDir {
     /// Adds a file. `name` is relative to the directory and may contain subdirectories.
     ///
     /// # Errors
-    /// When `name` leads out of the directory, or when the file cannot be written.
+    /// When `name` leads out of the directory or the file cannot be written.
     pub fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
         self.write_with(name, |out| io::Write::write_all(out, bytes.as_ref()))
     }
 
-    /// Adds a file that `fill` writes piece by piece, for content that is too large for memory.
+    /// Adds a file whose content `fill` writes in parts, for content that is too large for memory.
     ///
     /// # Errors
-    /// When `name` leads out of the directory, when `fill` fails, or when the file cannot be written.
+    /// When `name` leads out of the directory, `fill` fails, or the file cannot be written.
     pub fn write_with<F>(&mut self, name: impl AsRef<Path>, fill: F) -> Result<(), WriteError>
     where
         F: FnOnce(&mut io::BufWriter<fs::File>) -> io::Result<()>,
@@ -106,7 +107,7 @@ impl StagedDir {
         let write = || -> io::Result<()> {
             let inside = name.components().all(|part| matches!(part, Component::Normal(_)));
             if !inside || name.as_os_str().is_empty() {
-                return Err(io::Error::new(io::ErrorKind::InvalidInput, "the name leads out of the output directory"));
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, "the path leads out of the output directory"));
             }
             let path = self.staging()?.join("new").join(name);
             fs::create_dir_all(parent_of(&path))?;
@@ -121,11 +122,11 @@ impl StagedDir {
         Ok(())
     }
 
-    /// Adds a file that exists on the same disk, as a hard link if the disk supports it. The file must not change after
-    /// that.
+    /// Adds a file that exists on the same disk, as a hard link if the disk supports links, otherwise as a copy. The
+    /// file must not change afterwards.
     ///
     /// # Errors
-    /// When `name` leads out of the directory, or when the file cannot be linked or copied.
+    /// When `name` leads out of the directory or the file cannot be linked or copied.
     pub fn link(&mut self, name: impl AsRef<Path>, from: &Path) -> Result<(), WriteError> {
         let name = name.as_ref();
         self.write(name, "")?;
@@ -137,28 +138,28 @@ impl StagedDir {
         place().map_err(|source| WriteError::new(self.target.join(name), source))
     }
 
-    /// Moves all files to the directory. Files of the same name are replaced, files of an earlier run are removed, and
-    /// other files stay unchanged.
+    /// Moves all files to the directory. Files of the same name are replaced. Files of an earlier run that the manifest
+    /// lists are removed. Other files stay unchanged.
     ///
     /// If a file cannot be moved, the directory is restored. During the commit the manifest states that the directory
-    /// is mixed. A lock excludes other processes.
+    /// contains files of two runs. A lock excludes other processes meanwhile.
     ///
     /// # Errors
-    /// When a file cannot be moved; all files are then unchanged.
+    /// When a file cannot be moved, or when it would replace a file of another program. All files are then unchanged.
     pub fn commit(self) -> Result<(), WriteError> {
         self.put_in_place(false, &mut || {})
     }
 
-    /// Moves all files to the directory and keeps the files of an earlier run, to which they are added.
+    /// Moves all files to the directory. Files of an earlier run with other names are kept and stay in the manifest.
     ///
     /// # Errors
-    /// When a file cannot be moved; all files are then unchanged.
+    /// When a file cannot be moved, or when it would replace a file of another program. All files are then unchanged.
     pub fn commit_beside(self) -> Result<(), WriteError> {
         self.put_in_place(true, &mut || {})
     }
 
-    /// Moves all files to the directory. `after` is called after each operation on the disk, for tests that end the
-    /// process there.
+    /// Moves all files to the directory. If `keep` is true, files of an earlier run are kept. `after` is called after
+    /// each operation on the disk; tests end the process there.
     fn put_in_place(mut self, keep: bool, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
         let at_target = |source| WriteError::new(&self.target, source);
@@ -192,7 +193,7 @@ impl StagedDir {
             manifest.files.extend(stale.iter().cloned());
         }
         let both = stood.iter().chain(&self.files).cloned().collect();
-        // Both manifests are written before a file is moved, because the disk may be full afterwards.
+        // Both manifests are written before files are moved, because the disk may be full later.
         let [mixed, whole] = ["mixed", "whole"].map(|name| holder.join(name));
         for (folder, manifest) in [(&mixed, &Manifest { whole: false, files: both }), (&whole, &manifest)] {
             fs::create_dir(folder).and_then(|()| manifest.write(folder)).map_err(at_target)?;
@@ -211,7 +212,8 @@ impl StagedDir {
         Ok(())
     }
 
-    /// Refuses to replace files of other programs, and to follow links inside the directory.
+    /// Checks that no page or manifest of another program is replaced, and that no folder of the new files is a
+    /// symbolic link.
     fn refuse_others(&self) -> Result<(), WriteError> {
         if self.manifest {
             refuse_foreign(&self.target, &[MANIFEST])?;
@@ -234,16 +236,16 @@ impl StagedDir {
     }
 }
 
-/// Moves of files into and out of a directory, which an error undoes.
+/// Moves of files into and out of a directory, which are undone after an error.
 struct Moves<'a> {
     target: &'a Path,
     holder: &'a Path,
-    /// Path of each changed file, and path of its backup if there was a file.
+    /// Path of each changed file and, if a file was replaced or removed, path of its backup.
     done: Vec<(PathBuf, Option<PathBuf>)>,
 }
 
 impl Moves<'_> {
-    /// Makes moves, and undoes all of them in the reverse order if one fails.
+    /// Calls `moves`. If one of its moves fails, undoes all of them in reverse order.
     fn undone_by_error(&mut self, moves: impl FnOnce(&mut Self) -> Result<(), WriteError>) -> Result<(), WriteError> {
         let result = moves(self);
         if result.is_err() {
@@ -288,13 +290,13 @@ impl Moves<'_> {
     }
 }
 
-/// Page of a report.
+/// Name of the page of a report.
 const PAGE: &str = "index.html";
 /// Start of the title of all pages of this project.
 const TITLE: &str = "<title>grainbench";
 
-/// Refuses a directory in which a page or a manifest of another program would be replaced. Files of this project are
-/// recognized by their content.
+/// Checks that a directory contains no page and no manifest of another program, which would be replaced. Files of this
+/// program are recognized by their content.
 ///
 /// # Errors
 /// When the directory contains such a file of another program.
@@ -329,7 +331,7 @@ fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
     paths.into_iter().find(|path| fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink()))
 }
 
-/// Removes the folders of a file of an earlier run that have become empty.
+/// Removes the folders that contained a file of an earlier run, if they are empty.
 fn remove_empty_folders(directory: &Path, name: &Path) {
     let is_inside = name.components().all(|part| matches!(part, Component::Normal(_)));
     let is_linked = name.parent().is_some_and(|folder| link_on_the_way(directory, folder).is_some());
@@ -341,7 +343,7 @@ fn remove_empty_folders(directory: &Path, name: &Path) {
     }
 }
 
-/// Moves `new` to `place`. Returns the path of the backup if there was a file.
+/// Moves `new` to `place`. If `place` exists, makes a backup at `old` and returns its path.
 fn replace(new: &Path, place: &Path, old: &Path, after: &mut dyn FnMut()) -> io::Result<Option<PathBuf>> {
     fs::create_dir_all(parent_of(place))?;
     after();
@@ -385,8 +387,8 @@ mod tests {
         assert_eq!(fs::read_dir(dir.path().join("deep")).unwrap().count(), 1);
     }
 
-    /// A long run writes one file per snapshot, and a second run replaces all of them. With a search through all names
-    /// for each file, this test would take minutes.
+    /// A long run writes one file per snapshot, and a second run replaces all files. If each file were searched among
+    /// all names, this test would take minutes.
     #[test]
     fn many_files_are_written_in_proportion() {
         let dir = tempfile::tempdir().unwrap();
@@ -458,7 +460,8 @@ mod tests {
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
     }
 
-    /// The last move of a commit fails, as on a full disk: the directory is as before, and the next commit succeeds.
+    /// The last move of a commit fails, as on a full disk. The directory is then unchanged, and the next commit
+    /// succeeds.
     #[test]
     fn a_commit_whose_manifest_cannot_be_moved_undoes_itself() {
         let dir = tempfile::tempdir().unwrap();
@@ -475,7 +478,7 @@ mod tests {
         assert!(crate::refuse_mixed(&target).is_ok());
     }
 
-    /// A folder of the user remains, although a manifest lists its name as a file.
+    /// A folder of the user is kept, although the manifest lists its name as a file of this program.
     #[test]
     fn folders_are_not_removed_as_files() {
         let dir = tempfile::tempdir().unwrap();
@@ -497,7 +500,7 @@ mod tests {
         assert!(message.contains("a file with this name exists"), "{message}");
     }
 
-    /// A link inside the directory is neither written through nor removed through.
+    /// Files behind a symbolic link in the directory are neither replaced nor removed.
     #[cfg(unix)]
     #[test]
     fn links_are_not_followed() {
@@ -543,7 +546,7 @@ mod tests {
         }
     }
 
-    /// Returns the files of a run and their contents.
+    /// Returns the file names of the run `word` (`old` or another), each with `word` as the content.
     fn run_of(word: &str) -> Vec<(String, String)> {
         let names: &[&str] = match word {
             "old" => &["a.txt", "figures/1.svg", "figures/2.svg", "frames/1.vtk"],
@@ -558,7 +561,7 @@ mod tests {
         staged
     }
 
-    /// Returns our files in a directory and their contents, without the manifest and hidden files.
+    /// Returns the files of a directory and their contents, without the manifest, `mine.txt` and hidden files.
     fn found_in(folder: &Path) -> Vec<(String, String)> {
         let (mut found, mut open) = (Vec::new(), vec![folder.to_path_buf()]);
         while let Some(path) = open.pop() {
@@ -576,19 +579,19 @@ mod tests {
         found
     }
 
-    /// Environment variables of the child process of the test below: its output directory, and the number of operations
-    /// after which it ends.
+    /// Environment variable with the output directory for the child process of the test below.
     const PLACE: &str = "GRAINBENCH_TEST_STAGED_PLACE";
+    /// Environment variable with the number of operations after which the child process ends.
     const OPERATIONS: &str = "GRAINBENCH_TEST_STAGED_OPERATIONS";
 
-    /// A process ends after each disk operation of a commit. Its directory is then unchanged, or complete and new, or
-    /// states that it is mixed. The next run leaves it complete, with no leftovers.
+    /// For each disk operation of a commit, a process ends right after it. Its directory is then unchanged, completely
+    /// new, or marked as mixed. The next run replaces all files and removes temporary files.
     #[test]
     fn wherever_a_commit_is_cut_off_no_mixed_directory_is_taken_for_whole() {
         if let (Ok(place), Ok(last)) = (std::env::var(PLACE), std::env::var(OPERATIONS)) {
             let (last, mut done) = (last.parse::<u32>().unwrap(), 0);
             let staged = staged(Path::new(&place), "new");
-            // The exit drops no values, so that nothing is cleaned up.
+            // `exit` drops no values, so that no temporary file is removed.
             let done = staged.put_in_place(false, &mut || {
                 done += 1;
                 if done == last {

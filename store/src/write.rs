@@ -1,4 +1,4 @@
-//! Writing a file completely or not at all.
+//! Writing of files. Each file is written completely or not at all.
 
 use std::fs;
 use std::io;
@@ -20,7 +20,7 @@ pub struct WriteError {
 }
 
 impl WriteError {
-    /// Returns an error about `path`.
+    /// Returns the error of writing `path`.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, source: io::Error) -> Self {
         Self { path: path.into(), source }
@@ -44,8 +44,8 @@ pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(),
     write().map_err(|source| WriteError::new(path, source))
 }
 
-/// Writes many files to one folder, each completely or not at all. One hidden directory serves all files, so that the
-/// folder is searched for leftovers only once.
+/// Writer of many files to one folder, each completely or not at all. All files share one temporary directory, so that
+/// temporary files of ended processes are searched only once.
 #[derive(Debug)]
 pub struct FolderWriter {
     folder: PathBuf,
@@ -70,14 +70,14 @@ impl FolderWriter {
         let (path, staged) = (self.folder.join(name), self.beside.path().join(name));
         let written = fs::write(&staged, bytes.as_ref()).and_then(|()| fs::rename(&staged, &path));
         written.map_err(|source| {
-            // A partly written file would occupy space that other files need.
+            // An incomplete file would occupy space that other files need.
             let _ = fs::remove_file(&staged);
             WriteError::new(path, source)
         })
     }
 }
 
-/// Returns the directory that contains `path`; for a bare file name, the current directory.
+/// Returns the directory that contains `path`. For a bare file name this is the current directory.
 #[must_use]
 pub fn parent_of(path: &Path) -> &Path {
     match path.parent() {

@@ -1,11 +1,11 @@
-//! Processor time, which other running programs disturb less than wall-clock time.
+//! Processor time. Other running programs disturb it less than wall-clock time.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 /// Returns the processor time (s) of this process and of its child processes that have ended.
 ///
-/// If the system does not report it, returns the wall-clock time since the first call.
+/// If the system does not report processor times, returns the wall-clock time since the first call.
 #[must_use]
 pub fn cpu_seconds() -> f64 {
     #[cfg(unix)]
@@ -27,16 +27,16 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Measures the mean processor time (s) of a fixed reference task. The task is repeated for `lasting` seconds, at least
+/// Measures the mean processor time of a fixed reference task (s). The task is repeated for `lasting` seconds, at least
 /// once.
 ///
-/// Changes of the solvers do not affect the reference task. Times of two sessions are divided by it before they are
-/// compared, so that a temporarily slow machine is not mistaken for a slow program.
+/// The reference task does not depend on the solvers. Times of two sessions are divided by the reference time before
+/// they are compared, so that a slow machine is not mistaken for a slow program.
 ///
-/// A program on the other thread of the same core slows solvers down by half for some milliseconds. Dependent
-/// arithmetic is slowed down by only a tenth; searching and branching are slowed down like solvers. In a thousand pairs
-/// of alternating runs the logarithms of both times had a slope of .99. Their ratio had a spread of 7 %, while the
-/// times alone had 20 to 30 %.
+/// The task searches and branches, because other programs slow down such code as much as solvers. If a program runs on the
+/// second thread of the core, the code is slowed down by half for some milliseconds. Dependent arithmetic is slowed down by
+/// only a tenth. For a thousand pairs of alternating runs of solver and reference task, a line through the logarithms of
+/// both times had a slope of 0.99. The ratio of the times varied by 7 %, the times alone by 20 to 30 %.
 #[must_use]
 pub fn reference_seconds(lasting: f64) -> f64 {
     let start = cpu_seconds();
@@ -60,7 +60,7 @@ pub struct TimedResult<T> {
     pub cpu: f64,
     /// Wall-clock time (s).
     pub wall: f64,
-    /// Mean time of the reference task before and after (s).
+    /// Mean of the times of the reference task before and after the timed task (s).
     pub reference: f64,
 }
 
@@ -73,7 +73,7 @@ pub fn clocked<T>(lasting: f64, work: impl FnOnce() -> T) -> TimedResult<T> {
     TimedResult { done, cpu, wall, reference: 0.5 * (before + reference_seconds(lasting)) }
 }
 
-/// Looks up keys in a hash table that is two thirds full and branches on the result, as a solver does with contacts.
+/// Looks up keys in a hash table that is two thirds full and branches on the result, as a solver does for contacts.
 ///
 /// This takes about a tenth of a millisecond.
 fn searches(scale: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Identifiers of runs and tasks: hashes of sixty-four hexadecimal digits.
+//! Identifiers of runs and tasks: hashes of 64 hexadecimal digits.
 
 use grainbench_scene::checkpoint::fingerprint;
 use grainbench_scene::scene::Scene;
@@ -6,7 +6,7 @@ use grainbench_scene::solver::Resolution;
 use std::fs;
 use std::path::Path;
 
-/// Returns the hash of a file's content, or of its path if it cannot be read.
+/// Returns the hash of a file's content. If the file cannot be read, returns the hash of its path.
 #[must_use]
 pub fn of_file(path: &Path) -> String {
     match fs::read(path) {
@@ -21,18 +21,19 @@ pub fn of_this_program() -> String {
     std::env::current_exe().map_or_else(|_| "unknown".to_owned(), |path| of_file(&path))
 }
 
-/// Returns the hash of a run: program, solver, scene, resolution and evaluated quantity.
+/// Returns the hash of a run from program, solver, scene, resolution and `read`, which describes the evaluated quantity or
+/// other conditions of the run.
 #[must_use]
 pub fn of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> String {
     of_words(program, &[solver, fingerprint(scene).to_hex().as_str(), &format!("{resolution:?}"), read])
 }
 
-/// Returns the hash of a task that is described by words.
+/// Returns the hash of a task from the program and a description of the task.
 #[must_use]
 pub fn of_words(program: &str, words: &[&str]) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in std::iter::once(&program).chain(words) {
-        // The length before each part prevents two lists from having the same byte sequence.
+        // Each part follows its length, so that two different lists never have the same byte sequence.
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }

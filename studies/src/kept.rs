@@ -1,4 +1,4 @@
-//! Stored studies of `cost`, `stability` and `effects` with `--update-stored`, in this crate's folder.
+//! Stored results of the three studies, in the folder `kept` of this crate. The option `--update-stored` writes them.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ pub const STABILITY: &str = include_str!("../kept/stability.json");
 /// Stored result of `effects --update-stored`.
 pub const EFFECTS: &str = include_str!("../kept/effects.json");
 
-/// Returns the path of a stored study.
+/// Returns the path of the stored result of a study.
 #[must_use]
 pub fn place(study: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("kept").join(format!("{study}.json"))

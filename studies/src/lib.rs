@@ -1,9 +1,9 @@
-//! The three studies: cost against accuracy ([`cost`]), stability ([`stability`]) and the influence of each effect
+//! Three studies: cost against accuracy ([`cost`]), stability ([`stability`]) and the influence of each effect
 //! ([`effects`]).
 //!
-//! Each study stores every finished item in a [`result_cache`] and reuses it, so that an interrupted study continues
-//! where it stopped. The throughput benchmark ([`race`]) compares solvers; its timings are meaningful only in relation
-//! to each other, so it does not use the cache.
+//! Each study stores finished items in a [`result_cache`], so that an interrupted study can be continued. The
+//! throughput benchmark ([`race`]) compares solvers. It does not use the cache, because its timings are comparable only
+//! within one run.
 
 pub mod clock;
 pub mod cost;
@@ -19,9 +19,9 @@ pub mod stability;
 pub trait ProgressObserver {
     /// Called when an item is started.
     fn now(&mut self, _piece: &str) {}
-    /// Called when an item is finished; `reused` items come from the result cache.
+    /// Called when an item is finished. `reused` is true for items from the result cache.
     fn done(&mut self, _reused: bool) {}
 }
 
-/// An observer that ignores all progress.
+/// Observer that ignores all progress.
 impl ProgressObserver for () {}

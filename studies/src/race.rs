@@ -1,9 +1,9 @@
 //! Throughput benchmark of solvers and external programs on the same scenes. It reports particle-steps per second of
 //! processor time, and ratios of these rates.
 //!
-//! A timing is the processor time of a long run minus that of a short run, so that start, set-up and output cancel. In
-//! every round each solver is timed once, and rates are divided within the round. A temporarily slow machine affects
-//! all solvers of a round alike.
+//! A timing is the processor time of a long run minus that of a short run, so that start-up and output cancel. In every
+//! round each solver is timed once, and ratios of rates are taken within the round. A temporarily slow machine
+//! therefore affects all solvers of a round alike.
 
 use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Shortest timing (s of processor time) that is used; a shorter difference of two times is noise.
+/// Shortest timing that is used (s of processor time). A shorter difference of two times is noise.
 const SHORTEST: f64 = 0.05;
 
 /// Benchmark scene with its resolution and step counts.
@@ -26,23 +26,23 @@ const SHORTEST: f64 = 0.05;
 pub struct Track {
     /// Name of the benchmark scene.
     pub name: String,
-    /// The scene.
+    /// Scene of the runs. The benchmark replaces its duration, probes and output.
     pub scene: Scene,
     /// Time step of all runs.
     pub resolution: Resolution,
-    /// Steps of the short and of the long run.
+    /// Numbers of steps of the short and of the long run.
     pub steps: [u64; 2],
 }
 
-/// A benchmarked solver and the solver that it is compared with.
+/// Benchmarked solver and name of the solver with which it is compared.
 pub struct BenchmarkedSolver {
-    /// The solver.
+    /// Solver whose rate is measured.
     pub solver: Arc<dyn Solver>,
     /// Name of the solver by whose rate this solver's rate is divided.
     pub against: &'static str,
     /// True for a program that keeps running between runs.
     ///
-    /// Its processor time is unknown before it ends; with one thread, wall time is used instead.
+    /// Its processor time is unknown before it ends, so its wall time with one thread is used instead.
     pub stays: bool,
 }
 
@@ -53,7 +53,7 @@ pub struct SceneThroughput {
     pub track: String,
     /// Number of grains.
     pub grains: usize,
-    /// Steps of the short and of the long run.
+    /// Numbers of steps of the short and of the long run.
     pub steps: [u64; 2],
     /// Results in the order of the solvers.
     pub results: Vec<SolverThroughput>,
@@ -62,17 +62,18 @@ pub struct SceneThroughput {
 /// Result of one solver.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SolverThroughput {
-    /// The solver.
+    /// Name of the solver.
     pub solver: String,
     /// Version, if the solver reports one.
     pub version: Option<String>,
-    /// Millions of particle-steps per second of processor time, one for each timing.
+    /// Millions of particle-steps per second of processor time, for each round.
     pub rates: Vec<f64>,
-    /// Ratios of the rate to that of the compared solver, one for each timing.
+    /// Ratio of the rate to the rate of the reference solver, for each round.
     pub ratios: Vec<f64>,
-    /// Name of the compared solver.
+    /// Name of the reference solver, whose rates are the denominators of `ratios`.
     pub against: String,
-    /// Kinetic energy of the grains after the short run (J). Equal energies show that the same scene was run.
+    /// Kinetic energy of the grains at the end of the short run (J). Equal energies show that solvers ran the same
+    /// scene.
     pub kinetic_energy: Option<f64>,
     /// Reason why the solver has no rates.
     pub absent: Option<String>,
@@ -88,7 +89,7 @@ pub struct ThroughputBenchmark {
 }
 
 impl ThroughputBenchmark {
-    /// Returns the benchmark as a table with median, minimum and maximum of the timings.
+    /// Returns the benchmark as a Markdown table with median, minimum and maximum over the rounds.
     #[must_use]
     pub fn table(&self) -> String {
         let shown = |values: &[f64], digits: usize| {
@@ -98,9 +99,10 @@ impl ThroughputBenchmark {
             )
         };
         let mut text =
-            "Million particle-steps in a second of processor time, of a long run less that of a short one; racers \
-                        took turns, and ratios are of the same round. Median [least..largest].\n\n\
-                        | scene | grains | steps | racer | rate | over the program | kinetic energy apart |\n\
+            "Rates are in million particle-steps per second of processor time, from the difference of a long and a \
+                        short run. The solvers took turns, and a ratio compares two runs of the same round. Entries are \
+                        median [smallest..largest].\n\n\
+                        | scene | grains | steps | solver | rate | ratio to the program | difference in kinetic energy |\n\
                         |---|---|---|---|---|---|---|\n"
                 .to_owned();
         for heat in &self.heats {
@@ -131,7 +133,7 @@ impl ThroughputBenchmark {
     }
 }
 
-/// Returns the scene with a given number of steps, with only the energy at its end as output.
+/// Returns the scene with a given number of steps. Its only output is the energy at the end.
 fn for_steps(scene: &Scene, steps: u64) -> Scene {
     Scene {
         duration: Duration::Cycles(steps),
@@ -145,7 +147,8 @@ fn for_steps(scene: &Scene, steps: u64) -> Scene {
     }
 }
 
-/// Returns the processor time of a run (s), the kinetic energy at its end (J) and the version of the program.
+/// Returns the processor time of a run (s), the kinetic energy at its end (J) and the version of the program. For a program
+/// that keeps running between runs, the time is the wall-clock time.
 fn run(racer: &BenchmarkedSolver, track: &Track, steps: u64) -> Result<(f64, Option<f64>, Option<String>), RunError> {
     let scene = for_steps(&track.scene, steps);
     let begun = cpu_seconds();
@@ -156,7 +159,7 @@ fn run(racer: &BenchmarkedSolver, track: &Track, steps: u64) -> Result<(f64, Opt
     Ok((spent, energy, record.provenance.options.into_iter().next()))
 }
 
-/// Runs all solvers on a benchmark scene, `rounds` times in turn.
+/// Times all solvers on a benchmark scene in turn, in a number of rounds.
 pub fn heat(
     track: &Track,
     racers: &[BenchmarkedSolver],
@@ -187,7 +190,7 @@ pub fn heat(
                 };
                 match lap(raced) {
                     Ok(seconds) if seconds < SHORTEST => {
-                        raced.absent = Some(format!("too few steps: a lap took {:.0} ms", 1e3 * seconds));
+                        raced.absent = Some(format!("too few steps: a run took {:.0} ms", 1e3 * seconds));
                     }
                     Ok(seconds) => raced.rates.push(1e-6 * particle_steps / seconds),
                     Err(reason) => raced.absent = Some(reason.to_string()),
@@ -206,7 +209,8 @@ pub fn heat(
     SceneThroughput { track: track.name.clone(), grains: track.scene.grains.len(), steps: track.steps, results }
 }
 
-/// Returns the relative difference of the kinetic energies of a solver and the compared solver.
+/// Returns the relative difference of the kinetic energies of a solver and its reference solver, or `None` if one of the
+/// energies is unknown.
 #[must_use]
 pub fn apart(heat: &SceneThroughput, raced: &SolverThroughput) -> Option<f64> {
     let other = heat.results.iter().find(|other| other.solver == raced.against)?;

@@ -1,4 +1,4 @@
-//! Cache of finished results. Each result has its own file, whose name is a hash of the task.
+//! Cache of finished results. Each result has its own file, whose name is the hash of the task.
 
 use grainbench_store::{WriteError, remove_leftovers, write_file};
 use serde::Serialize;
@@ -7,12 +7,12 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Returns the stored text of a name.
+/// Function that returns the stored text of a name.
 type CacheReader = Box<dyn Fn(&str) -> Option<String> + Send + Sync>;
-/// Stores a text under a name.
+/// Function that stores a text under a name.
 type CacheWriter = Box<dyn Fn(&str, &str) -> Result<(), WriteError> + Send + Sync>;
 
-/// Cache of finished results; it may be disabled.
+/// Cache of finished results. A disabled cache stores nothing.
 pub struct ResultCache {
     place: Place,
 }
@@ -20,34 +20,34 @@ pub struct ResultCache {
 /// Storage of a result cache.
 enum Place {
     Nowhere,
-    /// A folder, and true if existing results are ignored.
+    /// Folder, and true to ignore existing results.
     Folder(PathBuf, bool),
-    /// Storage provided by the caller.
+    /// Functions of the caller that read and store texts.
     Elsewhere(CacheReader, CacheWriter),
 }
 
 impl ResultCache {
-    /// Opens a cache in a folder, which is created if needed; with `fresh`, existing results are ignored.
+    /// Opens a cache in a folder and creates the folder if necessary. Existing results are ignored if `fresh` is true.
     ///
     /// # Errors
     /// When the folder cannot be created.
     pub fn open(folder: &Path, fresh: bool) -> Result<Self, WriteError> {
         fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        // Removes temporary files of killed programs, here and in the directory of the report. Files with their final
-        // name are complete.
+        // Removes temporary files of killed programs from the folder and from its parent, which is the directory of the
+        // report. Files with final names are complete.
         for place in [Some(folder), folder.parent()].into_iter().flatten() {
             remove_leftovers(place).map_err(|source| WriteError::new(place, source))?;
         }
         Ok(Self { place: Place::Folder(folder.to_owned(), fresh) })
     }
 
-    /// Returns a disabled cache, which stores and finds nothing.
+    /// Returns a disabled cache.
     #[must_use]
     pub const fn none() -> Self {
         Self { place: Place::Nowhere }
     }
 
-    /// Returns a cache whose texts are read and stored by the given functions.
+    /// Returns a cache that reads and stores texts by the given functions.
     #[must_use]
     pub fn elsewhere(
         gives: impl Fn(&str) -> Option<String> + Send + Sync + 'static,
@@ -56,7 +56,7 @@ impl ResultCache {
         Self { place: Place::Elsewhere(Box::new(gives), Box::new(takes)) }
     }
 
-    /// Returns the result of a name if it exists and can be read. An unreadable result is computed again.
+    /// Returns the result that is stored under a name, or `None` if there is no readable result.
     #[must_use]
     pub fn take<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         let text = match &self.place {
@@ -67,7 +67,7 @@ impl ResultCache {
         serde_json::from_str(&text).ok()
     }
 
-    /// Stores a result atomically.
+    /// Stores a result under a name. The file is written completely or not at all.
     ///
     /// # Errors
     /// When the disk rejects the write.

@@ -1,4 +1,5 @@
-//! Cache of finished runs, outside the source tree and shared by all commands. It stores records and no verdicts.
+//! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes
+//! of claims.
 //!
 //! The key of a run is a hash of its scene, solver, defect, resolution, SIMD backend and the sources that the solver
 //! was built from. A changed case or solver therefore repeats only the affected runs. A file that is damaged or holds
@@ -23,14 +24,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, SystemTime};
 
-/// Shortest run (s) that is cached; shorter runs are faster than reading a file.
+/// Shortest run that is cached (s). Shorter runs are faster than reading a file.
 const LEAST: f64 = 2e-3;
-/// Largest record (bytes) that is cached; a larger record would displace too many others.
+/// Largest record that is cached (bytes). A larger record would displace too many others.
 const LARGEST: usize = 256 << 20;
-/// File extension.
+/// File extension of cached runs.
 const ENDING: &str = "run";
 
-/// Returns the hash of the sources of a solver, or `None` for an external solver.
+/// Function that returns the hash of the sources of a solver, or `None` for another program.
 pub type Edition = fn(&str) -> Option<String>;
 
 /// Folder of finished runs.
@@ -47,7 +48,8 @@ pub struct RunCache {
 }
 
 impl RunCache {
-    /// Opens the cache in a folder, which is created if needed; with `fresh`, existing files are ignored.
+    /// Opens the cache in a folder and creates the folder if necessary. `most` is the maximum size of all files
+    /// (bytes). Existing files are ignored if `fresh` is true.
     ///
     /// # Errors
     /// When the folder cannot be created.
@@ -59,7 +61,7 @@ impl RunCache {
         Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
     }
 
-    /// Returns the folder.
+    /// Returns the folder of the cache.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -71,7 +73,7 @@ impl RunCache {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// Returns the key of a run, or `None` if it is not cached.
+    /// Returns the key of a run, or `None` for other programs, whose runs are not cached.
     fn name(&self, solver: &str, defect: Option<Defect>, scene: &Scene, resolution: &Resolution) -> Option<String> {
         let program = (self.edition)(solver)?;
         Some(identity::of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
@@ -81,7 +83,7 @@ impl RunCache {
         self.folder.join(format!("{name}.{ENDING}"))
     }
 
-    /// Returns the record of a key if the file is complete.
+    /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
     fn take(&self, name: &str) -> Option<Record> {
         if self.fresh {
             return None;
@@ -89,13 +91,14 @@ impl RunCache {
         let path = self.path(name);
         let record = kept_record::from_bytes(name, &fs::read(&path).ok()?)?;
         self.taken.fetch_add(1, Ordering::Relaxed);
-        // The file time marks the last use, because the oldest files are removed first. If it cannot be set, the time
-        // of writing counts.
+        // The file time is the time of the last use, because the least recently used files are removed first. If it
+        // cannot be set, it stays the time of writing.
         let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
         Some(record)
     }
 
-    /// Stores a record. Write errors are ignored, because the run can be repeated.
+    /// Stores a record, unless the run is too short or the record too large. Write errors are ignored, because the run
+    /// can be repeated.
     fn put(&self, name: &str, record: &Record) {
         if record.cost.wall_seconds < LEAST {
             return;
@@ -108,7 +111,7 @@ impl RunCache {
         }
     }
 
-    /// Removes the least recently used files until the rest fits the maximum size.
+    /// Removes the least recently used files until the remaining files do not exceed the maximum size.
     pub fn make_room(&self) {
         let file_entry = |entry: fs::DirEntry| {
             let is_one = entry.path().extension().is_some_and(|ending| ending == ENDING);
@@ -202,7 +205,7 @@ impl<S: Solvers> Solvers for CachingSolvers<S> {
     }
 }
 
-/// A solver with a cache of finished runs.
+/// Solver with a cache of finished runs.
 struct CachingSolver {
     solver: Arc<dyn Solver>,
     name: String,
@@ -257,7 +260,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
-    /// With three files of a hundred bytes and room for two and a half, the least recently used run is removed. Other
+    /// There are three files of 100 bytes and room for 250 bytes. The least recently used run is removed, and other
     /// files are kept.
     #[test]
     fn the_longest_unused_makes_room() {

@@ -1,4 +1,4 @@
-//! Sweep points of a design.
+//! Sweep points, generated from the design of a sweep file.
 
 use super::file::{Design, Factor, File, Spacing};
 use crate::fault::Fault;
@@ -10,10 +10,10 @@ use std::path::Path;
 /// Maximum number of points, summed over all solvers and levels.
 pub const MOST: usize = 10_000_000;
 
-/// Returns the factor values of each point; factors are in the order of the file.
+/// Returns the factor values of each sweep point. Factors are in the order of the file.
 ///
 /// # Errors
-/// The error names the key, what was expected and what was found.
+/// When a factor is invalid or does not fit the design. The error names the key, the expected and the actual content.
 pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
     let wrong = |key: String, expected: &str, found: String| {
         Err(Fault::expected(format!("{}: {key}", path.display()), expected, found))
@@ -21,7 +21,7 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
     if let (Design::Grid, Some(points)) = (file.design, file.points) {
         return wrong(
             "points".to_owned(),
-            "none for a grid, whose factors set the number of points",
+            "no `points` for a grid, because its factors set the number of points",
             points.to_string(),
         );
     }
@@ -54,9 +54,13 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
         }
         match (file.design, factor.count) {
             (Design::Grid, Some(2..)) | (Design::Random | Design::LatinHypercube, None) => {}
-            (Design::Grid, count) => return wrong(key + ".count", "two values or more", format!("{count:?}")),
+            (Design::Grid, count) => return wrong(key + ".count", "at least two values", format!("{count:?}")),
             (_, Some(count)) => {
-                return wrong(key + ".count", "none, because `points` sets their number", count.to_string());
+                return wrong(
+                    key + ".count",
+                    "no `count`, because `points` sets the number of values",
+                    count.to_string(),
+                );
             }
         }
     }
@@ -66,15 +70,15 @@ pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault>
     }
 }
 
-/// Returns the value of a factor at a fraction from 0 to 1 of its range.
+/// Returns the value of a factor at the fraction `part`, from 0 to 1, of its range.
 fn at(factor: &Factor, part: f64) -> Value {
     let (from, to) = (factor.from.unwrap_or_default(), factor.to.unwrap_or_default());
     let value = match factor.spacing {
         Spacing::Linear => from + (to - from) * part,
         Spacing::Log => (from.ln() + (to.ln() - from.ln()) * part).exp(),
     };
-    // Both ends of the range are exact. Values between them are rounded to twelve digits, so that tables do not show
-    // 0.30000000000000004.
+    // Both ends of the range are exact. Values between them are rounded to twelve digits, because tables should not
+    // show 0.30000000000000004.
     let value = if part <= 0.0 {
         from
     } else if part >= 1.0 {
@@ -85,7 +89,7 @@ fn at(factor: &Factor, part: f64) -> Value {
     Value::from(value)
 }
 
-/// Returns the values of a factor in a grid.
+/// Returns all values of a factor in a grid design.
 fn values(factor: &Factor) -> Vec<Value> {
     match (&factor.values, factor.count) {
         (Some(values), _) => values.iter().map(json).collect(),

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-/// A sweep file.
+/// Sweep file.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
@@ -19,24 +19,24 @@ pub(super) struct File {
     /// Kind of design.
     #[serde(default)]
     pub(super) design: Design,
-    /// Number of points of a random design.
+    /// Number of points of a random or Latin hypercube design; absent for a grid.
     pub(super) points: Option<u32>,
-    /// Random seed.
+    /// Seed of the random numbers of the design.
     #[serde(default)]
     pub(super) seed: u64,
-    /// Number of runs of each point; above 1 only for timed sweeps.
+    /// Number of runs of each point with each solver and level; above 1 only for timed sweeps.
     #[serde(default = "once")]
     pub(super) repetitions: u32,
-    /// True to measure times. Nothing else may then run at the same time.
+    /// True to measure times. No other program may then run at the same time.
     #[serde(default)]
     pub(super) timed: bool,
     /// Factors that are varied.
     #[serde(default)]
     pub(super) factors: IndexMap<String, Factor>,
-    /// Scene keys that are changed in all points.
+    /// Scene keys with values that are the same at all points.
     #[serde(default)]
     pub(super) set: Table,
-    /// Scene keys that are computed from the factors by arithmetic over factor names.
+    /// Scene keys whose values are arithmetic expressions of the factors.
     #[serde(default)]
     pub(super) formulas: Table,
     /// Solvers with their levels.
@@ -47,9 +47,9 @@ pub(super) struct File {
     /// Further quantities to evaluate.
     #[serde(default)]
     pub(super) record: Vec<QuantityEntry>,
-    /// The two factors that are the axes of the map.
+    /// Factors on the horizontal and the vertical axis of the map, a figure of the report.
     pub(super) map: Option<[String; 2]>,
-    /// Curve on the map, for example the limit between two kinds of motion.
+    /// Curve on the map, such as the limit between two types of motion.
     pub(super) line: Option<Line>,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct File {
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Line {
-    /// The second factor of the map as arithmetic over the first.
+    /// Arithmetic expression that gives the second factor of the map as a function of the first factor.
     pub(super) formula: String,
     /// Label of the curve.
     pub(super) label: String,
@@ -71,29 +71,33 @@ const fn once() -> u32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Design {
-    /// Full factorial grid: every value of a factor with every value of the other factors.
+    /// Full factorial grid: all combinations of the values of the factors.
     #[default]
     Grid,
-    /// Independent random points.
+    /// Independent random values of all factors.
     Random,
-    /// Latin hypercube: each factor has exactly one random value in each of n equal slices of its range.
+    /// Latin hypercube: the range of each factor is divided into as many equal slices as there are points. Each slice
+    /// contains one random value.
     LatinHypercube,
 }
 
-/// A factor of the design.
+/// Factor of the design.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Factor {
     /// Scene key that takes the value; `None` if only formulas use the factor.
     pub(super) key: Option<String>,
-    /// Label in figures.
+    /// Label in figures; `None` for the name of the factor.
     pub(super) label: Option<String>,
     /// List of values; exclusive with `from`, `to` and `count`.
     pub(super) values: Option<Vec<Value>>,
     /// Lower end of a range of values.
     pub(super) from: Option<f64>,
+    /// Upper end of a range of values.
     pub(super) to: Option<f64>,
+    /// Number of values in a range, at least 2; only for a grid.
     pub(super) count: Option<u32>,
+    /// Spacing of the values in a range.
     #[serde(default)]
     pub(super) spacing: Spacing,
 }
@@ -109,51 +113,50 @@ pub(super) enum Spacing {
     Log,
 }
 
-/// A solver with its levels.
+/// Solver with its resolution levels.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SolverEntry {
-    /// Solver name, or the manifest of an external program.
+    /// Solver name, or the path of the manifest of an external program.
     pub(super) solver: String,
-    /// Levels as text.
+    /// Resolution levels as text, such as `dt=.1`.
     pub(super) levels: Vec<String>,
-    /// Scene keys that are changed for this solver only.
+    /// Scene keys with values for this solver only.
     #[serde(default)]
     pub(super) set: Table,
-    /// Scene keys that are computed from the factors, for this solver only.
+    /// Scene keys whose values are arithmetic expressions of the factors, for this solver only.
     #[serde(default)]
     pub(super) formulas: Table,
 }
 
-/// A claim of the case.
+/// Claim of the case that the sweep evaluates.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SweepClaim {
-    /// Name of the claim's quantity.
+    /// Quantity by which the claim is found in the case.
     pub(super) quantity: String,
-    /// Largest error that passes, if it differs from the tolerance of the claim.
+    /// Largest error that passes; `None` for the tolerance of the claim.
     pub(super) allowed: Option<f64>,
 }
 
-/// A quantity of the sweep file.
+/// Quantity that the sweep file defines.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct QuantityEntry {
-    /// Name of the recorded quantity, in words.
+    /// Name of the quantity in the report.
     pub(super) quantity: String,
-    /// Unit of `value`, such as `m/s`.
     pub(super) unit: String,
-    /// Arithmetic over record columns and numbers of the scene.
+    /// Arithmetic expression of record columns and numbers of the scene.
     pub(super) value: String,
-    /// Time of the sample (s); the end of the run if `None`.
+    /// Time of the sample (s); `None` for the end of the run.
     pub(super) at: Option<f64>,
-    /// Reduction over samples, if the value is not a single sample.
+    /// Reduction of all samples to one value; `None` for a single sample.
     pub(super) over: Option<SampleReduction>,
-    /// Expected value: arithmetic over the factors, numbers of the scene and the time `t`.
+    /// Expected value as an expression of the factors, numbers of the scene and the time `t` (s).
     pub(super) equals: Option<Formula>,
-    /// Scale by which the error is divided; |expected| by default.
+    /// Scale by which the error is divided; `None` for the absolute expected value.
     pub(super) scale: Option<Formula>,
-    /// Largest error that passes.
+    /// Largest relative error (error divided by the scale) that passes; required with `equals`.
     pub(super) allowed: Option<f64>,
 }
 
@@ -166,7 +169,7 @@ pub(super) enum Formula {
 }
 
 impl Formula {
-    /// Returns the formula as text.
+    /// Returns the number or the expression as text.
     pub(super) fn text(&self) -> String {
         match self {
             Self::Number(value) => format!("{value:?}"),

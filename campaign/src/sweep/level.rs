@@ -1,16 +1,16 @@
-//! Resolution levels as text, in the notation of pages: `dt=.1`, `dt=1e-5 s`, `substeps=8 iterations=4`,
+//! Resolution levels as text, in the notation of reports: `dt=.1`, `dt=1e-5 s`, `substeps=8 iterations=4`,
 //! `cells=8 points=3 courant=.4`.
 
 use grainbench_scene::solver::{Method, Resolution};
 
-/// Expected notation, for error messages.
+/// Expected notation for error messages.
 const EXPECTED: &str =
     "`dt=FRACTION`, `dt=SECONDS s`, `substeps=N` with `iterations=N`, or `cells=N` with `points=N` and `courant=N`";
 
 /// Reads a resolution from text.
 ///
 /// # Errors
-/// The error names the expected notation.
+/// When the text has another notation. The error describes the expected notation.
 pub fn read(words: &str) -> Result<Resolution, String> {
     resolution(words).ok_or_else(|| EXPECTED.to_owned())
 }

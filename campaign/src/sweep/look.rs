@@ -1,4 +1,4 @@
-//! Quantities that are evaluated in each run of a sweep: claims of the case, and quantities of the sweep file.
+//! Quantities that a sweep evaluates at each point: claims of the case and quantities of the sweep file.
 
 use super::file::{QuantityEntry, SweepClaim};
 use crate::fault::Fault;
@@ -18,13 +18,13 @@ use std::sync::Arc;
 
 /// Quantity that a sweep evaluates at each point.
 pub(super) enum EvaluatedQuantity {
-    /// Claim of the case, which is recomputed for the parameters of the scene, and an optional limit of its error.
+    /// Claim of the case, and the largest error that passes if the sweep file sets it.
     Gate(Box<Claim>, Option<f64>),
-    /// Quantity that the sweep file defines by arithmetic.
+    /// Quantity that the sweep file defines by an arithmetic expression.
     Own(Box<SweepQuantity>),
 }
 
-/// A quantity of the sweep file.
+/// Quantity of the sweep file with parsed expressions.
 #[derive(Debug)]
 pub(super) struct SweepQuantity {
     quantity: String,
@@ -39,15 +39,16 @@ pub(super) struct SweepQuantity {
 
 /// Finished run of a sweep point, with the scene and the factors of the point.
 pub(super) struct EvaluatedRun<'a> {
-    /// Scene text with the keys of this point.
+    /// Scene text in which the keys of the sweep point are set.
     pub(super) source: &'a SceneSource,
     pub(super) done: &'a FinishedRun,
-    /// Returns the value of a factor by name.
+    /// Function that returns the value of a factor by name; `None` if the name is unknown or the value is not a number.
     pub(super) factor: &'a dyn Fn(&str) -> Option<f64>,
 }
 
 impl EvaluatedQuantity {
-    /// Returns the claim of a case with the given quantity; a claim of the given variant comes first.
+    /// Finds the claim of a case by its quantity. Only claims about a single run qualify. If several have this
+    /// quantity, a claim about the given variant is preferred.
     pub(super) fn gate(
         path: &Path,
         gate: &SweepClaim,
@@ -58,8 +59,7 @@ impl EvaluatedQuantity {
             return Err(Fault::expected(
                 place,
                 "a case as `scene`, because only cases have claims",
-                "a scene by \
-                 itself",
+                "a scene that is not a case",
             ));
         };
         let elsewhere = |claim: &Claim| claim.elsewhere.as_ref().map(|elsewhere| elsewhere.quantity);
@@ -78,7 +78,7 @@ impl EvaluatedQuantity {
                 }
             }
             let help = did_you_mean(&gate.quantity, known.iter().copied()).map(|help| format!(" ({help})"));
-            let expected = format!("a claim of {} of one run, one of {}", case.name, known.join("; "));
+            let expected = format!("a claim of {} about a single run, one of {}", case.name, known.join("; "));
             return Err(Fault::expected(place, expected, format!("`{}`{}", gate.quantity, help.unwrap_or_default())));
         };
         if gate.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
@@ -95,7 +95,7 @@ impl EvaluatedQuantity {
                 .map_err(|error| Fault::expected(place(key), "arithmetic", format!("`{text}`: {error}")))
         };
         if recorded.at.is_some() && recorded.over.is_some() {
-            return Err(Fault::expected(place("at"), "a moment, or a reading `over` samples", "both"));
+            return Err(Fault::expected(place("at"), "only one of `at` and `over`", "both"));
         }
         if recorded.over == Some(SampleReduction::Course) {
             return Err(Fault::expected(place("over"), "`max`, `min` or `mean`", "`course`"));
@@ -125,8 +125,8 @@ impl EvaluatedQuantity {
         })))
     }
 
-    /// Checks the names in the arithmetic of the sweep file against a scene: columns of the record, numbers of the scene,
-    /// factors and the time `t`.
+    /// Checks the names in the arithmetic expressions of the sweep file. `value` may contain columns of the record and
+    /// numbers of the scene. `equals` and `scale` may contain factors, numbers of the scene and the time `t`.
     pub(super) fn check_names(
         &self,
         file: &str,
@@ -138,16 +138,16 @@ impl EvaluatedQuantity {
         let table = source.table().map_err(|error| Fault::Input(error.to_string()))?;
         let numbers = Numbers::new(table, scene).map_err(Fault::Input)?;
         let is_column = |name: &str| numbers.columns.iter().any(|column| column == name);
-        // The solver decides the columns of deformable bodies.
+        // Columns of deformable bodies depend on the solver, so the columns of such scenes are not checked here.
         let knows_columns = scene.needs_deformable().is_none();
         let unknown = |name: &&str| numbers.is_of_record(name) && !is_column(name);
         if let Some(name) = own.value.names().into_iter().find(unknown).filter(|_| knows_columns) {
             let help = did_you_mean(name, numbers.columns.iter().map(String::as_str)).map(|help| format!(" ({help})"));
-            let expected = format!("columns of the record, among {}", numbers.columns.join(", "));
+            let expected = format!("one of the columns of the record, {}", numbers.columns.join(", "));
             return Err(Fault::expected(place("value"), expected, format!("`{name}`{}", help.unwrap_or_default())));
         }
         if !own.value.names().into_iter().any(|name| numbers.is_of_record(name)) {
-            let found = "none, because it would be the same for every run";
+            let found = "no column, so the value would be the same in each run";
             return Err(Fault::expected(place("value"), "a column of the record", found));
         }
         let constant = own.scale.as_ref().filter(|scale| scale.names().is_empty());
@@ -158,14 +158,14 @@ impl EvaluatedQuantity {
             let names = formula.iter().flat_map(Expression::names);
             let unknown = |name: &&str| *name != "t" && !is_factor(name) && numbers.get(name).is_none();
             if let Some(name) = names.into_iter().find(unknown) {
-                let expected = "factors, the time `t`, or numbers of the scene by their keys";
+                let expected = "factors, the time `t`, or keys of the scene with numbers";
                 return Err(Fault::expected(place(key), expected, format!("`{name}`")));
             }
         }
         Ok(())
     }
 
-    /// Returns a text that identifies the quantity and its inputs.
+    /// Returns a text that changes if the definition of the quantity changes.
     pub(super) fn identity(&self) -> String {
         match self {
             Self::Gate(..) => format!("{:?}", self.quantity()),
@@ -173,7 +173,7 @@ impl EvaluatedQuantity {
         }
     }
 
-    /// Returns the table entry that describes the quantity.
+    /// Returns name, unit and source of the quantity, and the error limit of the sweep file, for the report.
     pub(super) fn quantity(&self) -> Quantity {
         match self {
             Self::Gate(claim, allowed) => Quantity {
@@ -194,7 +194,7 @@ impl EvaluatedQuantity {
         }
     }
 
-    /// Evaluates the quantity in a run.
+    /// Evaluates the quantity for a finished run.
     pub(super) fn at(&self, seen: &EvaluatedRun<'_>) -> QuantityResult {
         let found = match self {
             Self::Gate(claim, allowed) => {
@@ -215,13 +215,14 @@ impl EvaluatedQuantity {
     }
 }
 
-/// Returns the largest error that passes for a claim in this scene, which may differ from the scene of its case.
+/// Returns the largest error that passes for a claim in the scene of a sweep point, which may differ from the scene of
+/// the case.
 fn own_allowance(claim: &Claim, done: &FinishedRun) -> f64 {
     let stated = || claim.tolerance.allowed(std::slice::from_ref(done));
     claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
-/// Returns a table row from a measurement.
+/// Compares a measurement with the largest error that passes, and returns the result for the report.
 fn judged(measured: &Measurement, allowed: f64, tolerance: ToleranceOrigin) -> QuantityResult {
     let row = Verdict { allowed, tolerance, ..Verdict::open("", "", "") };
     let row = row.judged(measured).unless_as_wide_as_the_scale();
@@ -236,7 +237,7 @@ fn judged(measured: &Measurement, allowed: f64, tolerance: ToleranceOrigin) -> Q
     }
 }
 
-/// Returns true if errors can be divided by a number.
+/// Returns true if a number is a valid scale: finite and above zero.
 fn is_scale(scale: f64) -> bool {
     scale.is_finite() && scale > 0.0
 }

@@ -35,17 +35,19 @@ use std::time::Instant;
 
 pub use design::MOST;
 
-/// Time budget (s) for building scenes to estimate run times; further points reuse the last estimate.
+/// Time budget (s) for building scenes to estimate run times. When it is spent, further points reuse the last estimate
+/// for their solver and level.
 const LOOKING: f64 = 6.0;
-/// Assumed start-up time (s) of an external program, and its assumed run time relative to our solver.
+/// Assumed start-up time of an external program (s).
 const START: f64 = 0.3;
+/// Assumed ratio of the run time of an external program, without start-up, to that of our solver.
 const PROGRAM: f64 = 4.0;
-/// Duration (s) of the reference timing before and after each timed run.
+/// Duration of each timing of the reference task, before and after each timed run (s).
 const REFERENCE: f64 = 2e-3;
 
-/// Sweep read from its file, with the scene and the design points.
+/// Sweep with its scene and design points.
 pub struct Sweep {
-    /// Path of the file, for error messages.
+    /// Path of the sweep file, for error messages.
     name: String,
     file: File,
     points: Vec<Vec<Value>>,
@@ -58,18 +60,18 @@ pub struct Sweep {
     line: Option<Expression>,
 }
 
-/// Solver with one resolution level and its scene keys.
+/// One resolution level of a solver, with the scene keys that are changed for it.
 struct Level {
     asked: usize,
     resolution: Resolution,
     words: String,
-    /// Scene keys that are computed from the factors.
+    /// Scene keys whose values are computed from the factors.
     formulas: Vec<(String, Formula)>,
     /// Scene keys with changed values.
     set: Vec<(String, Value)>,
 }
 
-/// Formula of a scene key.
+/// Formula for the value of a scene key, or a list of formulas for an array.
 #[derive(Clone)]
 enum Formula {
     One(Expression),
@@ -102,7 +104,7 @@ impl Formula {
 }
 
 impl Sweep {
-    /// Returns true if a file is a sweep, which has a table `factors`. A scene file has none.
+    /// Returns true if a file is a sweep file, which has a table `factors`.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
         let table = written(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
@@ -144,27 +146,27 @@ impl Sweep {
             levels.extend(read_levels(path, &file, (place, asked))?);
         }
         if points.len().checked_mul(levels.len()).is_none_or(|count| count > MOST) {
-            return Err(Fault::in_file(path, format!("at most {MOST} points of all levels"), "more"));
+            return Err(Fault::in_file(path, format!("at most {MOST} points over all levels"), "more"));
         }
         let variant = file.scene.split_once('/').map_or(PLAIN, |(_, variant)| variant).to_owned();
         let gates = file.gates.iter().map(|gate| EvaluatedQuantity::gate(path, gate, (case, &variant)));
         let own = file.record.iter().map(|recorded| EvaluatedQuantity::own(path, recorded));
         let looks = gates.chain(own).collect::<Result<Vec<_>, _>>()?;
         if looks.is_empty() {
-            return Err(wrong("gates, record", "at least one of either", "neither".to_owned()));
+            return Err(wrong("gates, record", "at least one entry of `gates` or `record`", "neither".to_owned()));
         }
         let name = path.display().to_string();
         let line = read_line(path, &file)?;
         Ok(Self { name, file, points, source, scene_file, looks, levels, line })
     }
 
-    /// Returns true if wall times are measured.
+    /// Returns true if the sweep measures times.
     #[must_use]
     pub const fn is_timed(&self) -> bool {
         self.file.timed
     }
 
-    /// Returns the names of solvers and the manifests of external programs.
+    /// Returns the solvers of the sweep: names, or paths of manifests of external programs.
     #[must_use]
     pub fn solvers(&self) -> Vec<String> {
         self.file.solvers.iter().map(|asked| asked.solver.clone()).collect()
@@ -176,7 +178,7 @@ impl Sweep {
         self.scene_file.as_deref()
     }
 
-    /// Returns the files that the scenes of all points name: meshes, states and tables of grains.
+    /// Returns the files that the scenes of the points refer to: meshes, states and tables of grains.
     ///
     /// # Errors
     /// When the scene file is invalid.
@@ -207,7 +209,8 @@ impl Sweep {
     /// Returns a task for every point, solver and level, with its expected run time.
     ///
     /// # Errors
-    /// When the scene of a point is invalid.
+    /// When the scene of a point is invalid or a quantity contains an unknown name. Scenes are checked until the time
+    /// budget is spent.
     pub fn tasks(&self, program: &str, solvers: &dyn Solvers, names: &[String]) -> Result<Vec<Task>, Fault> {
         let common = self.common()?;
         let mut tasks = Vec::with_capacity(self.points.len() * self.levels.len());
@@ -220,7 +223,8 @@ impl Sweep {
             let mut looked = 0_usize;
             for (place, point) in self.points.iter().enumerate() {
                 let set = self.set(level, point);
-                // Points are inspected in order until the time budget is spent; later points reuse the last estimate.
+                // Scenes are built in the order of the points until the time budget is spent, but at least one for each
+                // level. Later points reuse the last estimate.
                 if patience > 0.0 || looked == 0 {
                     let start = Instant::now();
                     let scene = self.scene(&set)?;
@@ -254,7 +258,7 @@ impl Sweep {
         Ok(tasks)
     }
 
-    /// Returns the scene keys of a point for a solver at a level.
+    /// Returns the changed scene keys and their values for a point and a level.
     fn set(&self, level: &Level, point: &[Value]) -> BTreeMap<String, Value> {
         let mut set = BTreeMap::new();
         for (factor, value) in self.file.factors.values().zip(point) {
@@ -269,7 +273,7 @@ impl Sweep {
         set
     }
 
-    /// Returns the value of a factor at a point.
+    /// Returns the value of a factor at a point, or `None` if it is not a number.
     fn factor(&self, point: &[Value], name: &str) -> Option<f64> {
         point.get(self.file.factors.get_index_of(name)?)?.as_f64()
     }
@@ -280,10 +284,10 @@ impl Sweep {
 
     fn scene(&self, set: &BTreeMap<String, Value>) -> Result<Scene, Fault> {
         let scene = self.source(set).scene(&read_grains);
-        scene.map_err(|error| Fault::Input(format!("{}: a point of it: {error}", self.name)))
+        scene.map_err(|error| Fault::Input(format!("{}: at one point: {error}", self.name)))
     }
 
-    /// Returns the point and the level of a task index.
+    /// Returns the point and the level of the task with an index, or `None` if there is no such task.
     fn place(&self, place: usize) -> Option<(&[Value], &Level)> {
         let count = self.points.len();
         Some((self.points.get(place % count.max(1))?, self.levels.get(place / count.max(1))?))
@@ -331,7 +335,8 @@ impl Sweep {
         Ok((last.ok_or_else(missing)?, timings))
     }
 
-    /// Returns the report of finished tasks. `output_of_point` returns the result of a task index.
+    /// Returns the report of the finished tasks. `output_of_point` returns the result of a task by its index, or `None`
+    /// if the task is not finished.
     #[must_use]
     pub fn report(
         &self,
@@ -372,7 +377,7 @@ impl Sweep {
         }
     }
 
-    /// Returns the curve on the map, sampled between the extremes of the first factor.
+    /// Returns the curve on the map, sampled between the smallest and the largest value of the first factor.
     fn line(&self) -> Option<grainbench_reports::sweep::Line> {
         const PIECES: u32 = 200;
         let (formula, file, axes) = (self.line.as_ref()?, self.file.line.as_ref()?, self.file.map.as_ref()?);
@@ -388,7 +393,9 @@ impl Sweep {
 fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     let Some(line) = &file.line else { return Ok(None) };
     let place = format!("{}: line", path.display());
-    let Some(axes) = &file.map else { return Err(Fault::expected(place, "`map`, which the figure needs", "none")) };
+    let Some(axes) = &file.map else {
+        return Err(Fault::expected(place, "`map`, because the figure needs it", "none"));
+    };
     let formula_fault =
         |error| Fault::expected(format!("{place}.formula"), "arithmetic", format!("`{}`: {error}", line.formula));
     let formula = Expression::read(&line.formula).map_err(formula_fault)?;
@@ -401,7 +408,7 @@ fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     }
 }
 
-/// Returns the result of a task without a record.
+/// Returns the result of a failed task, which has no record.
 fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, PointOutput) {
     let looked = grainbench_reports::sweep::QuantityResult { verdict: Some(outcome), ..Default::default() };
     (State::Failed, PointOutput { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
@@ -419,7 +426,7 @@ fn ran(record: &Record) -> RunCounts {
     }
 }
 
-/// Formats a value for setting a key.
+/// Formats a value as text for a scene key.
 fn words(value: &Value) -> String {
     match value {
         Value::Number(number) => number.to_string(),
@@ -427,7 +434,7 @@ fn words(value: &Value) -> String {
     }
 }
 
-/// Reads the levels of a solver.
+/// Reads the resolution levels of a solver.
 fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) -> Result<Vec<Level>, Fault> {
     let key = format!("{}: solvers ({})", path.display(), asked.solver);
     if asked.levels.is_empty() {
@@ -451,7 +458,7 @@ fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) 
         let resolution = level::read(words)
             .map_err(|expected| Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")))?;
         if !level::fits(&asked.solver, &resolution) {
-            let expected = format!("a level that {} has", asked.solver);
+            let expected = format!("a level of the kind that {} has", asked.solver);
             return Err(Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")));
         }
         let words = resolution.to_string();
@@ -477,7 +484,8 @@ fn flat(table: &toml::Table) -> Vec<(String, toml::Value)> {
     found
 }
 
-/// Reads the scene text, with its case or, if it belongs to none, its file.
+/// Returns the scene text, the case that contains it (`None` for a scene file), and the path of the scene file (`None`
+/// for a case).
 fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>, Option<PathBuf>), Fault> {
     let is_file = Path::new(&file.scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let input_fault = |error: grainbench_scene::error::SceneError| Fault::Input(error.to_string());
@@ -490,14 +498,14 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
         let help = did_you_mean(name, CASES.iter().map(|case| case.name)).map(|help| format!(" ({help})"));
         let found = format!("`{name}`{}", help.unwrap_or_default());
         let place = format!("{}: scene", path.display());
-        return Err(Fault::expected(place, "a case (`grainbench list`), or a scene file from here", found));
+        return Err(Fault::expected(place, "a case (`grainbench list`), or a scene file relative to this file", found));
     };
     let source = case.source();
     let source = match variant {
         None | Some(PLAIN) => source,
         Some(variant) => source.variant(variant),
     };
-    // An unknown variant is reported now.
+    // An unknown variant is reported here, before tasks are made.
     source.scene_file().map_err(input_fault)?;
     Ok((source, Some(case), None))
 }
@@ -542,7 +550,7 @@ levels = ['dt=.1']
         sweep.tasks("program", &Registry, &["dem".to_owned()]).unwrap()[0].id
     }
 
-    /// Every number that a result depends on is part of the id, so that an edited sweep is run again.
+    /// The task id depends on every number that affects the result. A sweep is therefore run again after an edit.
     #[test]
     fn an_edit_of_the_sweep_or_of_a_file_of_the_scene_is_another_task() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,18 +1,18 @@
-//! Comparison of two sessions. Counts must be equal, and times may differ by their spread.
+//! Comparison of two sessions of the cost study. Counts must be equal; times may differ within their uncertainty.
 //!
-//! The time of a point is the median of its repetitions, in units of the reference time measured before and after each
-//! repetition ([`crate::clock::reference_seconds`]). A temporarily slower machine therefore cancels. For all points of
-//! a solver in a case, xᵢ = ln(tᵢ,new/tᵢ,old). The standard error of their median m is
+//! The time of a point is the median of its repetitions. Each repetition is divided by the reference time measured
+//! before and after it ([`crate::clock::reference_seconds`]), so that the speed of the machine cancels. Let xᵢ =
+//! ln(tᵢ,new/tᵢ,old) for the n points i of a solver in a case. The standard error of their median m is
 //!
 //! ```text
 //! s = max(1.2533 · 1.4826 · median|xᵢ − m|, √mean(σᵢ²))/√n
 //! ```
 //!
-//! with σᵢ the standard error of the medians of both sessions, from the median deviation of the repetitions in the same
-//! way. The second term is larger if some points are uncertain. Then all points are uncertain, because they were
-//! measured in alternation. A solver is called slower if m − 3s > ln 1.1, with at least three points. The margin of
-//! 10 % covers differences between sessions that repetitions cannot show, such as memory layout and other programs. In
-//! 36 pairs of sessions these shifted all points of a case by up to 6 % more than 3s.
+//! Here σᵢ is the standard error of xᵢ from the median deviations of the repetitions of both sessions, computed in the
+//! same way. The second term is larger if some points are uncertain. Then all points are uncertain, because they were
+//! measured in alternation. A solver counts as slower if m − 3s > ln 1.1 for at least three points. The margin of 10 %
+//! covers differences between sessions that repetitions do not show, such as memory layout and other programs. In 36
+//! pairs of sessions such differences shifted all points of a case by up to 6 % more than 3s.
 
 use grainbench_harness::statistics::median;
 use grainbench_reports::study::point::{Change, Point, PointStatus};
@@ -24,13 +24,13 @@ const SESSIONS: f64 = 0.1;
 const SURE: f64 = 3.0;
 /// Smallest number of points for a comparison.
 const FEWEST: usize = 3;
-/// Shortest run (s) that is compared; shorter runs are dominated by the clock.
+/// Shortest run that is compared (s). The clock dominates the time of shorter runs.
 const TOO_SHORT: f64 = 2e-4;
 
-/// Case name for all points of a solver together.
+/// Name that replaces the case name in the comparison of all points of a solver.
 const ALL: &str = "all cases";
 
-/// Returns the number of points that both sessions have.
+/// Returns the number of points that are in both sessions.
 #[must_use]
 pub fn shared(old: &[Point], new: &[Point]) -> usize {
     let before: BTreeSet<[&str; 6]> = old.iter().map(Point::key).collect();
@@ -38,7 +38,7 @@ pub fn shared(old: &[Point], new: &[Point]) -> usize {
 }
 
 /// Returns the changes from one session to another. Points that only the old session has are counted by case, variant
-/// and solver. Sessions without a common point cannot be compared. This counts as a change for the worse.
+/// and solver. Sessions without a common point cannot be compared, which counts as a change for the worse.
 #[must_use]
 pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     let before: BTreeMap<[&str; 6], &Point> = old.iter().map(|point| (point.key(), point)).collect();
@@ -55,14 +55,15 @@ pub fn compare(old: &[Point], new: &[Point]) -> Vec<Change> {
     changes.extend(ratios.iter().filter_map(|((solver, case), ratios)| time(solver, case, ratios)));
     changes.extend(lost(old, new));
     if shared(old, new) == 0 {
-        let how = format!("expected points that both sessions have, found none of {} and {}", old.len(), new.len());
+        let how =
+            format!("expected points that are in both sessions, found none among {} and {}", old.len(), new.len());
         changes.insert(0, Change { what: "nothing compared".to_owned(), how, worse: true });
     }
     changes
 }
 
-/// Returns the numbers of points that only the old session has. A selection of cases or solvers omits points on
-/// purpose, so lost points are not a change for the worse.
+/// Returns the numbers of points that only the old session has, by case, variant and solver. They are not a change for
+/// the worse, because a selection of cases or solvers omits points on purpose.
 fn lost(old: &[Point], new: &[Point]) -> Vec<Change> {
     let now: BTreeSet<[&str; 6]> = new.iter().map(Point::key).collect();
     let mut counts: BTreeMap<[&str; 3], usize> = BTreeMap::new();
@@ -71,7 +72,7 @@ fn lost(old: &[Point], new: &[Point]) -> Vec<Change> {
     }
     let change = |([case, variant, solver], count): ([&str; 3], usize)| Change {
         what: format!("{case}/{variant} · {solver}"),
-        how: format!("{count} points of the old session are not measured now"),
+        how: format!("{count} points of the old session were not measured again"),
         worse: false,
     };
     counts.into_iter().map(change).collect()
@@ -96,7 +97,7 @@ fn counts(old: &Point, new: &Point) -> Option<Change> {
     (!how.is_empty()).then(|| Change { what, how: how.join(", "), worse: true })
 }
 
-/// Returns the logarithm of the ratio of times, and its standard error.
+/// Returns the logarithm of the ratio of the new to the old time of a point, and its standard error.
 fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
     let measured = |point: &Point| point.standing == PointStatus::Measured && point.wall_seconds >= Some(TOO_SHORT);
     if !(measured(old) && measured(new)) {
@@ -106,7 +107,7 @@ fn ratio(old: &Point, new: &Point) -> Option<(f64, f64)> {
     Some((is.value - was.value, is.error.hypot(was.error)))
 }
 
-/// A median and its standard error, for a normal distribution.
+/// Median and its standard error, for a normal distribution.
 struct MedianEstimate {
     value: f64,
     error: f64,
@@ -115,7 +116,8 @@ struct MedianEstimate {
 impl MedianEstimate {
     /// Computes the median of at least one number, and its standard error from the median absolute deviation.
     ///
-    /// The deviation is robust against a few outliers. The error of a single number is unknown and set to zero.
+    /// The median absolute deviation is robust against a few outliers. The error of a single number is unknown and set
+    /// to zero.
     fn from_values(values: &[f64]) -> Self {
         let value = median(values);
         let distance = median(&values.iter().map(|other| (other - value).abs()).collect::<Vec<_>>());
@@ -162,10 +164,10 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// Returns a session of one solver in one case on a machine with varying load.
+    /// Returns a session of one solver in one case, on a machine with varying load.
     ///
-    /// Noise lengthens every time by up to a third, and the machine's speed drifts by up to half. The session as a
-    /// whole is slower by up to 4 %.
+    /// Noise lengthens each time by up to 30 %. Varying machine speed lengthens each time and its reference time by up
+    /// to 50 %. The session as a whole is slower by up to 4 %.
     fn session(seed: u64, slower: f64, points: usize, repetitions: usize) -> Vec<Point> {
         let mut dice = Pcg64Mcg::seed_from_u64(seed);
         let mut unit = move || dice.random::<f64>();
@@ -231,8 +233,8 @@ mod tests {
         }
     }
 
-    /// Times (µs) of a squashed pair in two sessions of the same code. In the first session the processor was briefly
-    /// faster by half.
+    /// Times of the case `squash` in two sessions of the same code (µs). In the first session the processor was
+    /// temporarily 1.5 times as fast.
     #[test]
     fn a_moment_at_another_clock_shows_nothing() {
         const OLD: [[f64; 5]; 5] = [
@@ -278,7 +280,7 @@ mod tests {
         assert_eq!(changes[1].what, "squash/plain · mpm");
         let changes = compare(&new, &old);
         assert_eq!(changes.len(), 1, "{changes:?}");
-        assert!(!changes[0].worse && changes[0].how == "5 points of the old session are not measured now");
+        assert!(!changes[0].worse && changes[0].how == "5 points of the old session were not measured again");
         assert_eq!((shared(&new, &old), shared(&old, &new), shared(&other, &new)), (3, 3, 0));
     }
 

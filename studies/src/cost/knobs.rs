@@ -1,40 +1,42 @@
-//! Parameters of each kind of solver, and the sweep points of the cost study.
+//! Sweep points of the cost study: the parameter values with which each kind of solver runs.
 
 use grainbench_harness::solvers::ExternalSolver;
 use grainbench_harness::subject::SolverSetup;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Method, Resolution};
 
-/// A sweep point: one setting of a solver's parameters.
+/// Sweep point: one setting of a solver's parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPoint {
     /// Solver name, including the settings of the material point method.
     pub solver: String,
-    /// Curve of the diagram that contains the point: the solver without its settings.
+    /// Name of the curve in the diagram: the solver without its settings.
     pub line: String,
-    /// Time step, substeps or cells of the run.
+    /// Resolution of the run: time step, substeps or cells.
     pub resolution: Resolution,
     /// Description of further changed parameters.
     pub knobs: String,
-    /// Fineness within a sequence of refinements of one parameter; `None` outside a sequence.
+    /// Fineness of the point in a sequence that refines one parameter; larger values are finer. `None` outside a
+    /// sequence.
     pub sequence: Option<f64>,
 }
 
-/// Time steps as fractions of the critical time step.
+/// Time steps of the DEM solver as fractions of the critical time step.
 const FRACTIONS: [f64; 8] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
-/// Time steps for external solvers, as fractions of the critical step. Their start takes longer than most runs.
+/// Time steps of LAMMPS, LIGGGHTS and external solvers as fractions of the critical time step. There are few, because
+/// start-up takes longer than most runs.
 const PROGRAM_FRACTIONS: [f64; 3] = [0.2, 0.05, 0.01];
-/// Cell counts for external solvers, relative to the solver setup.
+/// Cell counts of external solvers relative to the solver setup.
 const PROGRAM_CELLS: [f64; 3] = [0.25, 0.5, 1.0];
-/// Substeps of rapier.
+/// Numbers of substeps of rapier.
 const SUBSTEPS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// Iterations of rapier's constraint solver at eight substeps.
+/// Iterations of rapier's constraint solver with eight substeps.
 const ITERATIONS: [u32; 3] = [1, 2, 16];
-/// Steps of rapier without substeps (s).
+/// Time steps of rapier with one substep (s).
 const STEPS: [f64; 2] = [0.03, 0.004];
-/// Cell counts relative to the solver setup.
+/// Cell counts of the MPM solver relative to the solver setup.
 const CELLS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-/// Further settings of the material point method: basis, transfer and contact.
+/// Further settings of the material point method (basis, transfer, contact) and their descriptions.
 const SETTINGS: [(&str, &str); 8] = [
     ("mpm+linear+flip", "hat functions, FLIP"),
     ("mpm+gimp+flip", "GIMP, FLIP"),
@@ -46,10 +48,10 @@ const SETTINGS: [(&str, &str); 8] = [
     ("mpm:penalty", "hat functions, FLIP, springs at surfaces"),
 ];
 
-/// Returns all sweep points of a solver setup.
+/// Returns all sweep points of a solver setup for our solvers, LAMMPS, LIGGGHTS and external solvers.
 ///
-/// External solvers take part by name if they have contact springs or deformable bodies. They use their declared time
-/// steps or cell counts.
+/// External solvers are included if they support the setup: contact springs or deformable bodies. If they declare time
+/// steps or cell counts, these are used.
 #[must_use]
 pub fn turns(lane: &SolverSetup, strangers: &[ExternalSolver]) -> Vec<SweepPoint> {
     own(lane).into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
@@ -115,7 +117,7 @@ fn grid(lane: &SolverSetup) -> Vec<SweepPoint> {
         .map(|&factor| turn("mpm", "mpm", at(factor, points, courant), &lane.knobs, Some(factor)))
         .collect();
     if !lane.knobs.is_empty() {
-        // One sweep is enough if other parameters are changed.
+        // For a setup with other changed parameters, one refinement sequence is enough.
         return turns;
     }
     for other in [points.saturating_sub(1).max(1), points + 1] {
@@ -128,9 +130,9 @@ fn grid(lane: &SolverSetup) -> Vec<SweepPoint> {
     turns
 }
 
-/// Estimates the run time (s) from counts alone.
+/// Estimates the run time from counts alone (s).
 ///
-/// Every machine therefore skips the same long points unless all are requested.
+/// The estimate uses no timing, so that long points are skipped equally on all machines.
 #[must_use]
 pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     let grains = scene.grains.len() as f64;
@@ -151,7 +153,7 @@ pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     }
 }
 
-/// Estimates the run time (s) as points times steps times the time of one point and step.
+/// Estimates the run time (s) as points × steps × time per point and step.
 fn grid_seconds(scene: &Scene, cells: f64, points: u32, courant: f64, seconds: f64) -> f64 {
     let dimensions = scene.dimension.count();
     let cell = scene.reference_length / cells;

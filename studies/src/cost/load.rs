@@ -1,8 +1,9 @@
-//! Cost of a step for one grain, a hundred and ten thousand grains, without start-up.
+//! Cost of a time step for one grain, 100 and 10 000 grains, without start-up.
 //!
-//! Stacked discs rest in a box, and each solver has a usual resolution. A timing is a pair of runs, of which the short
-//! one has one step. The difference of their times divided by the difference of their step counts is the time of a
-//! step. The time of the short run minus one step is the start-up. Each round has one timing of every solver and scene.
+//! Discs in a square packing rest in a box. Each solver has one usual resolution. A timing is the difference of a long
+//! run and a short run of one step. The difference of their times divided by the difference of their step counts is the
+//! time of a step. The time of the short run minus the time of one step is the start-up. Each round times every solver
+//! in every scene once.
 
 use super::knobs::nominal_seconds;
 use crate::ProgressObserver;
@@ -16,7 +17,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Discs along each edge of the square packing.
+/// Numbers of discs along each edge of the square packing.
 const EDGES: [u32; 3] = [1, 10, 100];
 /// Measured solvers, each at one resolution.
 const SOLVERS: [(&str, Resolution); 5] = [
@@ -26,7 +27,7 @@ const SOLVERS: [(&str, Resolution); 5] = [
     ("lammps", Resolution::CriticalFraction(Resolution::FRACTION)),
     ("liggghts", Resolution::CriticalFraction(Resolution::FRACTION)),
 ];
-/// Target duration of a long run (s).
+/// Target run time of the long run (s).
 const LONG: f64 = 0.5;
 /// Minimum and maximum number of steps of a long run.
 const STEPS: [f64; 2] = [40.0, 400_000.0];
@@ -37,7 +38,7 @@ pub fn laps(rounds: u32) -> u64 {
     u64::from(rounds) * (EDGES.len() * SOLVERS.len()) as u64
 }
 
-/// A solver with its scene and the timings so far.
+/// Solver with its scene and the timings so far.
 struct Entrant {
     solver: Option<Arc<dyn Solver>>,
     scene: Arc<Scene>,
@@ -45,7 +46,7 @@ struct Entrant {
     load: Load,
 }
 
-/// Measures the cost of a step in a number of rounds.
+/// Measures the cost of a step of each solver in a number of rounds.
 ///
 /// # Errors
 /// When the scene cannot be read, which does not occur for the scene of this study.
@@ -88,10 +89,10 @@ pub fn measure(
     Ok(entrants.into_iter().map(|entrant| entrant.load).collect())
 }
 
-/// Measures one timing.
+/// Runs a solver for one step and for many steps, and returns the difference.
 fn lap(solver: &dyn Solver, scene: &Scene, resolution: &Resolution) -> Result<TimingDifference, RunError> {
     let step = step(scene, resolution).map_err(|reason| RunError::Resolution { solver: solver.name(), reason })?;
-    // The duration of the scene is one second, so the nominal time is that of one simulated second.
+    // The scene lasts one second, so its nominal time is that of one simulated second.
     let seconds = (LONG / nominal_seconds(scene, resolution)).clamp(STEPS[0] * step, STEPS[1] * step);
     let run = |seconds: f64| -> Result<LoadCost, RunError> {
         let scene = Scene {
@@ -117,7 +118,7 @@ struct LoadCost {
 }
 
 impl LoadCost {
-    /// Computes the difference of a long and a short run. A negative start-up counts as zero.
+    /// Computes the difference of a short and a long run. A negative start-up time counts as zero.
     fn lap(short: Self, long: Self) -> TimingDifference {
         let more = long.processor - short.processor;
         let step = more / (long.steps - short.steps) as f64;
@@ -126,7 +127,7 @@ impl LoadCost {
     }
 }
 
-/// Returns the time step (s).
+/// Returns the time step of a resolution (s).
 fn step(scene: &Scene, resolution: &Resolution) -> Result<f64, String> {
     match *resolution {
         Resolution::Rigid { step, substeps, .. } => Ok(step / f64::from(substeps)),
@@ -135,9 +136,9 @@ fn step(scene: &Scene, resolution: &Resolution) -> Result<f64, String> {
     }
 }
 
-/// Returns a scene of one second with a square of touching discs in a box.
+/// Returns a scene of one second with a square packing of discs in contact in a box.
 ///
-/// It has contact springs for rigid grains and elastic moduli for deformable grains.
+/// The scene has contact springs for rigid grains and elastic moduli for deformable grains.
 fn box_of_discs(edge: u32) -> Result<Scene, SceneError> {
     let text = format!(
         "title = 'discs in a box'\ndimension = 2\nduration = 1.0\ngravity = [0.0, -9.8]\n\
@@ -165,7 +166,7 @@ mod tests {
         assert_eq!(counts, [1, 100, 10_000]);
     }
 
-    /// The start takes 3 ms, and each step of 1 ms takes 20 µs.
+    /// Start-up takes 3 ms of processor time, and each step of 1 ms of simulated time takes 20 µs.
     #[test]
     fn start_up_is_told_apart_from_steps() {
         let spent =

@@ -1,4 +1,5 @@
-//! Measures points one at a time, with the repetitions of a target quantity in alternation.
+//! Measurement of the points of the cost study, one at a time. Repetitions of the points of a target quantity
+//! alternate.
 
 use super::knobs::{self, SweepPoint};
 use crate::clock::{self, TimedResult};
@@ -16,41 +17,42 @@ use grainbench_store::WriteError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// Repetitions of a point that takes less than a second.
+/// Number of repetitions of a point that takes less than a second.
 const REPETITIONS: usize = 5;
-/// Longest run that is repeated (s); a longer run is measured once.
+/// Longest run that is repeated (s). A longer run is measured once.
 const SHORT: f64 = 1.0;
-/// Shortest duration of a repetition (s). A shorter run is repeated several times within one repetition.
+/// Shortest duration of a repetition (s). A repetition of a shorter run consists of several runs.
 const LEAST: f64 = 2e-3;
 /// Duration of the reference timing before and after a run, as a fraction of the run time.
 const SHARE: f64 = 0.025;
 /// Longest duration of a reference timing (s).
 const LONG_ENOUGH: f64 = 0.01;
-/// Duration of the reference timing around a first run (s), whose run time is still unknown.
+/// Duration of the reference timing before and after a first run (s), whose run time is still unknown.
 const AT_FIRST: f64 = 0.002;
-/// Shortest run (s) that needs no warm-up. The first run of a longer point counts as a repetition.
+/// Shortest run that needs no warm-up (s). If the first run of a point takes at least this time, it counts as a repetition.
 const WARM: f64 = 0.05;
-/// Maximum number of runs in a row.
+/// Maximum number of runs in a repetition.
 const MOST: f64 = 50.0;
-/// Longest expected run (s) that is measured by default.
+/// Longest expected run that is measured by default (s).
 const LONGEST: f64 = 20.0;
-/// Assumed run time of an external solver relative to our solver.
+/// Assumed run time of another program relative to our solver.
 const PROGRAM: f64 = 4.0;
-/// Ratio of errors above which a refinement counts as stagnated at an error floor.
+/// Smallest ratio of the errors of two successive refinements that counts as stagnation at an error floor. The largest
+/// ratio is its reciprocal.
 const FLOOR: f64 = 0.8;
-/// Error floor of an external solver.
-const UNKNOWN: &str = "what no finer step takes away";
+/// Cause of the error floor of an external solver, which is unknown.
+const UNKNOWN: &str = "error that smaller steps do not reduce";
 /// Errors below this are rounding errors, not a floor.
 const ROUNDING: f64 = 1e-11;
 
-/// Points to measure, and extent of the measurement.
+/// Selection of points, and extent of the measurement.
 #[derive(Clone, Debug, Default)]
 pub struct PointSelection {
     /// Solvers to measure; all if empty.
     pub solvers: Vec<String>,
-    /// True to include points that take longer than twenty seconds.
+    /// True to include points that are expected to take longer than 20 s.
     pub all: bool,
-    /// True to measure only errors and counts, with one run for each point. Times are then not meaningful.
+    /// True to measure only errors and counts, with one run per point. The time of this run is not meaningful.
     pub counts: bool,
 }
 
@@ -59,7 +61,7 @@ pub struct PointSelection {
 pub struct PointPlan {
     /// Name in the result cache.
     pub name: String,
-    /// Solver with its settings.
+    /// Solver name with its settings.
     pub solver: String,
     /// Resolution and further parameters as text.
     pub setting: String,
@@ -70,24 +72,24 @@ pub struct PointPlan {
 /// Point to measure.
 struct Task {
     turn: SweepPoint,
-    /// Cause of the error that remains at the finest resolution.
+    /// Cause of the error that remains at the finest resolutions.
     floor: &'static str,
     scene: Arc<Scene>,
     solver: Arc<dyn Solver>,
     /// Name in the result cache.
     name: String,
-    /// Processor time (s) of a run of one step by an external solver, shared by all points of the scene.
+    /// Processor time of a run of one step by another program (s). Points with the same scene and solver share it.
     ///
-    /// It measures start-up, which is not part of the cost of steps.
+    /// It estimates the start-up, which is not part of the cost of steps.
     start: Arc<OnceLock<f64>>,
-    /// True for an external solver.
+    /// True for another program: LAMMPS, LIGGGHTS or an external solver.
     is_program: bool,
     /// True if the external solver keeps running between runs.
     stays: bool,
 }
 
 impl Task {
-    /// Returns the processor time outside the steps (s).
+    /// Returns the processor time of the start-up (s); zero for our solvers.
     fn start(&self) -> f64 {
         if !self.is_program {
             return 0.0;
@@ -103,7 +105,7 @@ impl Task {
     }
 }
 
-/// Measures points of the study with solvers found by name.
+/// Measurement of selected points with solvers that are found by name.
 pub struct Meter<'a> {
     /// Hash of this program.
     pub program: String,
@@ -111,7 +113,7 @@ pub struct Meter<'a> {
     pub cache: &'a ResultCache,
     /// Points to measure.
     pub wanted: PointSelection,
-    /// Finds solvers by name.
+    /// Solvers by name.
     pub solvers: &'a dyn Solvers,
 }
 
@@ -135,7 +137,7 @@ impl<'a> Meter<'a> {
             let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
             let once = if task.is_program { PROGRAM * once } else { once };
             let times = if self.wanted.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
-            // A repetition lasts at least as long as the clock resolves.
+            // A repetition lasts at least `LEAST`, because of the resolution of the clock.
             let seconds = times * once.max(if self.wanted.counts { 0.0 } else { LEAST });
             let SweepPoint { solver, resolution, knobs, .. } = task.turn;
             let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
@@ -165,7 +167,7 @@ impl<'a> Meter<'a> {
         drawn(subject, &tasks, points)
     }
 
-    /// Measures and stores the points of a target quantity whose names are `wanted`.
+    /// Measures and stores the points of a target quantity for whose names `wanted` returns true.
     ///
     /// # Errors
     /// When a point cannot be stored.
@@ -180,7 +182,8 @@ impl<'a> Meter<'a> {
         self.measure(subject, &tasks, follow).map(drop)
     }
 
-    /// Measures the unfinished points of a target quantity one at a time, with repetitions in alternation.
+    /// Measures the points of a target quantity that are not in the cache, one at a time, with repetitions in
+    /// alternation.
     fn measure(
         &self,
         subject: &TargetQuantity,
@@ -266,7 +269,7 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Returns the diagram of measured points.
+/// Returns the diagram of measured points, with error floors marked.
 fn drawn(subject: &TargetQuantity, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
     let mut points: Vec<Point> = points.into_iter().flatten().collect();
     mark_floors(tasks, &mut points);
@@ -279,16 +282,16 @@ fn drawn(subject: &TargetQuantity, tasks: &[Task], points: Vec<Option<Point>>) -
     }
 }
 
-/// Runs a point once and returns its times, or `None` if nothing ran. The reference is timed for `lasting` seconds
-/// before and after.
+/// Runs a point once and returns its times, or `None` if the run did not start. The reference task is timed for
+/// `lasting` seconds before and after the run.
 fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>) {
     let clocked = clock::clocked(lasting, || task.solver.run(&task.scene, &task.turn.resolution, &mut ()));
     let TimedResult { done: record, cpu, wall: whole, reference } = clocked;
     let ran = matches!(record, Ok(_) | Err(RunError::Broken(_) | RunError::Program { .. }));
-    // A failed run has no record, so all of its time counts as loop time.
+    // A failed run has no record, so its whole time counts as time of the stepping loop.
     let wall = record.as_ref().map_or(whole, |record| record.cost.wall_seconds);
     let cpu = match (&record, task.stays) {
-        // The processor time of a program that keeps running is unknown; with one thread it equals the wall time.
+        // The processor time of a program that keeps running is unknown. With one thread it equals the wall time.
         (Ok(_), true) => wall,
         (Ok(_), false) => (cpu - task.start()).max(0.0),
         (Err(_), _) => cpu,
@@ -296,7 +299,7 @@ fn timed(task: &Task, lasting: f64) -> (Option<Timing>, Result<Record, RunError>
     (ran.then_some(Timing { wall, cpu, start_up: (whole - wall).max(0.0), reference }), record)
 }
 
-/// Measures one repetition: the mean of some runs in a row, each of about `whole` seconds.
+/// Measures one repetition: the mean of several consecutive runs, each of about `whole` seconds.
 fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     let runs = (LEAST / whole).ceil().clamp(1.0, MOST) as usize;
     let lasting = (SHARE * whole).min(LONG_ENOUGH);
@@ -311,7 +314,7 @@ fn repeated(task: &Task, whole: f64) -> Option<Timing> {
     })
 }
 
-/// Measures the first run and its error.
+/// Runs a point for the first time and evaluates its error.
 fn first(subject: &TargetQuantity, task: &Task) -> Point {
     let (timing, record) = timed(task, AT_FIRST);
     let mut point = Point {
@@ -366,17 +369,18 @@ fn first(subject: &TargetQuantity, task: &Task) -> Point {
     point
 }
 
-/// Fills in medians and spread of the repetitions.
+/// Computes the medians and the spread of the repetitions.
 fn summarise(point: &mut Point) {
     let range_of = |value: fn(&Timing) -> f64| range(&point.repetitions.iter().map(value).collect::<Vec<_>>());
     let median_of = |value: fn(&Timing) -> f64| range_of(value).map(|[_, median, _]| median);
     let (walls, cpu_seconds, start_up) =
         (range_of(|timing| timing.wall), median_of(|timing| timing.cpu), median_of(|timing| timing.start_up));
-    // A program that does not report its loop time gets the total time less a run of no steps. The difference may be
-    // negative if the start-up time varies by more than it.
+    // If a program reports no time of its stepping loop, its wall time is the total time minus the time of a run
+    // without steps. The difference is negative if the start-up time varies by more. Such a point has no wall time.
     point.wall_seconds = walls.map(|[_, median, _]| median).filter(|median| *median > 0.0);
     point.start_up_seconds = start_up;
-    // For an external solver this is a difference of two times; it is noise if both are mostly start-up.
+    // The processor time of another program is a difference of two times. If the difference is small compared with the
+    // start-up time, it is noise.
     let is_reliable = |cpu: &f64| *cpu >= 0.1 * point.start_up_seconds.unwrap_or(0.0);
     point.cpu_seconds = cpu_seconds.filter(is_reliable);
     point.wall_spread = match walls {
@@ -385,10 +389,10 @@ fn summarise(point: &mut Point) {
     };
 }
 
-/// Marks the points of a sequence at which finer resolutions no longer reduce the error.
+/// Marks the points of a sequence at which finer resolutions do not reduce the error further.
 ///
-/// A sequence needs at least three points. Its finest two errors must differ by at most a fifth. All points with about
-/// the finest error are marked.
+/// A sequence needs at least three points. The ratio of the finest error to the error before it must be from [`FLOOR`] to
+/// 1/[`FLOOR`]. All points whose ratio to the finest error is in this range are marked.
 fn mark_floors(tasks: &[Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {

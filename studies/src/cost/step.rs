@@ -1,10 +1,11 @@
-//! Cost model: the cost of a step, divided into elementary operations.
+//! Cost model, which divides the cost of a time step into elementary operations.
 //!
-//! Grains on springs rest on a periodic square or cubic lattice. Three spacings are run: beyond the reach of the
-//! neighbour list, within its reach, and in contact. The time of a step per grain is then `g`, `g + p·pairs` and
-//! `g + p·pairs + c·contacts`, with the counts that the run reports. A block of material points is run with four points
-//! in a cell and with sixteen: `t = a·points + b·nodes` in both. A timing is the processor time of a long run minus
-//! that of a short run. The runs alternate.
+//! Grains with contact springs rest on a periodic square or cubic lattice. Three spacings are run: beyond the reach of
+//! the neighbour list, within its reach, and in contact. The time of a step per grain is then `g`, `g + p·pairs` and
+//! `g + p·pairs + c·contacts`, where `g`, `p` and `c` are the costs of a grain, a listed pair and a contact. The run
+//! reports the numbers of pairs and contacts per grain. A block of material points is run with 4 and 16 points per
+//! cell. In each run, the time of a step is `a·points + b·nodes`, with the costs `a` of a point and `b` of a node. A
+//! timing is the processor time of a long run minus that of a short run.
 
 use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
@@ -19,25 +20,25 @@ use grainbench_scene::source::SceneSource;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Steps of the short and of the long run, for grains and for a block.
+/// Numbers of steps of the short and the long run, first for grains, then for a block.
 const STEPS: [[u64; 2]; 2] = [[20, 1620], [20, 320]];
-/// Number of SIMD packs that are streamed. They are two arrays of 64 MB, which is more than caches hold.
+/// Number of SIMD packs in each of the two streamed arrays. An array has 64 MB, which is more than caches hold.
 const STREAMED: usize = 2 << 20;
-/// Number of multiplications and additions of all registers in a timing.
+/// Number of repetitions of multiplications and additions in a timing of arithmetic.
 const COMPUTED: u64 = 2_000_000;
 
-/// Distances of neighbours over the diameter: beyond the reach of the neighbour list, within it, and in contact.
+/// Distances of neighbouring centres in diameters: beyond the reach of the neighbour list, within it, and in contact.
 ///
 /// The list reaches a tenth of a diameter beyond contact.
 const SPACINGS: [f64; 3] = [1.3, 1.05, 0.9999];
 
-/// Scenes from which the unit costs of a set of operations are computed.
+/// Scenes that determine the unit costs of a set of operations.
 struct Family {
     solver: &'static str,
-    /// Operations, with the scenes that determine them; the first operation occurs in every scene.
+    /// Operations, and descriptions of the scenes that determine them. The first operation occurs in every scene.
     pieces: &'static [(&'static str, &'static str)],
     scenes: Vec<(Scene, Resolution)>,
-    /// Returns the number of each operation per particle-step from the counts of a run.
+    /// Function that returns the number of each operation per particle-step from the counts of a run.
     counts: fn(&Cost) -> Vec<f64>,
 }
 
@@ -47,7 +48,7 @@ pub fn pieces(rounds: u32) -> u64 {
     u64::from(rounds) * (2 * SPACINGS.len() as u64 + 2 + 1)
 }
 
-/// Measures unit costs and machine speed in a number of rounds.
+/// Measures unit costs of operations and the speed of the machine in a number of rounds.
 ///
 /// # Errors
 /// When a solver cannot run its scene.
@@ -89,7 +90,7 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObs
     Ok(Model { prices, probe })
 }
 
-/// Returns the number of each operation per particle-step, and the time of a particle-step (ns).
+/// Times a scene. Returns the number of each operation per particle-step and the time of a particle-step (ns).
 fn lap(
     solver: &dyn Solver,
     scene: &Scene,
@@ -107,10 +108,10 @@ fn lap(
     Ok((counts(&long), 1e9 * (after - before) / (long.particle_steps - short.particle_steps) as f64))
 }
 
-/// Returns the scene with a given number of steps and output only at start and end.
+/// Returns the scene with a given number of steps. Its only output is at the start and the end.
 fn for_steps(scene: &Scene, resolution: &Resolution, steps: u64) -> Scene {
     let duration = match (resolution, scene.duration) {
-        // Methods with a grid take a duration, not a step count: the scene lasts about one step.
+        // Grid methods take a duration, not a number of steps. The duration of the scene is about one step.
         (Resolution::Grid { .. }, Duration::Seconds(step)) => Duration::Seconds(step * steps as f64),
         _ => Duration::Cycles(steps),
     };
@@ -121,9 +122,9 @@ fn for_steps(scene: &Scene, resolution: &Resolution, steps: u64) -> Scene {
     Scene { duration, sampling, snapshots: 0, ..scene.clone() }
 }
 
-/// Solves for unit costs by elimination, from as many rows of counts and times as there are operations.
+/// Solves for unit costs by elimination. There are as many rows of counts and times as operations.
 ///
-/// Each row must be independent of the rows before it: it has a new operation or another ratio of operations.
+/// Rows must be linearly independent: each has a new operation or another ratio of operations.
 fn solved(mut rows: Vec<(Vec<f64>, f64)>) -> Vec<f64> {
     let count = rows.len();
     for pivot in 0..count {
@@ -157,7 +158,7 @@ fn computed() -> f64 {
     operations as f64 / (1e9 * (cpu_seconds() - begun))
 }
 
-/// Returns grains in two and three dimensions, and a block of material points.
+/// Returns the scenes of grains in two and three dimensions and of a block of material points.
 fn families() -> Result<Vec<Family>, SceneError> {
     const OF_GRAINS: fn(&Cost) -> Vec<f64> = |cost| {
         let each = |count: Option<u64>| count.unwrap_or(0) as f64 / cost.particle_steps as f64;
@@ -203,7 +204,8 @@ fn families() -> Result<Vec<Family>, SceneError> {
     ])
 }
 
-/// Returns grains at rest at a spacing in diameters (1 m), in a periodic domain so that they stay at rest.
+/// Returns grains of diameter 1 m at rest on a lattice. The spacing is in diameters. The domain is periodic, so that
+/// the grains stay at rest.
 fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
     let count = if dimension == 2 { 100 } else { 25 };
     let all = |value: String| vec![value; dimension].join(", ");
@@ -226,9 +228,9 @@ fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
     )
 }
 
-/// Returns a vibrating square block; its duration is one step.
+/// Returns a vibrating square block. Its duration is one step.
 fn block() -> Result<Scene, SceneError> {
-    // The wave speed is 11.6 m/s: in one step a wave crosses .35 of a cell of 1/60 m.
+    // The wave speed is 11.6 m/s. In one step a wave crosses 0.35 of a cell of 1/60 m.
     scene(
         "block",
         "dimension = 2\nduration = 5.0e-4\nreference_length = 1.0\n\
@@ -256,7 +258,7 @@ mod tests {
         }
     }
 
-    /// The three lattices have no pairs, pairs without contacts, and contacts.
+    /// The three lattices have no pairs, pairs without contacts, and pairs with contacts.
     #[test]
     fn lattices_have_what_is_counted() {
         use grainbench_dem::{convention::Convention, solver::Dem};

@@ -1,5 +1,5 @@
-//! Test of effects that are off. Each effect is compiled in with a neutral value. The result must be equal to the bit,
-//! and the additional cost is measured.
+//! Test of effects that are off. Each effect is turned on with a neutral value. The final positions, velocities and
+//! forces must not change by a single bit, except for the sign of zero. The additional cost is measured.
 
 use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
@@ -11,19 +11,21 @@ use std::time::{Duration, Instant};
 const STEPS: u64 = 20_000;
 /// Maximum number of particle-steps.
 const PARTICLE_STEPS: u64 = 4_000_000;
-/// Minimum number of alternating pairs of runs.
+/// Minimum number of pairs of runs with and without the effect.
 const FEWEST: usize = 3;
-/// Maximum number of alternating pairs of runs.
+/// Maximum number of pairs of runs with and without the effect.
 const MOST: usize = 15;
 
-/// Result of a trial with a neutral value.
+/// Result of a trial of an effect with its neutral value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeutralTrial {
-    /// True if all numbers are equal; the sign of zero is ignored.
+    /// True if positions, velocities and forces of all grains and the number of contacts are equal at the end. The sign
+    /// of zero is ignored.
     pub same: bool,
-    /// Ratio of particle-steps and contact evaluations with the effect to those without it.
+    /// Sum of particle-steps and contact evaluations with the effect, divided by the sum without it.
     pub counts: f64,
-    /// Median ratio of loop times with and without the effect; `None` if runs are too short to time.
+    /// Median ratio of the times of the stepping loop with and without the effect; `None` if a run is too short to
+    /// time.
     pub time: Option<f64>,
 }
 
@@ -36,9 +38,11 @@ pub(super) fn ratio_of_times(with: &Record, without: &Record) -> Option<f64> {
     (with >= SHORTEST && without >= SHORTEST).then(|| with / without)
 }
 
-/// Compares a scene with and without an effect at its neutral value, in alternating runs.
+/// Compares a scene with and without an effect at its neutral value, in alternating runs. The scene is shortened to a
+/// maximum number of steps.
 ///
-/// Runs are repeated while `patience` lasts. Returns `None` if the effect has no neutral value.
+/// After three pairs, further pairs are run until the time limit `patience`, in total at most 15 pairs. Returns `None` if the
+/// effect has no neutral value.
 ///
 /// # Errors
 /// When the solver cannot run the scene.
@@ -63,7 +67,7 @@ pub fn try_idly(
     if !effect.switch_on_idly(&mut idle) {
         return Ok(None);
     }
-    // The critical step is computed from the unchanged scene, because an unused material must not change it.
+    // The critical step is that of the scene without the effect, because an unused material must not change the step.
     let resolution = match resolution.steps(&plain) {
         Ok((time_step, _)) => Resolution::TimeStep(time_step),
         Err(_) => *resolution,
@@ -89,9 +93,10 @@ pub fn try_idly(
     }))
 }
 
-/// Returns true if two records end in the same numbers; the sign of zero is ignored.
+/// Returns true if two records end with equal positions, velocities and forces of all grains and equal numbers of
+/// contacts. The sign of zero is ignored.
 ///
-/// Spin is not compared, because it is not integrated without friction when nothing can change it.
+/// Spins are not compared, because solvers do not integrate them if no torque can act.
 fn same(a: &Record, b: &Record) -> bool {
     let (Some(a), Some(b)) = (a.snapshots.last(), b.snapshots.last()) else { return false };
     a.grains.len() == b.grains.len()

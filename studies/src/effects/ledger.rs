@@ -18,35 +18,36 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time for which an absent effect is tested, beyond the minimum number of runs.
+/// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Maximum number of steps of a method with a grid when an absent effect is tested.
+/// Maximum number of steps of a grid method when an absent effect is tested.
 const STEPS_OF_A_GRID: u64 = 200;
 
-/// An effect in one scene of a case.
+/// Effect in one scene of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneEffect {
-    /// Variant of the scene.
+    /// Name of the variant of the case that defines the scene.
     pub variant: &'static str,
-    /// The effect.
+    /// Physical effect, which is on or off in the scene.
     pub effect: Effect,
     /// Scene key that turns the effect on; `None` if the effect is off.
     pub key: Option<String>,
 }
 
-/// Effects study of a case. Runs without an effect are shared by all claims.
+/// Effects study of a case. All claims share the runs without an effect.
 pub struct Ledger {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
-    /// Runs with one effect switched off. The key is the effect, and the run in words.
+    /// Runs with one effect switched off, by effect and run.
     without: BTreeMap<(Effect, String), Result<FinishedRun, RunError>>,
 }
 
 impl Ledger {
-    /// Returns the study of a case. It covers short claims that are expected to pass and whose runs are all available.
+    /// Returns the study of a case. It uses claims that are expected to pass, if all their runs are short and
+    /// available.
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
         let runner = Runner::new(case, Arc::clone(&solvers));
@@ -58,7 +59,7 @@ impl Ledger {
         Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
 
-    /// Returns each variant used by the claims with each effect, on or off.
+    /// Returns each pair of an effect and a variant that the claims use. The effect may be on or off.
     #[must_use]
     pub fn pieces(&self) -> Vec<SceneEffect> {
         let mut pieces: Vec<SceneEffect> = Vec::new();
@@ -67,7 +68,7 @@ impl Ledger {
             for effect in Effect::switches() {
                 let key = effect.key(&scene).filter(|_| knows(run, effect));
                 match pieces.iter_mut().find(|piece| piece.variant == run.variant && piece.effect == effect) {
-                    // A claim's change of the scene may turn on an effect that is off in the unchanged scene.
+                    // A claim may change its scene and thereby turn on an effect that is off in the case's scene.
                     Some(piece) => piece.key = piece.key.take().or(key),
                     None => pieces.push(SceneEffect { variant: run.variant, effect, key }),
                 }
@@ -76,7 +77,7 @@ impl Ledger {
         pieces
     }
 
-    /// Returns the entry of an effect and true if it came from the result cache.
+    /// Returns the entry of an effect, and true if the entry came from the result cache.
     ///
     /// The entry is `None` for an absent effect without a neutral value.
     ///
@@ -97,9 +98,10 @@ impl Ledger {
         Ok((entry, false))
     }
 
-    /// Returns the first claim whose error exceeds its limit when the effect is switched off.
+    /// Returns, in words, the first claim whose error exceeds its limit if the effect is switched off.
     ///
-    /// If there is none, returns a claim without a value when the effect is off, such as the pressure under an unloaded wall.
+    /// If there is none, returns a claim that has no value without the effect, such as the pressure under an unloaded
+    /// wall.
     #[must_use]
     pub fn catches(&mut self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
@@ -173,7 +175,7 @@ impl Ledger {
     fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
         let without = self.error_without(claim, effect);
         let row = self.runner.judge(claim);
-        // A claim that cannot be run or measured without the effect shows nothing, as in negative controls.
+        // A claim that cannot be run or measured without the effect does not count, as in negative controls.
         let red = without.is_some_and(|(error, allowed)| error.abs() > allowed);
         Shift {
             quantity: claim.quantity.clone(),
@@ -185,7 +187,8 @@ impl Ledger {
         }
     }
 
-    /// Returns the error of a claim without an effect and its limit, or `None` if it cannot be run or measured.
+    /// Returns the error of a claim without an effect and the limit of the error. Returns `None` if the claim cannot be
+    /// run or measured.
     fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
         let done: Result<Vec<FinishedRun>, RunError> =
             claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
@@ -194,9 +197,9 @@ impl Ledger {
         Some((error, self.runner.allowed(claim, &done)?.0))
     }
 
-    /// Runs the scene without the effect. The expectation still uses the unchanged scene.
+    /// Runs a scene without an effect. The expected value is still computed from the scene with the effect.
     ///
-    /// Reference runs keep the effect.
+    /// Reference runs and runs of other programs keep the effect.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
         if !self.is_judged(run) {
             return self.runner.run(run);
@@ -226,9 +229,11 @@ impl Ledger {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
-    /// Tests an effect that is off, in the first run of the variant for each kind of solver that can omit the effect.
+    /// Tests an effect that is off. For each kind of solver that can omit the effect, uses the first run of the
+    /// variant.
     ///
-    /// The effect is inert if no solver's result changes. Counts and times are from the first solver.
+    /// The effect is inert if it changes no solver's result. Counts are from the first solver, and times from the first
+    /// solver with runs that are long enough to time.
     fn idle(&self, piece: &SceneEffect) -> Option<Entry> {
         let mut entry = Entry { worth: EffectResult::Inert, ..self.blank(piece) };
         for &method in piece.effect.left_out_by() {
@@ -250,7 +255,7 @@ impl Ledger {
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
         let mut scene = (*self.runner.scene(run).ok()?).clone();
         if method == Method::Grid {
-            // The step of a method with a grid is known only from a run.
+            // The time step of a grid method is known only from a run.
             let ran = self.runner.run(run).ok()?.record;
             scene.duration = Seconds(ran.provenance.time_step * ran.cost.steps.min(STEPS_OF_A_GRID) as f64);
         }

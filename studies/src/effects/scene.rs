@@ -1,4 +1,4 @@
-//! Effects study of a scene without claims: change of the probes without each effect, and cost of the effect.
+//! Effects study of a scene without claims: changes of the probes if an effect is omitted, and cost of the effect.
 
 use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
@@ -8,20 +8,20 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Method, Resolution, RunError, Solver};
 use std::time::Duration;
 
-/// Time for which an absent effect is tested, beyond the minimum number of runs.
+/// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Scene, solver and resolution of an effects study.
 pub struct StudyInput<'a> {
     /// Name of the scene.
     pub name: String,
-    /// The scene.
+    /// Scene whose effects are evaluated.
     pub scene: &'a Scene,
     /// Solver that runs the scene with and without each effect.
     pub solver: &'a dyn Solver,
     /// Resolution of all runs.
     pub resolution: Resolution,
-    /// Smallest relevant change, relative to the largest value of a probe.
+    /// Smallest relevant change of a probe column, relative to the largest absolute value of the column.
     pub matters: f64,
 }
 
@@ -29,12 +29,13 @@ impl StudyInput<'_> {
     /// Runs the unchanged scene.
     ///
     /// # Errors
-    /// When the solver cannot run it.
+    /// When the solver cannot run the scene.
     pub fn whole(&self) -> Result<Record, RunError> {
         self.solver.run(self.scene, &self.resolution, &mut ())
     }
 
-    /// Evaluates an effect: switches it off if the scene uses it, otherwise tests it with its neutral value.
+    /// Evaluates an effect. An effect that the scene uses is switched off; another effect is tested with its neutral
+    /// value.
     ///
     /// Returns `None` if the effect has no neutral value or the solver does not support the effect.
     #[must_use]
@@ -74,7 +75,7 @@ impl StudyInput<'_> {
         let record = self.solver.run(&without, &resolution, &mut ()).ok();
         for (at, column) in whole.series.columns.iter().enumerate() {
             let moved = record.as_ref().map_or(Some(f64::NAN), |record| farthest(whole, record, at));
-            // Columns without any value are skipped.
+            // Columns without values are skipped.
             let Some(moved) = moved else { continue };
             entry.shifts.push(Shift {
                 quantity: column.name.clone(),
@@ -105,15 +106,17 @@ impl StudyInput<'_> {
     }
 }
 
-/// Returns the largest difference of a column from the unchanged scene at equal samples, relative to its largest value.
+/// Returns the largest difference of a column between two runs at equal samples, relative to the largest absolute value
+/// of the column with the effect.
 ///
-/// The result is NaN if the changed run has no value, and `None` if the column of the unchanged scene is empty.
+/// The result is NaN if the run without the effect has another number of samples or a value that is NaN. It is `None`
+/// if the column is empty.
 fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
     let values = whole.series.values.get(column)?;
     let scale = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));
     let others = without.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
     if scale == 0.0 {
-        // If a quantity is zero with the effect, any non-zero value without it counts as a change of one.
+        // If the column is zero with the effect, any other value without the effect counts as a relative change of 1.
         let largest = others.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         return (!values.is_empty()).then_some(if largest > 0.0 { 1.0 } else { 0.0 });
     }
@@ -150,7 +153,7 @@ mod tests {
         asked.entry(&whole, effect).unwrap().worth
     }
 
-    /// Without friction the disc slides half as far again and does not turn.
+    /// Without friction the disc slides 1.5 times as far and does not rotate.
     #[test]
     fn what_a_scene_needs_is_told_from_what_it_does_not() {
         assert_eq!(worth(Effect::Friction, 0.01), EffectResult::Needed);

@@ -1,9 +1,11 @@
-//! Assemblies with an exactly known largest stable step: grains of unit mass on springs of unit stiffness, so that
-//! steps are in units of √(m/k).
+//! Assemblies with exactly known largest stable time steps. Grains have unit mass and contacts unit stiffness, so that
+//! time steps are in units of √(m/k).
 //!
-//! Central differences are stable up to Δt = 2/ω of the highest mode. Every assembly is compressed, so that no contact
-//! opens. Every degree of freedom is perturbed at random by a millionth of the overlap, because a symmetric start never
-//! excites the critical mode. A run is unstable if the perturbation has grown by a factor of 1000.
+//! Central differences are stable up to Δt = 2/ω, where ω is the highest angular frequency. Every assembly except the
+//! free pair is compressed, so that no contact opens. Each degree of freedom is perturbed at random by up to a
+//! millionth of the overlap, because a symmetric start never excites the critical mode. A run is unstable if a
+//! displacement (m) or a spin (rad/s) exceeds 1000 times this amplitude. In the table, κ = k_s/k_n is the ratio of
+//! tangential to normal stiffness, and I is the moment of inertia:
 //!
 //! ```text
 //! grain on a wall     ω² = k/m; with a tangential spring κk that does not slip also κ(k/m)(1 + 1/i), i = I/(mR²)
@@ -14,9 +16,9 @@
 //! nine discs in a box the largest eigenvalue of 27 equations: 2/ω = 1.08239, .65402, .53418 for κ = 0, 2/3, 1
 //! ```
 //!
-//! A free pair starts at rest with overlap δ and separates within two steps near its limit, 2/ω = √2. In central
-//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step of separation. The pair therefore separates
-//! with more energy than its spring stored if and only if Δt > 2/ω.
+//! A free pair starts at rest with overlap δ. Near its limit, 2/ω = √2, it separates within two steps. In central
+//! differences ½v²(1 − ω²Δt²/4) ≤ ½ω²δ²(1 − ω²Δt²/4) holds at the step of separation. The pair therefore separates with
+//! more energy than its spring stored if and only if Δt > 2/ω.
 
 use super::failure::{Failure, finite};
 use grainbench_scene::error::SceneError;
@@ -28,18 +30,19 @@ use std::f64::consts::SQRT_2;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Overlap of every contact (m); radii are one.
+/// Overlap of every contact (m). All radii are 1 m.
 const OVERLAP: f64 = 1e-5;
-/// Perturbation of every degree of freedom (m).
+/// Largest perturbation of a degree of freedom (m).
 const PERTURBATION: f64 = 1e-6 * OVERLAP;
-/// Growth factor that counts as unstable.
+/// Ratio of a displacement to the largest perturbation above which a run counts as unstable.
 const GROWTH: f64 = 1000.0;
-/// Number of steps. Slightly above the limit, by ε, a perturbation grows by 1 + √(8ε) in each step.
+/// Number of steps. If the time step exceeds the limit by a small fraction ε, a perturbation grows by a factor of 1 +
+/// √(8ε) per step.
 ///
-/// Rows of a compressed lattice without friction always slide off each other, at a rate of about √(overlap/R · k/m).
-/// This is negligible within 400 steps.
+/// In a compressed lattice without friction, rows always slide off each other, at a rate of about √(overlap/R · k/m).
+/// Within 400 steps this is negligible.
 const STEPS: u64 = 400;
-/// Number of steps within which a free pair separates.
+/// Number of steps of a free pair, within which it separates.
 const APART: u64 = 60;
 
 /// Criterion of instability.
@@ -56,22 +59,22 @@ enum Judge {
 pub struct Assembly {
     /// Name in tables, such as `square lattice of discs`.
     pub name: &'static str,
-    /// κ = k_s/k_n of contacts that do not slip; `None` for frictionless assemblies in which κ is not varied.
+    /// Ratio κ = k_s/k_n of contacts that do not slip; `None` for frictionless assemblies in which κ is not varied.
     pub kappa: Option<f64>,
-    /// Exact limit in √(m/k).
+    /// Exact limit of the time step (√(m/k)).
     pub exact: f64,
-    /// Scene with its perturbation.
+    /// Scene with perturbed grains.
     pub scene: Scene,
-    /// Equilibrium positions (m), by grain.
+    /// Equilibrium positions of the grains (m).
     rest: Vec<Vector3<f64>>,
     judge: Judge,
 }
 
 impl Assembly {
-    /// Checks that a run was stable.
+    /// Checks that a run of the assembly was stable.
     ///
     /// # Errors
-    /// The error is the kind of failure.
+    /// The kind of failure if the run was unstable.
     pub fn judge(&self, record: &Record) -> Result<(), Failure> {
         record.snapshots.iter().try_for_each(finite)?;
         match self.judge {
@@ -96,7 +99,7 @@ impl Assembly {
 }
 
 impl Assembly {
-    /// Returns the minimum image of a distance vector in a periodic domain.
+    /// Returns the minimum image of a displacement (m) in a periodic domain.
     fn nearest_image(&self, mut way: Vector3<f64>) -> Vector3<f64> {
         if let Some(domain) = self.scene.domain {
             for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
@@ -128,10 +131,10 @@ pub fn all() -> Result<Vec<Assembly>, SceneError> {
     Ok(all)
 }
 
-/// Returns the beginning of a scene file of discs or spheres of unit mass.
+/// Returns the first part of a scene file with discs or spheres of unit mass.
 fn head(dimension: u32, kappa: f64) -> String {
     let density = if dimension == 2 { std::f64::consts::FRAC_1_PI } else { 0.75 * std::f64::consts::FRAC_1_PI };
-    // Friction is so high that nothing slips.
+    // The friction coefficient is so high that no contact slips.
     let friction =
         if kappa > 0.0 { format!("tangential_stiffness = {kappa:?}\nfriction = 100.0\n") } else { String::new() };
     format!(
@@ -168,9 +171,10 @@ fn finish(
     Ok(Assembly { name, kappa, exact, scene, rest, judge })
 }
 
-/// Moves every grain by a random part of the perturbation, and turns it by such a part if rotation matters.
+/// Displaces every grain by a random part of the perturbation. If rotation matters, also gives it a random spin of at
+/// most `PERTURBATION`.
 ///
-/// A single row is moved only along x, because it would buckle otherwise.
+/// Grains in a row are displaced only along x, because the row would buckle otherwise.
 fn perturb(scene: &mut Scene, turns: bool) {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut dice = move || {
@@ -214,7 +218,7 @@ fn pair() -> Result<Assembly, SceneError> {
     finish("free pair", None, SQRT_2, &text, Judge::Energy)
 }
 
-/// Returns a ring of sixty-four grains. The number is even, so that neighbours can move in opposite directions.
+/// Returns a periodic row of 64 grains. The number is even, so that neighbours can move in opposite directions.
 fn chain() -> Result<Assembly, SceneError> {
     const COUNT: usize = 64;
     let spacing = 2.0 - OVERLAP;

@@ -1,20 +1,21 @@
-//! Bisection for the largest step that passes, to a given precision.
+//! Bisection for the largest time step that passes, to a given precision.
 
-/// Bracket of the limit between passing and failing steps.
+/// Limit between time steps that pass and time steps that fail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket<F> {
-    /// The largest step that passed.
+    /// Largest time step that passed.
     pub stable: f64,
-    /// The smallest step that failed, and the failure; `None` if no step failed.
+    /// Smallest time step that failed, and its failure; `None` if no step failed.
     pub unstable: Option<(f64, F)>,
 }
 
-/// Bisects the logarithmic range between a step that passes and one that fails, to a relative `precision`.
+/// Bisects the range between a time step that passes and one that fails on a logarithmic scale, until they differ by a
+/// relative `precision`.
 ///
-/// If the larger end passes, it is doubled up to `doublings` times.
+/// If the upper end of the range passes, it is doubled up to `doublings` times.
 ///
 /// # Errors
-/// The failure of the smaller end.
+/// The failure at the lower end of the range.
 pub fn largest<F>(
     [low, high]: [f64; 2],
     precision: f64,

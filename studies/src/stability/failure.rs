@@ -4,16 +4,16 @@ use grainbench_scene::record::Snapshot;
 use grainbench_scene::solver::{Cause, RunError};
 use std::fmt;
 
-/// Failure for which a step counts as unstable.
+/// Failure because of which a time step counts as unstable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
-    /// A number is infinite or NaN.
+    /// A position, velocity or spin is infinite or NaN.
     NotFinite,
     /// Energy or perturbation exceeds its limit by this factor.
     Growth(f64),
     /// A grain has passed through a wall or another grain.
     Tunnelling(String),
-    /// A grain does not move although it must.
+    /// Grains do not move or separate although they must.
     Freeze(String),
     /// A cell has collapsed to zero volume.
     CellCollapsed,
@@ -48,7 +48,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Returns the failure of a run that ended in an error, or `None` if the run could not start.
+/// Returns the failure of a run that ended in an error, or `None` for errors that prevent the run.
 #[must_use]
 pub fn of_error(error: &RunError) -> Option<Failure> {
     match error {
@@ -61,10 +61,10 @@ pub fn of_error(error: &RunError) -> Option<Failure> {
     }
 }
 
-/// Checks that every number of a snapshot is finite.
+/// Checks that positions, velocities and spins of all grains are finite.
 ///
 /// # Errors
-/// When a number is not finite.
+/// When a number is infinite or NaN.
 pub fn finite(snapshot: &Snapshot) -> Result<(), Failure> {
     let sound = snapshot.grains.iter().all(|grain| {
         let vectors = [grain.position, grain.velocity, grain.spin];

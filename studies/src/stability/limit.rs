@@ -1,4 +1,4 @@
-//! The largest stable step of every assembly and solver.
+//! Largest stable time step of each assembly and solver.
 
 use super::PATIENCE;
 use super::assembly::Assembly;
@@ -12,35 +12,35 @@ use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, RunOptions, Solver};
 use grainbench_store::WriteError;
 
-/// Relative precision of a bracket.
+/// Relative precision of a limit.
 const PRECISION: f64 = 0.005;
-/// Range of steps in which the limit of an assembly is sought, in √(m/k). It is the same for all assemblies, so that it
-/// contains no information about the exact limit.
+/// Range of time steps in which the limit of an assembly is sought (√(m/k)). It is the same for all assemblies, so that
+/// it contains no information about the exact limits.
 const RANGE: [f64; 2] = [0.15, 3.0];
-/// Default step of input decks and commands, in √(m/k): a tenth of 2√(m/k).
+/// Default time step of input decks and commands (√(m/k)): a tenth of 2√(m/k).
 const DEFAULT: f64 = 0.2;
-/// Solvers with springs.
+/// Solvers with contact springs, for the limits of assemblies.
 pub const SPRINGS: [&str; 3] = ["dem", "lammps", "liggghts"];
-/// Settings of the material point method.
+/// MPM solvers with their settings, for the limit of the bar.
 pub const GRIDS: [&str; 6] =
     ["mpm", "mpm+linear", "mpm+gimp+flip", "mpm+linear+flip", "mpm+linear+flip+usf", "mpm+linear+flip+usl"];
-/// Ratio of energy to its initial value that counts as growth.
+/// Ratio of the energy to its initial value above which a run counts as unstable.
 const MORE_ENERGY: f64 = 1.1;
 
-/// Returns the name of an assembly's limit in a result cache.
+/// Returns the name of the limit of an assembly in a result cache.
 #[must_use]
 pub fn name_of_assembly(program: &str, assembly: &Assembly, solver: &str) -> String {
     let text = format!("{:?}", assembly.scene);
     identity::of_words(program, &["limit", assembly.name, &text, solver])
 }
 
-/// Returns the name of the bar's limit in a result cache.
+/// Returns the name of the limit of the vibrating bar in a result cache.
 #[must_use]
 pub fn name_of_bar(program: &str, setting: &str, cells: f64) -> String {
     identity::of_words(program, &["bar", setting, &cells.to_string()])
 }
 
-/// Returns the limit of an assembly for a solver, and true if it came from the result cache.
+/// Returns the limit of an assembly for a solver, and true if the limit came from the result cache.
 ///
 /// # Errors
 /// When the limit cannot be stored.
@@ -83,10 +83,10 @@ pub fn of_assembly(
     Ok((limit, false))
 }
 
-/// Returns the largest Courant number at which the energy of a vibrating bar grows by at most a tenth, and true if it
-/// came from the result cache.
+/// Returns the largest Courant number at which the energy of a vibrating bar grows by at most a tenth. Also returns
+/// true if the limit came from the result cache.
 ///
-/// `bar` is the scene of the vibrating bar, and `cells` the number of cells over its length.
+/// `bar` is the scene of the vibrating bar, and `cells` is the number of cells over its length.
 ///
 /// # Errors
 /// When the limit cannot be stored.
@@ -125,7 +125,7 @@ pub fn of_bar(
 
 fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Result<(), Stop> {
     let mut scene = scene.clone();
-    // Two periods.
+    // These 20 s are two periods of vibration.
     scene.duration = Duration::Seconds(20.0);
     let record = solver
         .run(&scene, &Resolution::Grid { cells, points: 2, courant }, &mut RunOptions::unstable())
@@ -139,11 +139,11 @@ fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Resu
     if most > MORE_ENERGY { Err(Stop::Unstable(Failure::Growth(most))) } else { Ok(()) }
 }
 
-/// Reason why a step does not pass.
+/// Reason why a time step does not pass.
 enum Stop {
-    /// The solver cannot run the scene at any step.
+    /// The solver cannot run the scene at all.
     Cannot(String),
-    /// This step is unstable.
+    /// The run is unstable at this time step.
     Unstable(Failure),
 }
 
@@ -151,18 +151,18 @@ fn stop(error: RunError) -> Stop {
     of_error(&error).map_or_else(|| Stop::Cannot(error.to_string()), Stop::Unstable)
 }
 
-/// Bisects and fills in the result.
+/// Finds a limit by bisection and enters it in the result.
 fn fill(limit: &mut Limit, range: [f64; 2], doublings: u32, test: impl FnMut(f64) -> Result<(), Stop>) {
     match largest(range, PRECISION, doublings, test) {
         Err(Stop::Cannot(why)) => limit.detail = why,
-        Err(Stop::Unstable(how)) => limit.detail = format!("already unstable at {:.3}: {how}", range[0]),
+        Err(Stop::Unstable(how)) => limit.detail = format!("unstable already at {:.3}: {how}", range[0]),
         Ok(bracket) => {
             let found = bracket.stable;
             limit.found = Some(found);
             limit.margin = limit.default.map(|default| found / default);
             limit.error = limit.exact.map(|exact| (found - exact) / exact);
             limit.detail = match bracket.unstable {
-                None => "stable at every step tried".to_owned(),
+                None => "stable at each tried step".to_owned(),
                 Some((step, Stop::Unstable(how))) => {
                     limit.unstable = Some(step);
                     how.to_string()

@@ -1,4 +1,4 @@
-//! Stability study. It finds the largest stable step by bisection, and runs hard cases.
+//! Stability study. It finds the largest stable time steps by bisection, and runs hard cases.
 
 pub mod assembly;
 pub mod bisection;
@@ -8,5 +8,5 @@ pub mod limit;
 
 use std::time::Duration;
 
-/// Time limit of an external solver; grains that have escaped could keep it running for hours.
+/// Time limit for a run of another program. Grains that have escaped could make the program run for hours.
 const PATIENCE: Duration = Duration::from_secs(20);

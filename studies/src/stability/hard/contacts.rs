@@ -9,26 +9,28 @@ pub(super) fn cases() -> Vec<HardCase> {
     vec![
         case(
             "initial-overlap-50-percent",
-            "two discs that start overlapped by R/2 part with no more energy than their spring held",
+            "two discs that overlap by R/2 at the start separate with at most the energy of their spring",
             OVERLAPPED,
             released,
         ),
         case(
             "impact-crosses-a-grain-in-a-step",
-            "a disc that flies more than its diameter in a default step does not get past a wall, nor gain energy",
+            "a disc that moves more than its diameter in a default step does not pass through a wall and gains no \
+             energy",
             BULLET,
             stopped,
         ),
         case(
             "edge-along-cell-border",
-            "a disc that slides without friction, its edge along the border of cells, keeps its velocity to 1 % \
-             and stays on the plane",
+            "a disc that slides without friction, with its edge along the border of cells, keeps its velocity within 1 \
+             % and stays on the plane",
             EDGE,
             slides,
         ),
         case(
             "compression-to-30-percent",
-            "a disc squeezed between two planes to 30 % of its height stays between them, whole, with its centre in the middle",
+            "a disc compressed between two planes to 30 % of its height stays whole and between the planes, with its \
+             centre in the middle",
             SQUEEZED,
             squeezed,
         ),
@@ -46,7 +48,8 @@ pub(super) fn cases() -> Vec<HardCase> {
         ),
         changed(
             "exactly-coincident-grains",
-            "two discs with one centre part or the run says what is wrong: nothing that is not finite, no energy from nowhere",
+            "two discs with the same centre separate, or the run ends with an error; all values are finite and no \
+             energy is gained",
             COINCIDENT,
             |scene| scene.grains[1].position = scene.grains[0].position,
             coincident,
@@ -74,7 +77,7 @@ fn released(scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("height", grains[0].position.y.abs().max(grains[1].position.y.abs()), 0.0, 1e-6)
 }
 
-/// The critical step is 2√(m/k) = 2√(785/1e7) = .0177 s; in a tenth of it the disc moves 1.8 m.
+/// The critical time step is 2√(m/k) = 2√(785/1e7) s = 0.0177 s. In a tenth of this time the disc moves by 1.8 m.
 const BULLET: &str = "title = 'Too fast'\ndimension = 2\nduration = 0.05\n\
     materials.m = { density = 1000.0, young_modulus = 1.0e10, poisson_ratio = 0.3 }\n\
     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e7\n\
@@ -91,7 +94,7 @@ fn stopped(scene: &Scene, record: &Record) -> Result<(), Failure> {
     if after > 1.01 * before { Err(Failure::Growth(after / before)) } else { Ok(()) }
 }
 
-/// With eight cells per radius, the lowest point of the disc is on a border of cells.
+/// With eight cells per radius, the lowest point of the disc is on a cell boundary.
 const EDGE: &str = "title = 'Along a border'\ndimension = 2\ngravity = [0.0, -1.0]\nduration = 1.0\n\
     materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
@@ -130,7 +133,7 @@ fn squeezed(_scene: &Scene, record: &Record) -> Result<(), Failure> {
     }
 }
 
-/// Returns a scene with a floor and an inclined wall; gravity drives the disc into the corner.
+/// Returns a scene with a floor and a second wall of the given normal. Gravity drives the disc into the corner.
 fn corner(normal: [f64; 2]) -> String {
     format!(
         "title = 'A corner'\ndimension = 2\ngravity = [-7.0, -7.0]\nduration = 2.0\n\
@@ -148,7 +151,7 @@ fn in_the_corner(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let energy = |velocity: f64, place: nalgebra::Vector3<f64>| 0.5 * velocity - scene.gravity.dot(&place);
     let start = energy(scene.grains[0].velocity.norm_squared(), scene.grains[0].position);
     let now = energy(grains[0].velocity.norm_squared(), grains[0].position);
-    // Potential energy has its minimum in the corner: 7 (x + y) > 0 inside.
+    // The potential energy per mass is 7 (x + y) > 0 inside, with its minimum in the corner.
     if now > start + 0.02 * start.abs() {
         return Err(Failure::Growth(now / start));
     }

@@ -15,16 +15,16 @@ struct Impact {
 }
 
 impl Impact {
-    /// Returns the scene; its duration is three times the time of approach and contact.
+    /// Returns the text of the scene. Its duration is three times the time of approach and contact.
     fn text(&self) -> String {
         let &Self { radii: [a, b], densities: [first, second], length, speed, stiffness } = self;
         let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
         let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
         let gap = 0.02 * a.min(b) * length;
         let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
-        // The moduli are chosen so that waves cross either grain in a hundredth of the time in which the smaller one
-        // moves by its radius. If a grain leaves before the other is in equilibrium, waves remain in the other grain.
-        // The velocities then differ from those of point masses.
+        // The moduli are so high that waves cross each grain in a hundredth of the time in which the smaller grain
+        // moves by its radius. Otherwise a grain could leave before the other grain is in equilibrium. Waves would
+        // remain in the other grain, and the velocities would differ from those of point masses.
         let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
         let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
         format!(
@@ -44,7 +44,7 @@ impl Impact {
     }
 }
 
-/// Returns an impact whose speed gives a maximum overlap of a hundredth of a radius.
+/// Returns the scene of an impact. The stiffness makes the largest overlap 1 % of the smaller radius.
 fn impact(radii: [f64; 2], densities: [f64; 2], length: f64) -> String {
     let speed = length;
     let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
@@ -55,8 +55,8 @@ fn impact(radii: [f64; 2], densities: [f64; 2], length: f64) -> String {
 }
 
 pub(super) fn cases() -> Vec<HardCase> {
-    const MOMENTA: &str =
-        "after an elastic head-on impact both velocities are those of two points, to 3 % of the speed of approach";
+    const MOMENTA: &str = "after an elastic head-on impact both velocities agree with those of two point masses, \
+         within 3 % of the approach speed";
     let mut cases = Vec::new();
     for (exponent, ratio) in [("1e-6", 1e-6), ("1e-3", 1e-3), ("1e3", 1e3), ("1e6", 1e6)] {
         cases.push(case(
@@ -72,21 +72,22 @@ pub(super) fn cases() -> Vec<HardCase> {
     }
     cases.push(case(
         "stiffness-ratio-1e4",
-        "momentum to 1e-9 and energy to 1 % in a row of three discs whose contacts differ in stiffness by 1e4",
+        "momentum is conserved to 1e-9 and energy to 1 % in a row of three discs whose contacts differ in stiffness by \
+         the factor 1e4",
         STIFFNESS,
         three_in_a_row,
     ));
     for ratio in [0.9, 1.0, 1.5, 10.0] {
         cases.push(case(
             format!("damping-{ratio}-of-critical"),
-            "two discs part with at most 20 % of the speed at which they met, and never faster",
+            "two discs separate with at most 20 % of their approach speed",
             &damped(ratio),
             damped_impact,
         ));
     }
     cases.push(case(
         "high-spin",
-        "a disc with a surface speed of 1e4 √(gR) is driven forwards and gains no energy",
+        "a disc with a surface speed of 1e4 √(gR) is accelerated forwards by friction and gains no energy",
         SPIN,
         spin,
     ));
@@ -112,7 +113,8 @@ fn three_in_a_row(scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("energy", after, before, 0.01 * before)
 }
 
-/// γ_n = 2ζ√(k/m*) for unit masses, with m* = 1/2 and k = 1e4.
+/// Returns the scene of two discs of unit mass with the damping ratio ζ = `ratio`. The dashpot has γ_n = 2ζ√(k/m*),
+/// with the reduced mass m* = 1/2 and k = 1e4.
 fn damped(ratio: f64) -> String {
     format!(
         "title = 'Damped impact'\ndimension = 2\nduration = 2.0\nmaterials.m.density = {:?}\n\
@@ -143,7 +145,7 @@ const SPIN: &str = "title = 'High spin'\ndimension = 2\ngravity = [0.0, -10.0]\n
     [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
     [output]\nevery = 0.5\n[probes]\na = { grain = 'a' }\n";
 
-/// The disc slides all the time: v = μ g t.
+/// Checks velocity, height and energy of the disc. The disc slides during the whole run, so v = μgt.
 fn spin(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let grains = end(record);
     near("velocity", grains[0].velocity.x, 0.5 * 10.0 * 0.5, 0.05)?;

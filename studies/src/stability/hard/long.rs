@@ -1,4 +1,4 @@
-//! Rest over many steps without creep.
+//! Rest during many time steps without creep.
 
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::failure::Failure;
@@ -6,21 +6,23 @@ use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use std::fmt::Write as _;
 
-/// Duration of rest, in steps of a tenth of the critical step.
+/// Duration of the run, in units of a tenth of the critical time step.
 const STEPS: f64 = 1e6;
 
 pub(super) fn cases() -> Vec<HardCase> {
     vec![case(
         "heap-at-rest-for-1e6-steps",
-        "six discs in a heap come to rest and stay: no disc is off its place by R/100 after 10⁶ steps of springs, none moves",
+        "six discs in a heap come to rest and stay at rest: after 10⁶ steps of the springs each disc is within R/100 \
+         of its place, and none moves",
         &heap(),
         at_rest,
     )]
 }
 
-/// Returns rows of three, two and one discs between stops, with friction and dashpots.
+/// Returns the scene of a heap: rows of three, two and one discs between two vertical walls, with friction and
+/// dashpots.
 ///
-/// The masses are one and k = 1e6, so that a tenth of the critical step is 2e-4 s.
+/// All masses are 1 and k = 1e6, so that a tenth of the critical time step is 2e-4 s.
 fn heap() -> String {
     let mut text = format!(
         "title = 'A heap'\ndimension = 2\ngravity = [0.0, -10.0]\nduration = {:?}\nmaterials.m.density = {:?}\n\
@@ -46,7 +48,7 @@ fn heap() -> String {
 fn at_rest(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let grains = end(record);
     for (grain, start) in grains.iter().zip(&scene.grains) {
-        near(&format!("way that grain {} has gone", grain.id), (grain.position - start.position).norm(), 0.0, 0.01)?;
+        near(&format!("displacement of grain {}", grain.id), (grain.position - start.position).norm(), 0.0, 0.01)?;
     }
     near("kinetic energy", kinetic(grains, scene), 0.0, 1e-6)
 }

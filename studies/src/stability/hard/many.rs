@@ -1,4 +1,4 @@
-//! A thousand grains: long rest, dense shear, and a restart in the middle of a run.
+//! A thousand grains: long rest, dense shear, and a restart at half of a run.
 
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::failure::Failure;
@@ -7,14 +7,15 @@ use grainbench_scene::scene::Scene;
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-/// Rows of the heap, which has 990 discs.
+/// Number of rows of the heap, which has 990 discs.
 const ROWS: usize = 44;
-/// Duration of rest, in steps of a tenth of the critical step.
+/// Duration of the run, in units of a tenth of the critical time step.
 const STEPS: f64 = 1e6;
-/// Discs along the sheared layer, and number of its rows.
+/// Number of discs in each row of the sheared layer.
 const ACROSS: usize = 40;
+/// Number of rows of the sheared layer.
 const LAYERS: usize = 25;
-/// Radius of a sheared disc; centres are two apart, so that the area fraction is .80.
+/// Radius of a sheared disc (m). Centres are 2 m apart, so that the area fraction is 0.80.
 const RADIUS: f64 = 0.94;
 
 pub(super) fn cases() -> Vec<HardCase> {
@@ -24,16 +25,16 @@ pub(super) fn cases() -> Vec<HardCase> {
             asked: &["dem"],
             ..case(
                 "heap-of-990-for-1e6-steps",
-                "a heap of 44 rows of discs comes to rest and stays: no disc is off its place by R/10 after 10⁶ steps of \
-                 springs, none moves",
+                "a heap of 44 rows of discs comes to rest and stays at rest: after 10⁶ steps of the springs each disc \
+                 is within R/10 of its place, and none moves",
                 &heap(),
                 at_rest,
             )
         },
         case(
             "dense-shear-of-1000",
-            "a layer of 1000 discs between walls that move apart along themselves: all stay between the walls, none overlaps by \
-             R/10, none is faster than twice the wall",
+            "a layer of 1000 discs is sheared between two walls: all discs stay between the walls, no overlap reaches \
+             R/10, and no disc is faster than twice the speed of the wall",
             &shear,
             sheared,
         ),
@@ -41,7 +42,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             goes_on: true,
             ..case(
                 "restart-of-1000-in-the-middle",
-                "the same layer, interrupted halfway and continued from its checkpoint, ends in the same bits",
+                "the same layer, interrupted halfway and continued from its checkpoint, ends with the same bits",
                 &shear,
                 sheared,
             )
@@ -49,7 +50,7 @@ pub(super) fn cases() -> Vec<HardCase> {
     ]
 }
 
-/// Returns the beginning of a scene of unit masses with k = 1e6: a tenth of the critical step is 2e-4 s.
+/// Returns the first part of a scene with unit masses and k = 1e6. A tenth of the critical time step is then 2e-4 s.
 fn head(title: &str, duration: f64, gravity: f64, radius: f64) -> String {
     format!(
         "title = '{title}'\ndimension = 2\ngravity = [0.0, {gravity:?}]\nduration = {duration:?}\nmaterials.m.density = {:?}\n\
@@ -88,12 +89,12 @@ fn at_rest(scene: &Scene, record: &Record) -> Result<(), Failure> {
         return Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())));
     }
     for (grain, start) in grains.iter().zip(&scene.grains) {
-        near(&format!("way that grain {} has gone", grain.id), (grain.position - start.position).norm(), 0.0, 0.1)?;
+        near(&format!("displacement of grain {}", grain.id), (grain.position - start.position).norm(), 0.0, 0.1)?;
     }
     near("kinetic energy", kinetic(grains, scene), 0.0, 1e-6)
 }
 
-/// Returns the height of the layer.
+/// Returns the height of the sheared layer (m).
 fn height() -> f64 {
     3.0_f64.sqrt() * (LAYERS - 1) as f64 + 2.0 * RADIUS
 }

@@ -1,4 +1,4 @@
-//! Hard cases. Each has a solver-independent condition, and each solver that supports the case gets a verdict.
+//! Hard cases. Each case has a solver-independent condition, which a run of each solver either meets or violates.
 
 mod contacts;
 mod extremes;
@@ -21,38 +21,38 @@ use grainbench_scene::source::SceneSource;
 use grainbench_store::WriteError;
 use std::path::Path;
 
-/// Checks the condition at the end of a run.
+/// Function that checks the condition at the end of a run.
 type Check = fn(&Scene, &Record) -> Result<(), Failure>;
 
 /// Hard case: a scene in which solvers may fail, and the required property.
 pub struct HardCase {
     /// Name in tables, such as `mass-ratio-1e6`.
     pub name: String,
-    /// Description of the condition.
+    /// Condition in words.
     pub must: &'static str,
-    /// Scene, or the error of reading it.
+    /// Scene, or the error of its text.
     pub scene: Result<Scene, SceneError>,
-    /// Check of the condition.
+    /// Function that checks the condition.
     pub check: Check,
-    /// True if the run is also continued from a checkpoint halfway and must end in the same bits.
+    /// True if the run is also continued from a checkpoint at half of the steps. It must then end in the same bits.
     pub goes_on: bool,
-    /// Solvers to test. Cases of 10⁹ grain-steps list only a fast solver, which needs a minute.
+    /// Solvers to test. For cases of 10⁹ grain-steps these are only fast solvers, which need a minute.
     pub asked: &'static [&'static str],
 }
 
-/// Tested solvers.
+/// Solvers that are tested by default.
 pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
-/// Fractions of the default step that are tried after a failure.
+/// Fractions of the default time step that are tried after a failure.
 const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
-/// Default step of solvers with springs, as a fraction of the critical step.
+/// Default time step of solvers with contact springs, as a fraction of the critical time step.
 const FRACTION: f64 = 0.1;
-/// Default number of cells per radius.
+/// Default number of cells per reference length of the scene.
 const CELLS: f64 = 8.0;
 /// Material points per cell along each axis.
 const POINTS: u32 = 2;
-/// Longest expected run (s) of an attempt with a smaller step.
+/// Longest expected run with a smaller time step (s).
 const PATIENCE: f64 = 60.0;
-/// Longest expected run (s) at the default step; beyond it the case counts as unsupported.
+/// Longest expected run with the default time step (s). Longer cases count as unsupported.
 const HOPELESS: f64 = 600.0;
 
 /// Returns all hard cases.
@@ -66,7 +66,7 @@ fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -
     changed(name, must, text, |_| {}, check)
 }
 
-/// Returns a case with a change of the scene that the scene reader would reject.
+/// Returns a case whose scene is changed after reading, because the scene reader would reject the changed scene.
 fn changed(
     name: impl Into<String>,
     must: &'static str,
@@ -83,24 +83,24 @@ fn changed(
     HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
 }
 
-/// Returns the name of a solver's verdict in a result cache.
+/// Returns the name of a solver's result in a result cache.
 #[must_use]
 pub fn name_of(program: &str, case: &HardCase, solver: &str) -> String {
     let text = format!("{:?}", case.scene);
     identity::of_words(program, &["hard", &case.name, &text, solver])
 }
 
-/// Estimates the time of a verdict (s).
+/// Estimates the time of a case with a solver (s); zero if the case is too long to run.
 #[must_use]
 pub fn seconds(case: &HardCase, solver: &str) -> f64 {
     let expected = case.scene.as_ref().map_or(0.0, |scene| nominal_seconds(scene, &resolution(solver, 1.0)));
     if expected > HOPELESS { 0.0 } else { expected }
 }
 
-/// Returns the verdict of a solver, and true if it came from the result cache.
+/// Returns the result of a solver for a case, and true if it came from the result cache.
 ///
 /// # Errors
-/// When the verdict cannot be stored.
+/// When the result cannot be stored.
 pub fn verdict(
     program: &str,
     case: &HardCase,
@@ -116,7 +116,7 @@ pub fn verdict(
     Ok((row, false))
 }
 
-/// Runs a case with a solver at its default step, and at smaller steps if it fails.
+/// Runs a case with a solver at its default time step, and at smaller steps if the run fails.
 #[must_use]
 pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResult {
     let mut row = HardCaseResult {
@@ -137,8 +137,10 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
     };
     let expected = nominal_seconds(scene, &resolution(name, 1.0));
     if expected > HOPELESS {
-        row.detail =
-            format!("one uniform grid for its smallest grain would take some {:.0} h", (expected / 3600.0).ceil());
+        row.detail = format!(
+            "a uniform grid that resolves the smallest grain would take about {:.0} h",
+            (expected / 3600.0).ceil()
+        );
         return row;
     }
     match attempt(case, scene, &*solver, 1.0) {
@@ -160,7 +162,7 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
             {
                 row.standing = Hardness::HoldsAtASmallerStep;
                 row.resolution = resolution(name, part).to_string();
-                let quiet = if how.is_typed() { "" } else { "quietly wrong at the default step: " };
+                let quiet = if how.is_typed() { "" } else { "wrong without an error at the default step: " };
                 row.detail = format!("{quiet}{how}");
             }
         }
@@ -174,7 +176,7 @@ enum Stop {
     Failed(Failure),
 }
 
-/// Returns the default resolution of a solver with its step multiplied by `part`.
+/// Returns the default resolution of a solver with its time step multiplied by `part`.
 fn resolution(solver: &str, part: f64) -> Resolution {
     match solver.split([':', '+']).next() {
         Some("rigid") => Resolution::substeps((8.0 / part).round() as u32),
@@ -199,7 +201,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
             record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
             (case.check)(scene, &record).map_err(Stop::Failed)
         }
-        // If a solver rejects the step and names a stable one, it has failed early with a typed error.
+        // A solver that rejects the time step and names a stable one has failed with a typed error.
         Err(RunError::Resolution { reason, .. }) => Err(Stop::Failed(Failure::Broken(reason))),
         Err(error) => Err(match of_error(&error) {
             Some(failure) => Stop::Failed(failure),
@@ -208,7 +210,7 @@ fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Re
     }
 }
 
-/// Observer that keeps the checkpoint at half of the steps.
+/// Observer that stores the checkpoint at half of the steps.
 #[derive(Default)]
 struct HalfwayCheckpoint {
     steps: u64,
@@ -230,7 +232,7 @@ impl Observer for HalfwayCheckpoint {
     }
 }
 
-/// Checks that a run continued from its middle ends in the same bits as the uninterrupted run.
+/// Checks that a run that is continued from half of its steps ends in the same bits as the uninterrupted run.
 fn continues(
     scene: &Scene,
     solver: &dyn Solver,
@@ -238,19 +240,21 @@ fn continues(
     (whole, halfway): (&Record, HalfwayCheckpoint),
 ) -> Result<(), Stop> {
     let Some(checkpoint) = halfway.checkpoint else {
-        let reason = "it leaves no checkpoints to continue from".to_owned();
+        let reason = "it writes no checkpoints".to_owned();
         return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
     };
     let continued =
         solver.restart(scene, resolution, &checkpoint, &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
-        return Err(Stop::Failed(Failure::Wrong(format!("{differ} grains end otherwise when the run is continued"))));
+        return Err(Stop::Failed(Failure::Wrong(format!(
+            "{differ} grains have a different final state when the run is continued"
+        ))));
     }
     Ok(())
 }
 
-/// Returns the grains at the end.
+/// Returns the grains at the end of a run.
 fn end(record: &Record) -> &[GrainState] {
     record.snapshots.last().map_or(&[], |snapshot| &snapshot.grains)
 }
@@ -263,7 +267,7 @@ fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
     grains.iter().zip(&scene.grains).map(grain_energy).sum()
 }
 
-/// Returns the kinetic energy at the start (J).
+/// Returns the kinetic energy at the start, including rotation (J).
 fn kinetic_at_start(scene: &Scene) -> f64 {
     let grain_energy = |grain: &grainbench_scene::scene::Grain| {
         0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
@@ -273,7 +277,7 @@ fn kinetic_at_start(scene: &Scene) -> f64 {
 
 /// Returns an error if a value differs from the expected value by more than `allowed`.
 fn near(what: &str, value: f64, expected: f64, allowed: f64) -> Result<(), Failure> {
-    // The comparison is written so that NaN fails.
+    // NaN fails this comparison.
     if (value - expected).abs() <= allowed {
         Ok(())
     } else {
@@ -281,12 +285,13 @@ fn near(what: &str, value: f64, expected: f64, allowed: f64) -> Result<(), Failu
     }
 }
 
-/// Checks an elastic head-on impact: the velocities are those of two point masses.
+/// Checks the velocities after an elastic head-on impact: they are those of two point masses, within 3 % of the
+/// approach speed.
 fn head_on(scene: &Scene, record: &Record) -> Result<(), Failure> {
     let (a, b) = (&scene.grains[0], &scene.grains[1]);
     let grains = end(record);
     if grains.len() < 2 {
-        return Err(Failure::Wrong("there are no grains at the end".to_owned()));
+        return Err(Failure::Wrong("the run has no grains at the end".to_owned()));
     }
     let total = a.mass + b.mass;
     let centre = (a.mass * a.velocity.x + b.mass * b.velocity.x) / total;
@@ -314,14 +319,14 @@ mod tests {
         }
     }
 
-    /// A check that passes for any result would call every step stable.
+    /// A check that passes for every result would call every time step stable.
     #[test]
     fn every_check_refuses_a_run_of_something_else() {
         for case in all() {
             let scene = case.scene.unwrap();
             let mut grains: Vec<GrainState> =
                 scene.grains.iter().enumerate().map(|(at, grain)| GrainState::start(at as u32 + 1, grain)).collect();
-            // Grains are far away and faster than in any case.
+            // All grains are moved far away and are faster than in any case.
             for grain in &mut grains {
                 grain.position += nalgebra::Vector3::new(-3e9, -7e9, -5e9) * grain.radius;
                 grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
